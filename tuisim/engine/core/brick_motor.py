@@ -85,7 +85,7 @@ class BrickMotor:
         """Number of consecutive ticks in which an obstacle or wall has blocked the wheel."""
 
     def run(self, speed_dps: float) -> None:
-        """Run until the next command."""
+        """Run the motor at a speed until the next command."""
         if self.mode == FOREVER and not (self.slowest_ramp_dps2 or self.blocked_ticks):
             # A control loop calls this a hundred times a second: only the speed changes.
             self.target_dps = speed_dps
@@ -93,14 +93,15 @@ class BrickMotor:
             self._begin(FOREVER, speed_dps, 1.0)
 
     def run_until(self, speed_dps: float, end_tick: float) -> None:
-        """Run until the end of a tick."""
+        """Run the motor at a speed until the end of the tick `end_tick`, and stop it there."""
         self._begin(TIMED, speed_dps, 1.0)
         self.end_tick = end_tick
 
     def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
-        """Run to an encoder position.
+        """Run the motor to an encoder position, and stop it there.
 
         Args:
+            goal_deg: The encoder position.
             speed_dps: Its sign is ignored.
             backwards: Whether to turn backwards, wherever the goal is.
         """
@@ -118,7 +119,7 @@ class BrickMotor:
         self.blocked_ticks = 0
 
     def stop(self) -> None:
-        """Stop immediately."""
+        """Stop the motor immediately, without a ramp."""
         self.mode = STOPPED
         self.target_dps = 0.0
         self.blocked_ticks = 0
@@ -147,27 +148,27 @@ class BrickMotor:
 
     @property
     def moving_dps(self) -> float:
-        """Current speed of the wheel, signed."""
+        """Current speed of the wheel in degrees per second, negative if it turns backwards."""
         return 0.0 if self.mode == STOPPED else self.speed_dps * self.sign
 
     @property
     def counting_dps(self) -> float:
-        """Current speed of the encoder."""
+        """Current speed of the encoder's count in degrees per second."""
         return self.moving_dps
 
     @property
     def aim_dps(self) -> float:
-        """Target speed of the wheel, signed."""
+        """Target speed of the wheel in degrees per second, negative if it is to turn backwards; 0 while stopped."""
         return self.target_dps * self.sign if self.mode else 0.0
 
     @property
     def resting(self) -> bool:
-        """Whether ticks leave this motor unchanged until its next command."""
+        """Whether the motor stays unchanged until its next command."""
         return self.mode == STOPPED
 
     @property
     def ramp_step(self) -> float:
-        """Largest change of speed in one tick; 0 is unlimited."""
+        """Largest change of the motor's speed in one tick, in degrees per second; 0 is unlimited."""
         if not self.slowest_ramp_dps2:
             return self._weight_step
         limit_dps = self.slowest_ramp_dps2 * self._tick_s
@@ -175,14 +176,14 @@ class BrickMotor:
 
     @property
     def ramping_ticks(self) -> int:
-        """Number of ticks until the speed is steady."""
+        """Number of ticks until the motor has its target speed."""
         if self.mode == STOPPED or self.speed_dps == self.target_dps:
             return 0
         step = self.ramp_step
         return math.ceil(abs(self.target_dps - self.speed_dps) / step) if step else 1
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Run quiet ticks at a steady speed; see `Motor.glide_evenly`."""
+        """Return the rotation of the wheel in several ticks of constant speed; see `Motor.glide_evenly`."""
         if self.mode == STOPPED:
             return EvenGlide(0.0, repeat(self.position_deg, ticks))
         turned = self.speed_dps * self.sign * self._tick_s
@@ -191,7 +192,7 @@ class BrickMotor:
         )
 
     def glide(self, ticks: int) -> Glide:
-        """Run quiet ticks; see `Motor.glide`."""
+        """Advance the motor by several ticks in which only its ramp changes it; see `Motor.glide`."""
         if self.mode == STOPPED:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
         sign = self.sign
@@ -202,7 +203,14 @@ class BrickMotor:
         return Glide(turns, counts[1:])
 
     def glide_noisily(self, ticks: int, noise_dps: Sequence[float]) -> Glide:
-        """Run quiet ticks with noise added to the speed in each; for moves that do not end at a position."""
+        """Advance the motor as `glide` does, with noise added to its speed.
+
+        Moves to a position cannot be advanced in this way: noise changes the tick in which they end.
+
+        Args:
+            ticks: Number of ticks.
+            noise_dps: The noise of each tick.
+        """
         if self.mode == STOPPED:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
         sign = self.sign
@@ -243,7 +251,7 @@ class BrickMotor:
         return speeds
 
     def count_quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks only the ramp changes this motor; see `Motor.count_quiet_ticks`."""
+        """Return for how many ticks nothing but its ramp changes the motor; see `Motor.count_quiet_ticks`."""
         if self.approach_dps2:
             return 0
         if self.mode == TIMED:
@@ -257,7 +265,7 @@ class BrickMotor:
         return ENDLESS
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Run one tick; see `Motor.step`."""
+        """Advance the motor by one tick, and return the rotation of the wheel in degrees; see `Motor.step`."""
         mode = self.mode
         if mode == FOREVER and not noise_dps:
             # The common case: only the ramp matters.
@@ -298,7 +306,7 @@ class BrickMotor:
 
     @property
     def _ramp_down_step(self) -> float:
-        """Decrease of speed in one tick while the motor decelerates by itself."""
+        """Decrease of the speed in one tick while the motor slows down before its goal or end time."""
         limit_dps = self.approach_dps2 * self._tick_s
         return min(self._weight_step, limit_dps) if self._weight_step else limit_dps
 

@@ -72,16 +72,16 @@ class BrowserMotor:
     # Commands
 
     def run(self, speed_dps: float) -> None:
-        """Run until the next command."""
+        """Run the motor at a speed until the next command."""
         self._begin(FOREVER, speed_dps)
 
     def run_until(self, speed_dps: float, end_tick: float) -> None:
-        """Run while ticks are before `end_tick`, which need not be whole."""
+        """Run the motor at a speed in all ticks before `end_tick`, which need not be a whole number."""
         self._begin(TIMED, speed_dps)
         self.end_tick = end_tick
 
     def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
-        """Run to an encoder position; see `BrickMotor.run_to`."""
+        """Run the motor to an encoder position; arguments as of `BrickMotor.run_to`."""
         self._begin(POSITION, speed_dps)
         self.goal_deg = goal_deg
         self.backwards = backwards
@@ -94,14 +94,14 @@ class BrowserMotor:
         self.blocked_ticks = 0
 
     def stop(self) -> None:
-        """Stop from the next tick on; the motor no longer counts as blocked."""
+        """Stop the motor from the next tick on, and set `blocked_ticks` to 0."""
         self._command = STOPPED
         self.blocked_ticks = 0
 
     # Ticks
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Run one tick; see `Motor.step`."""
+        """Advance the motor by one tick, and return the rotation of the wheel in degrees; see `Motor.step`."""
         speed = self.speed_dps
         if speed != self.speed_sp or noise_dps:
             self.speed_dps = speed = self._step_register(speed, noise_dps)
@@ -155,21 +155,21 @@ class BrowserMotor:
 
     @property
     def _ended(self) -> bool:
-        """Whether a move to a position is over, so that only the encoder goes on counting."""
+        """Whether a move to a position is over: the wheel stands, but the encoder still counts."""
         return self._command == POSITION and self.mode == STOPPED
 
     # Ticks ahead
 
     @property
     def ramping_ticks(self) -> int:
-        """Approximate number of ticks until the register is steady; 0 only if it is steady."""
+        """Approximate number of ticks until the speed register is steady; 0 only if it is steady."""
         if self.speed_dps == self.speed_sp <= self._limit_dps:
             return 0
         way = abs(self._aim - self.speed_dps)
         return math.ceil(way / self._ramp_step) or int(way > 0)
 
     def count_quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks only the register changes; see `Motor.count_quiet_ticks`."""
+        """Return for how many ticks nothing but the speed register changes; see `Motor.count_quiet_ticks`."""
         if self._command == FOREVER or (self.mode == STOPPED and self._command != POSITION):
             return ENDLESS
         if self._command == POSITION:
@@ -193,7 +193,7 @@ class BrowserMotor:
         return 0 if self._is_beyond_goal() else max(0, int(left / (2 * fastest)) - 1)
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Run quiet ticks at a steady speed; see `Motor.glide_evenly`."""
+        """Return the rotation of the wheel in several ticks of constant speed; see `Motor.glide_evenly`."""
         turned = self.speed_dps * (
             -self._tick_s if self._command == POSITION and self.backwards else self._tick_s
         )
@@ -208,7 +208,7 @@ class BrowserMotor:
         return EvenGlide(0.0 if self.mode == STOPPED else turned * self.roll_sign + 0.0, counts)
 
     def glide(self, ticks: int) -> Glide:
-        """Run quiet ticks; see `Motor.glide`."""
+        """Advance the motor by several ticks in which only its speed register changes; see `Motor.glide`."""
         speeds = self._advance_registers(ticks)
         tick_s = -self._tick_s if self._command == POSITION and self.backwards else self._tick_s
         turns = [speed * tick_s for speed in speeds]
@@ -220,7 +220,7 @@ class BrowserMotor:
         return Glide([turned * sign + 0.0 for turned in turns], counts)
 
     def _advance_registers(self, ticks: int) -> list[float]:
-        """Advance the register by `ticks` ticks and return its value after each tick."""
+        """Advance the speed register by `ticks` ticks, and return its value after each tick."""
         speed = self.speed_dps
         aim = self._aim
         speeds: list[float] = []
@@ -250,24 +250,24 @@ class BrowserMotor:
 
     @property
     def moving_dps(self) -> float:
-        """Current speed of the wheel, signed."""
+        """Current speed of the wheel in degrees per second, negative if it turns backwards."""
         return 0.0 if self.mode == STOPPED else self.speed_dps * self._direction
 
     @property
     def counting_dps(self) -> float:
-        """Current speed of the encoder."""
+        """Current speed of the encoder's count in degrees per second: twice the wheel's in a move to a position."""
         if self._command == POSITION:
             return self.speed_dps * ((self.mode != STOPPED) + 1) * (-1.0 if self.backwards else 1.0)
         return 0.0 if self.mode == STOPPED else self.speed_dps
 
     @property
     def aim_dps(self) -> float:
-        """Target speed of the wheel, signed."""
+        """Target speed of the wheel in degrees per second, negative if it is to turn backwards; 0 while stopped."""
         return 0.0 if self.mode == STOPPED else self._aim * self._direction
 
     @property
     def resting(self) -> bool:
-        """Whether ticks leave this motor unchanged until its next command."""
+        """Whether the motor stays unchanged until its next command."""
         return (
             self.mode == STOPPED
             and self.speed_dps == self._aim

@@ -59,7 +59,7 @@ class Clearance(NamedTuple):
 
 
 class Leeway(NamedTuple):
-    """How much of a tick's motion obstacles allow."""
+    """The part of a tick's motion that obstacles allow, and how they push the robot aside."""
 
     part: float
     """Fraction of the motion that is possible, 0 … 1."""
@@ -73,8 +73,8 @@ UNHINDERED = Leeway(1.0, (0.0, 0.0))
 class Solids:
     """The obstacles and walls of a world, for one robot.
 
-    Most of the time nothing is near. The distance that every point of the body may move is
-    therefore computed once and used up tick by tick; obstacles are checked again only then.
+    Most of the time nothing is near. The distance that every point of the body may move is therefore computed once, and
+    reduced by the motion of each tick. The obstacles are checked again only when it is used up.
 
     Args:
         world: Walls and obstacles.
@@ -120,13 +120,13 @@ class Solids:
         return max(self._free.any_mm, self._free.straight_mm)
 
     def remaining_mm(self, pose: PoseTuple) -> float:
-        """Remaining free distance of the last check, less the distance moved since."""
+        """Return the free distance in mm that the last check found, less the distance moved since."""
         x, y, heading = self._free.pose
         turned = math.radians(abs(pose[2] - heading)) * self.reach_mm
         return self._free.any_mm - math.hypot(pose[0] - x, pose[1] - y) - turned
 
     def find_leeway(self, pose: PoseTuple, forward_mm: float, turn_deg: float) -> Leeway:
-        """Return how much of the motion of a tick is possible; turns are counter-clockwise."""
+        """Return how much of the motion of a tick obstacles allow; `turn_deg` is positive counter-clockwise."""
         way = abs(forward_mm) + abs(math.radians(turn_deg)) * self.reach_mm
         if self.remaining_mm(pose) >= way:
             return UNHINDERED
@@ -181,7 +181,10 @@ class Solids:
         return Leeway(part, (0.0, 0.0))
 
     def _push_aside(self, body: Body, boxes: list[Box], floors: list[float]) -> Leeway:
-        """Push a body aside until each gap is at least its value in `floors`; if that fails, allow no motion at all."""
+        """Return the displacement that makes each gap of a body at least its value in `floors`.
+
+        If there is no such displacement, the result allows no motion at all.
+        """
         x_mm = y_mm = 0.0
         there = body
         for number, floor in enumerate(floors):
@@ -215,7 +218,10 @@ class Solids:
             yield _measure_box_gap(body, box)
 
     def _find_way_out(self, body: Body, number: int, boxes: list[Box]) -> tuple[float, float]:
-        """Return the direction of the shortest way out of an overlap; `number` is an index into `_gaps`."""
+        """Return the direction, as x and y, in which a body leaves an overlap by the shortest way.
+
+        `number` is the index of the overlapped wall or box among the results of `_measure_gaps`.
+        """
         if self._walls:
             if number < len(_AWAY_FROM_WALLS):
                 return _AWAY_FROM_WALLS[number]
@@ -316,7 +322,7 @@ def _measure_box_gap(body: Body, box: Box) -> float:
 
 
 def _find_way_out_of_box(body: Body, box: Box) -> tuple[float, float]:
-    """Return the direction in which a body that overlaps a box leaves it by the shortest way."""
+    """Return the direction, as x and y, in which a body that overlaps a box leaves it by the shortest way."""
     cx, cy, fx, fy, _, _, wide, high = body
     left, lower, right, upper = box
     along, aside, in_front = _locate_box(body, box)
@@ -344,7 +350,10 @@ def _locate_box(body: Body, box: Box) -> tuple[float, float, bool]:
 
 
 def _find_free_part(is_blocked: Callable[[float], bool], way_mm: float) -> float:
-    """Return the largest fraction of a motion without contact; `is_blocked` tells whether a fraction has contact."""
+    """Return the largest fraction, 0 … 1, of a motion of `way_mm` that brings no contact.
+
+    `is_blocked` returns whether there is contact after a fraction of the motion.
+    """
     steps = max(1, math.ceil(way_mm / STEP_MM))
     for step in range(1, steps + 1):
         if is_blocked(step / steps):

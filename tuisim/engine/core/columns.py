@@ -24,9 +24,10 @@ COLOR_NAMES = ("NoColor", "Black", "Blue", "Green", "Yellow", "Red", "White", "B
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A value that a run has at each tick, measured or computed from those of the same owner.
+    """A column of a recording: a name with a value for each tick of a run.
 
-    Measured columns come first among those of an owner, in the order in which it measures them.
+    Each column belongs to the robot, a sensor or a motor. It is either measured, or computed from the measured columns
+    of the same owner, which come first, in the order in which the owner measures them.
     """
 
     name: str
@@ -40,7 +41,10 @@ class Column:
 
 
 def list_measured_names(columns: Iterable[Column]) -> tuple[str, ...]:
-    """Return the names of the measured columns: telemetry exports these unless it is asked for others."""
+    """Return the names of those columns that are measured, and not computed from others.
+
+    Telemetry exports these columns unless a user names others.
+    """
     return tuple(column.name for column in columns if column.of is None)
 
 
@@ -57,7 +61,7 @@ MOTION: tuple[Column, ...] = (
 
 
 def measure_motion(instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
-    """Return the values of the measured columns of `MOTION`, in their order."""
+    """Return the values of the columns of `MOTION` at an instant, in their order."""
     pose = instant.pose
     return (
         pose.x_mm,
@@ -71,7 +75,7 @@ def measure_motion(instant: Instant, run: RunSpec, field: Field) -> tuple[float,
 
 
 def find_column_name(text: str, columns: Iterable[Column]) -> str | None:
-    """Return the name of the column that a text means, however its words are joined; None if there is none.
+    """Return the name of the column that a text names, perhaps in an earlier spelling; None if there is no such column.
 
     Args:
         text: Such as `left_red_pc`, or an earlier spelling, `left.red%` or `left sensor red %`.

@@ -63,7 +63,7 @@ NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 
 
 class ValueSource(StrEnum):
-    """Where the values come from that a condition tests."""
+    """What the value comes from that a condition tests: a column, a sample or a printed line."""
 
     COLUMN = ""
     """A column of a recording or of a log."""
@@ -105,9 +105,10 @@ class ValueCondition:
         return float(COLOR_NAMES.index(self.value)) if is_name else parse_finite_number(self.value)
 
     def test(self) -> Callable[[Any, Any], Any]:
-        """Return a function that tells whether the condition is true of a value, or of each value of an array.
+        """Return a function that tests the condition.
 
-        The function takes the value, and the value before it: NaN for the first.
+        The function takes a value, or an array of them, and the value before it, NaN for the first. It returns whether
+        the condition is true, for an array an array.
 
         Raises:
             ValueError: the value to compare with is not a number.
@@ -121,7 +122,7 @@ class ValueCondition:
         return lambda value, _: compare(value, number)
 
     def format_condition(self, name: str) -> ValueCondition:
-        """Return the condition for a column with this name, in its usual spelling.
+        """Return the same condition with the name `name`, and with operator and value in their usual spelling.
 
         Raises:
             ValueError: the value to compare with is not a number.
@@ -138,7 +139,7 @@ class ValueCondition:
 
 
 class Edge:
-    """Follows a value, and tells when a condition on it becomes true, not while it stays true."""
+    """Follows a value over time, and finds the instants at which a condition on it becomes true."""
 
     __slots__ = ("_before", "_held", "_is_momentary", "_test")
 
@@ -175,8 +176,8 @@ def parse_condition(text: str, name: str = r".+?", value: str = r"\S+") -> Value
 def parse_run_condition(text: str) -> ValueCondition | None:
     """Return the condition on a run in a text; None if the text is not such a condition.
 
-    A condition on a column as of `parse_condition`, except `~`; `sample NAME`, `sample NAME OP VALUE`,
-    `sample NAME changes`; `print matches REGEX`.
+    The text is a condition on a column as for `parse_condition`, but without the operator `~`, or one of `sample NAME`,
+    `sample NAME OP VALUE`, `sample NAME changes` and `print matches REGEX`.
     """
     word, _, rest = text.strip().partition(" ")
     rest = rest.strip()
@@ -219,10 +220,10 @@ def format_value(value: float, column: str, digits: int = 6) -> str:
 
 
 def parse_finite_number(text: str) -> float:
-    """Return a number.
+    """Return the number in a text.
 
     Raises:
-        ValueError: it is not a finite number.
+        ValueError: the text is not a finite number.
     """
     try:
         number = float(text)

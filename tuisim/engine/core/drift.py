@@ -43,7 +43,7 @@ _FIRST_LOSS_DEG, _LAST_LOSS_DEG = 15.0, 50.0
 
 
 class DrawnErrors(NamedTuple):
-    """The errors that are drawn once per run."""
+    """The errors of wheels, gyro and light that are drawn at random once per run."""
 
     left: float
     """The diameter of the left wheel, as a multiple of the robot's."""
@@ -57,7 +57,10 @@ class DrawnErrors(NamedTuple):
 
 
 def find_drift(spec: RunSpec) -> DriftSpec:
-    """Return the drift of a run. Unless its robot is as bricks were measured, sensors of one kind are all alike."""
+    """Return the sizes of the drift errors that apply to a run.
+
+    In profiles that do not follow measurements of real bricks, the errors in which sensors of one kind differ are 0.
+    """
     drift = spec.world.drift
     if drift is NO_DRIFT or spec.profile.motor_law.is_measured:
         return drift
@@ -90,7 +93,7 @@ def draw_echo_bias_mm(port: str, drift: DriftSpec, seed: int) -> int:
 
 @lru_cache(maxsize=16)
 def draw_errors(drift: DriftSpec, seed: int) -> DrawnErrors:
-    """Return the errors that a seed gives a run."""
+    """Return the random errors of wheels, gyro and light in a run; the same seed always gives the same errors."""
     ours = draw_numbers(seed, 0, "drift", 9)
     # By Box and Muller.
     pairs = zip(ours[0:8:2], ours[1:8:2], strict=True)
@@ -124,7 +127,10 @@ def sense_turn_rate_dps(left_dps: float, right_dps: float, spec: RunSpec) -> flo
 
 
 def compute_light_share(x_mm: Any, y_mm: Any, drift: DriftSpec, seed: int) -> Any:
-    """Return the share of the full brightness at places of the field, numbers or arrays; 1 at the brightest side."""
+    """Return the brightness at positions in mm, as a share of the full brightness at the brightest side of the field.
+
+    The positions are numbers or arrays; the result is of the same type.
+    """
     across, up = draw_bright_side(drift, seed)
     towards = (x_mm - FIELD_WIDTH_MM / 2) * across + (y_mm - FIELD_HEIGHT_MM / 2) * up
     return 1 - (0.5 - towards) * (drift.light_pc / 100)
@@ -132,7 +138,10 @@ def compute_light_share(x_mm: Any, y_mm: Any, drift: DriftSpec, seed: int) -> An
 
 @lru_cache(maxsize=16)
 def draw_bright_side(drift: DriftSpec, seed: int) -> tuple[float, float]:
-    """Return how much a mm along x and along y adds to the brightness, which grows by 1 from side to side."""
+    """Return the increase of the brightness per mm along x and along y.
+
+    From the darkest to the brightest side of the field the increase is 1.
+    """
     way = draw_errors(drift, seed).bright_rad
     across = cos(way)
     up = sin(way)
@@ -141,13 +150,16 @@ def draw_bright_side(drift: DriftSpec, seed: int) -> tuple[float, float]:
 
 
 def compute_lost_echoes(flatness_deg: float, drift: DriftSpec) -> float:
-    """Return the share of pulses that a surface does not send back; `flatness_deg` is the angle off its normal."""
+    """Return the share of ultrasonic pulses, 0 … 1, that a surface does not send back to the sensor.
+
+    `flatness_deg` is the angle between the pulse and the normal of the surface.
+    """
     share = (flatness_deg - _FIRST_LOSS_DEG) / (_LAST_LOSS_DEG - _FIRST_LOSS_DEG)
     return max(0.0, min(1.0, share)) * drift.echo_loss_pc / 100
 
 
 class _Wheel:
-    """A wheel that its motor turns with backlash, and that slips."""
+    """A wheel that slips, with backlash between it and its motor."""
 
     __slots__ = ("_accelerations", "_half_mm", "_play_mm", "_slip", "_times", "before_mm")
 
@@ -162,7 +174,10 @@ class _Wheel:
         """How far the wheel has turned in the tick before."""
 
     def engage_mm(self, motor_mm: float) -> float:
-        """Return how far a wheel of its real diameter rolls, after the play, if the motor would roll it `motor_mm`."""
+        """Return how far the wheel rolls in a tick, given how far its motor would roll a wheel without errors.
+
+        The result includes the backlash and the real diameter of the wheel.
+        """
         half = self._half_mm
         if half:
             play_mm = self._play_mm + motor_mm
@@ -171,7 +186,7 @@ class _Wheel:
         return motor_mm * self._times
 
     def compute_slip_mm(self, way_mm: float) -> float:
-        """Return how much of its way the wheel loses in a tick while it speeds up; negative while it brakes."""
+        """Return how much of its way the wheel loses to slip in a tick; negative while the wheel brakes."""
         speeding = (way_mm - self.before_mm) * self._accelerations
         self.before_mm = way_mm
         return self._slip * speeding * abs(way_mm)
@@ -208,7 +223,12 @@ class SlippingWheels:
         self._turn_slip = drift.turn_slip_pc / 100
 
     def turn_deg(self, tick: int, left_deg: float, right_deg: float) -> tuple[float, float]:
-        """Return the turns of the motors that would move a robot without errors as this robot moves in a tick."""
+        """Return the motor turns that would move a robot without errors just as this robot moves in a tick.
+
+        Args:
+            tick: The number of the tick.
+            left_deg, right_deg: The real turns of the motors in the tick.
+        """
         if not (left_deg or right_deg):
             self._left.before_mm = self._right.before_mm = 0.0
             return left_deg, right_deg
@@ -233,7 +253,7 @@ class SlippingWheels:
 
 
 class WrongGyro:
-    """A gyro that senses something other than the robot's turn: it drifts, and senses turns only up to a rate.
+    """A gyro with errors: it drifts, and senses turns only up to a maximum rate.
 
     Args:
         spec: The run.
@@ -253,7 +273,7 @@ class WrongGyro:
         self._drifts = not drift.is_none
 
     def roll(self, left_deg: float, right_deg: float) -> None:
-        """Move the robot by one tick's rotation of the wheels' motors, as `Drive.roll`, and the gyro's angle."""
+        """Move the robot by one tick's rotation of its wheel motors, and change the gyro's angle with its errors."""
         drive = self._drive
         angle_deg = drive.gyro_zero_deg - drive.heading_deg
         drive.roll(left_deg, right_deg)
@@ -281,7 +301,7 @@ def build_gyro(spec: RunSpec, drive: Drive) -> WrongGyro | None:
 
 
 def can_strain_gyro(spec: RunSpec) -> bool:
-    """Return whether the motors can turn the robot faster than its gyro can sense; noise is left out."""
+    """Return whether the motors, without noise, can turn the robot faster than its gyro can sense."""
     if not spec.profile.gyro_max_dps:
         return False
     fastest_mm = sum(
@@ -295,7 +315,7 @@ def can_strain_gyro(spec: RunSpec) -> bool:
 
 
 def describe_errors(spec: RunSpec) -> str:
-    """Return in words the errors of wheels and sensors that drift has drawn with the seed of the run."""
+    """Return a text with the errors of wheels and sensors that a run has by its drift and its seed."""
     drift = find_drift(spec)
     drawn = draw_errors(drift, spec.seed)
     sizes = {"left wheel": drawn.left, "right wheel": drawn.right, "spacing": drawn.spacing}

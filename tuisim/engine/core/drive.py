@@ -120,7 +120,15 @@ class Drive(Protocol):
 def _glide_straight(
     drive: Drive, forward_mm: float, way: float, records: Records, left: EvenGlide, right: EvenGlide
 ) -> tuple[float, float]:
-    """Move the robot by equal steps in the direction `way`, in radians; see `BrickDrive.glide_evenly`."""
+    """Move the robot by equal steps in one direction, write a record for each, and return the final encoder positions.
+
+    Args:
+        drive: The robot's drive.
+        forward_mm: The length of each step.
+        way: The direction, in radians.
+        records: Where the records are written.
+        left, right: How the wheels' motors move.
+    """
     buffer, offsets, ticks, line, *_ = records
     _fill(records, offsets.start, left, right, drive.gyro_zero_deg)
     x = drive.x_mm
@@ -141,7 +149,7 @@ def _glide_straight(
 
 
 class BrickDrive:
-    """The drive of a brick.
+    """The pose of a robot with a brick, which changes with the rotation of its wheels.
 
     `early` is the fraction of a tick's turn that already applies to the motion of that tick.
     """

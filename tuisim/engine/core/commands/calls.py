@@ -15,7 +15,7 @@ MAX_NUMBER = float(2**53)
 
 
 class Call(IntEnum):
-    """What a program can do to the simulation. Recorded commands contain these numbers."""
+    """The kinds of commands that a program gives to the simulation; recordings contain these numbers."""
 
     RESET_GYRO = 0
     MOVE_PEN = 1
@@ -65,7 +65,7 @@ class Call(IntEnum):
 
 
 class SimulationCommand(NamedTuple):
-    """One call of a program."""
+    """One command of a program to the simulation, with its time and its values."""
 
     time_ns: int
     part: int
@@ -79,7 +79,7 @@ def find_index(numbers: Values, place: int, count: int) -> int:
     """Return `numbers[place]` as an index from 0 to below `count`.
 
     Raises:
-        ValueError: it is no such index.
+        ValueError: the number is not whole, or out of this range.
     """
     index = int(numbers[place])
     if not 0 <= index < count or index != numbers[place]:

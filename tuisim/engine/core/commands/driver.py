@@ -30,7 +30,10 @@ def _build_set_points(values: Values) -> SetPoints:
 
 
 def build_effect(command: Command) -> Callable[[SimulatedMotor, int, Values], None]:
-    """Return the function that gives a command of the driver to a motor, with all set points."""
+    """Return a function that gives a command of the driver to a motor.
+
+    The function takes the motor, the time in ns, and the values of all set points.
+    """
 
     def obey(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
         motor.obey(time_ns, command, _build_set_points(values))
@@ -39,18 +42,24 @@ def build_effect(command: Command) -> Callable[[SimulatedMotor, int, Values], No
 
 
 def set_duty(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
-    """Set the duty, as `DriverMotor.set_duty`."""
+    """Set the duty of a motor in percent, as `DriverMotor.set_duty` does."""
     motor.set_duty(time_ns, int(values[0]))
 
 
 def set_position(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
-    """Set the number that the motor shows as its present position."""
+    """Set the number that the motor shows as its present position, without moving it."""
     motor.wake(time_ns)
     motor.set_position(int(values[0]))
 
 
 def set_constant(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
-    """Set a constant of a controller. Values: the number of the controller, that of the constant, and the new value."""
+    """Set a constant of one of the motor's two controllers.
+
+    Args:
+        motor: The motor.
+        time_ns: When the program sets it.
+        values: An index in `CONTROLS`, an index in `CONSTANTS`, and the new value.
+    """
     control = CONTROLS[find_index(values, 0, len(CONTROLS))]
     name = CONSTANTS[find_index(values, 1, len(CONSTANTS))]
     motor.wake(time_ns)

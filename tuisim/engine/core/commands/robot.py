@@ -16,27 +16,27 @@ _PLACES = {code: place for place, code in PART_CODES.items()}
 
 
 def encode_parts(parts: Iterable[PluggedPart]) -> Values:
-    """Return the values of a `PLUG` command: a number for each part."""
+    """Return the values of a `PLUG` command for these parts: the number of each part in `PART_CODES`."""
     return tuple(float(PART_CODES[part.role, part.port, part.part]) for part in parts)
 
 
 def reset_gyro(sim: Simulation, _time_ns: int, _values: Values) -> None:
-    """Let the gyro show 0 at the current heading."""
+    """Set the angle that the gyro shows at the current heading to 0."""
     sim.reset_gyro()
 
 
 def set_gyro(sim: Simulation, _time_ns: int, values: Values) -> None:
-    """Let the gyro show an angle at the current heading, in degrees, clockwise."""
+    """Set the angle that the gyro shows at the current heading, in degrees clockwise."""
     sim.reset_gyro(values[0])
 
 
 def move_pen(sim: Simulation, _time_ns: int, values: Values) -> None:
-    """Lower the pen, or lift it."""
+    """Lower the pen if the value is 1; lift it if the value is 0."""
     sim.pen_down = bool(values[0])
 
 
 def plug_in(sim: Simulation, _time_ns: int, values: Values) -> None:
-    """Plug in parts, all at once.
+    """Plug the parts that the values stand for into the robot, all at the same time.
 
     Raises:
         ValueError: a value is not the number of a part.
@@ -46,7 +46,11 @@ def plug_in(sim: Simulation, _time_ns: int, values: Values) -> None:
 
 
 def decode_parts(values: Iterable[float], tick: int) -> list[PluggedPart]:
-    """Return the parts that the values of a `PLUG` command stand for, plugged in at a tick.
+    """Return the parts that the values of a `PLUG` command stand for.
+
+    Args:
+        values: Numbers of parts, as from `encode_parts`; NaN is ignored.
+        tick: The tick after which the parts are plugged in.
 
     Raises:
         ValueError: a value is not the number of a part.

@@ -28,42 +28,53 @@ def _read_optional(number: float) -> int | None:
 
 
 def _change_setting(control: Controller, values: Values) -> None:
-    """Change one setting of a controller. Values: the index in `SETTINGS`, and the new value."""
+    """Change one setting of a controller. Values: the setting's index in `SETTINGS`, and its new value."""
     name = SETTINGS[find_index(values, 0, len(SETTINGS))]
     control.settings = replace(control.settings, **{name: int(values[1])})
 
 
 def begin_anew(motor: ServoMotor, time_ns: int, values: Values) -> None:
-    """Set a motor up as new. Values: the sign of its direction, the gear ratio, whether it keeps its angle."""
+    """Reset a motor, as when a program creates a new object for it.
+
+    Args:
+        motor: The motor.
+        time_ns: When the program does so.
+        values: 1 or -1 for the direction, the gear ratio, and whether the motor keeps its angle (1) or sets it to 0
+            (0).
+    """
     sign, ratio, keeps_angle = values
     motor.set_up(time_ns // 1000, int(sign), ratio, keeps_angle=bool(keeps_angle))
 
 
 def run_freely(motor: ServoMotor, time_ns: int, values: Values) -> None:
-    """Run with a power, or coast."""
+    """Run a motor with a constant power in hundredths of a percent; let it coast if the value is NaN."""
     motor.run_freely(time_ns // 1000, _read_optional(values[0]))
 
 
 def set_milli(motor: ServoMotor, time_ns: int, values: Values) -> None:
-    """Set the number that the motor shows as its present position, in thousandths of a count."""
+    """Set the number that the motor shows as its present position, in thousandths of a count, without moving it."""
     motor.set_position(time_ns // 1000, int(values[0]))
 
 
 def hold(motor: ServoMotor, time_ns: int, _values: Values) -> None:
-    """Let the motor's controller hold the present position."""
+    """Make the motor's controller hold the present position."""
     now_us = time_ns // 1000
     motor.control.hold(now_us, motor.measure_start(now_us).milli)
 
 
 def hold_milli(motor: ServoMotor, time_ns: int, values: Values) -> None:
-    """Let the motor's controller hold a position, in thousandths of a count."""
+    """Make the motor's controller hold a given position, in thousandths of a count."""
     motor.control.hold(time_ns // 1000, int(values[0]))
 
 
 def run_control(motor: ServoMotor, time_ns: int, values: Values) -> None:
-    """Let the motor's controller run. Values: the rate, the acceleration, the time in microseconds (NaN: no end).
+    """Make the motor's controller run at a speed.
 
-    The fourth value is an ending, with which the motor follows its controller from now on; NaN leaves it as it is.
+    Args:
+        motor: The motor.
+        time_ns: When the program gives the command.
+        values: Speed, acceleration, duration in microseconds (NaN: endless), and an `Ending`. With an ending the motor
+            begins to follow the controller; with NaN only the controller changes.
     """
     rate, acceleration, time_us, ending = values
     motor.control.run(
@@ -74,7 +85,13 @@ def run_control(motor: ServoMotor, time_ns: int, values: Values) -> None:
 
 
 def move(motor: ServoMotor, time_ns: int, values: Values) -> None:
-    """Let the motor's controller move. Values: target, rate, acceleration, whether the target is relative."""
+    """Make the motor's controller move to a position.
+
+    Args:
+        motor: The motor.
+        time_ns: When the program gives the command.
+        values: Target, speed, acceleration, and whether the target is relative to the present position (1 or 0).
+    """
     *numbers, relative = values
     motor.control.move_to_position(
         time_ns // 1000, motor.measure_start, *map(int, numbers), relative=bool(relative)
@@ -82,7 +99,7 @@ def move(motor: ServoMotor, time_ns: int, values: Values) -> None:
 
 
 def follow(motor: ServoMotor, time_ns: int, values: Values) -> None:
-    """Let a motor follow its own controller, which has just got its trajectory; the value is the ending.
+    """Make a motor follow the trajectory that its own controller has just computed; the value is an `Ending`.
 
     Raises:
         ValueError: the controller has no trajectory.
@@ -96,12 +113,12 @@ def follow(motor: ServoMotor, time_ns: int, values: Values) -> None:
 
 
 def limit_duty(motor: ServoMotor, _time_ns: int, values: Values) -> None:
-    """Limit the power of the current move."""
+    """Limit the power of the motor's current move, in hundredths of a percent; NaN removes the limit."""
     motor.control.duty_limit = _read_optional(values[0])
 
 
 def set_control(motor: ServoMotor, _time_ns: int, values: Values) -> None:
-    """Change a setting of a motor's controller. Values: as of `_change_setting`."""
+    """Change a setting of a motor's controller; values as of `_change_setting`."""
     _change_setting(motor.control, values)
 
 
@@ -109,7 +126,12 @@ def set_control(motor: ServoMotor, _time_ns: int, values: Values) -> None:
 
 
 def build_base(sim: Simulation, _time_ns: int, values: Values) -> None:
-    """Make a drive base. Values: the numbers of two motors, the wheels' diameter, the track."""
+    """Create a drive base from two motors.
+
+    Args:
+        sim: The simulation.
+        values: Numbers of the left and the right motor, diameter of the wheels and axle track in mm.
+    """
     # Imported on demand: only programs with a drive base need it.
     from tuisim.engine.core.servo.drive_base import DriveBase
 
@@ -120,37 +142,43 @@ def build_base(sim: Simulation, _time_ns: int, values: Values) -> None:
 
 
 def move_base(base: DriveBase, time_ns: int, values: Values) -> None:
-    """Drive a distance and turn by an angle, with an ending."""
+    """Make a drive base drive a distance and turn by an angle. Values: mm, degrees, and an `Ending`."""
     distance_mm, turn_deg, _ = values
     base.move(time_ns // 1000, distance_mm, turn_deg, _find_ending(values, 2))
 
 
 def drive_base(base: DriveBase, time_ns: int, values: Values) -> None:
-    """Drive on at a speed and a rate of turn."""
+    """Make a drive base drive on without an end. Values: speed in mm/s, and rate of turn in degrees per second."""
     base.drive(time_ns // 1000, *map(int, values))
 
 
 def stop_base(base: DriveBase, time_ns: int, values: Values) -> None:
-    """Let go of a drive base's motors: run them with a power, or let them coast (NaN)."""
+    """Stop controlling a drive base: run its motors with a power, or let them coast if the value is NaN."""
     base.stop(time_ns // 1000, _read_optional(values[0]))
 
 
 def set_base(base: DriveBase, _time_ns: int, values: Values) -> None:
-    """Set speeds and accelerations with which a drive base moves unless the program gives others."""
+    """Set the default speed, acceleration, turn rate and turn acceleration of a drive base."""
     base.set_usual(*map(int, values))
 
 
 def set_slowing(base: DriveBase, _time_ns: int, values: Values) -> None:
-    """Set with which accelerations a drive base stops, if not with those with which it speeds up."""
+    """Set the decelerations of a drive base in straight moves and in turns; by default they equal its accelerations."""
     base.set_slowing(*map(int, values))
 
 
 def use_gyro(base: DriveBase, time_ns: int, values: Values) -> None:
-    """Let the gyro tell a drive base the heading, or the wheels again."""
+    """Make a drive base take its heading from the gyro if the value is 1, and from its wheels if it is 0."""
     base.use_gyro(time_ns // 1000, bool(values[0]))
 
 
 def set_base_control(base: DriveBase, _time_ns: int, values: Values) -> None:
-    """Change a setting of a drive base. Values: 0 for the distance or 1 for the heading; index; new value."""
+    """Change a setting of one of a drive base's two controllers.
+
+    Args:
+        base: The drive base.
+        values: 0 for the controller of the distance or 1 for that of the heading, an index in `SETTINGS`, the new
+            value.
+    """
     control = (base.distance, base.heading)[find_index(values, 0, 2)]
     _change_setting(control, values[1:])

@@ -25,48 +25,48 @@ DrivenMotor = BrickMotor | BrowserMotor
 
 
 def start(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
-    """Run at a speed until the next command."""
+    """Run a motor at a speed until the next command."""
     motor.run(*values)
 
 
 def start_timed(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
-    """Run at a speed until a tick."""
+    """Run a motor at a speed until a tick. Values: the speed in degrees per second, and the tick."""
     motor.run_until(*values)
 
 
 def start_move(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
-    """Run to a position, at a speed, backwards or not."""
+    """Run a motor to a position. Values: the position in degrees, the speed, and whether to turn backwards (1 or 0)."""
     goal_deg, speed_dps, backwards = values
     motor.run_to(goal_deg, speed_dps, bool(backwards))
 
 
 def stop(motor: DrivenMotor, _time_ns: int, _values: Values) -> None:
-    """Stop."""
+    """Stop a motor."""
     motor.stop()
 
 
 def set_count(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
-    """Set the number that the encoder shows as its present position."""
+    """Set the number that the encoder shows as its present position, in degrees, without moving the motor."""
     motor.position_deg = values[0]
 
 
 def limit_ramps(motor: BrickMotor, _time_ns: int, values: Values) -> None:
-    """Limit the acceleration of the move that has begun, and its deceleration before its end."""
+    """Limit acceleration and deceleration of the motor's current move, in degrees per second squared."""
     motor.slowest_ramp_dps2, motor.approach_dps2 = values
 
 
 def set_speed(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
-    """Set the speed that the register follows."""
+    """Set the speed that the motor's speed register approaches, in degrees per second."""
     motor.speed_sp = values[0]
 
 
 def set_backwards(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
-    """Set the direction of moves to a position, also of one that is under way or over."""
+    """Set whether moves to a position turn backwards (1) or not (0); this also changes a move that runs or is over."""
     motor.backwards = bool(values[0])
 
 
 def set_roll(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
-    """Set in which direction the wheel rolls: 1 as the encoder counts, -1 the other way.
+    """Set in which direction the wheel rolls: 1 as the encoder counts, -1 the opposite direction.
 
     Raises:
         ValueError: the value is neither.
@@ -94,7 +94,7 @@ _SET_POINTS = (_SPEED, _INT, (-100.0, 100.0), _INT, _RAMP_MS, _RAMP_MS, (0.0, 2.
 
 
 class Target(Enum):
-    """The kind of part that a call is for."""
+    """What a command acts on: the robot, a motor or a drive base."""
 
     ROBOT = auto()
     MOTOR = auto()
@@ -104,7 +104,7 @@ class Target(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CallSpec:
-    """What a call does, and which motors and values it takes."""
+    """What a command does, on which motors it is allowed, and which values it takes."""
 
     apply: Callable[[Any, int, Values], None]
     """Obeys the call; takes the part that the call is for, the time in ns and the values."""
@@ -124,7 +124,7 @@ def _specify_servo(
     laws: frozenset[MotorLaw] = SERVO_LAWS,
     **more: Any,
 ) -> CallSpec:
-    """Return what a call of the Pybricks firmware does."""
+    """Return the description of a command that only motors of the Pybricks firmware have."""
     return CallSpec(apply, ranges, laws, **more)
 
 
@@ -185,14 +185,16 @@ CALLS: Mapping[Call, CallSpec] = {
 
 
 def list_parts(sim: Simulation, target: Target) -> Sequence[Any] | DriveBases:
-    """Return the parts of a kind that a simulation has, in the order of their numbers."""
+    """Return all parts of a simulation that a command for `target` can name, in the order of their numbers."""
     if target is Target.MOTOR:
         return sim.motors
     return sim.bases if target is Target.BASE else (sim,)
 
 
 def obey(sim: Simulation, time_ns: int, part: int, call: Call, *values: float) -> None:
-    """Do what a program wants; arguments as of `SimulationCommand`. A program changes the simulation only through here.
+    """Apply a command of a program to a simulation; arguments as of `SimulationCommand`.
+
+    Programs change a simulation only through this function, so that all their commands can be recorded.
 
     Raises:
         ValueError: a move is not possible.

@@ -13,7 +13,7 @@ _WORD = 1 << 32
 
 
 def _wrap(number: int) -> int:
-    """Return a whole number as a signed integer of 32 bits holds it."""
+    """Return an integer wrapped to a signed integer of 32 bits, as in C."""
     return (number + _WORD // 2) % _WORD - _WORD // 2
 
 
@@ -38,12 +38,12 @@ class Controller:
         self.reset()
 
     def reset(self) -> None:
-        """Restore the constants, and forget the errors."""
+        """Set the constants to their initial values, and the errors to 0."""
         self.kp, self.ki, self.kd = self._constants
         self.clear()
 
     def clear(self) -> None:
-        """Forget the errors."""
+        """Set the error of the last step and the sum of all errors to 0."""
         self.error = self.total = 0
         """The error of the last step, and the sum of all."""
         self.overloaded = False

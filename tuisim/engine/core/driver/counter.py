@@ -28,7 +28,10 @@ MAX_DEPTH = 16 * STRIDE
 
 
 class Counter:
-    """The counter of one motor; before the run it has been at 0 for a while."""
+    """The counter of one motor: its count of half degrees, and the times of the last changes.
+
+    At the start of a run the axle has been at rest at 0 for a while.
+    """
 
     __slots__ = ("_counts", "_depth", "_speed_dps", "_straight", "_times", "count")
 
@@ -46,14 +49,15 @@ class Counter:
     def record(
         self, begin: float, duration: float, begin_deg: float, end_deg: float, middle: float
     ) -> None:
-        """Count while the axle turns in one direction.
+        """Record the changes of the count while the axle turns in one direction.
 
         Args:
             begin: When the turn begins, in ticks of the clock.
-            duration: How long the turn takes, in ticks.
+            duration: How long the turn takes, in ticks of the clock.
             begin_deg: The axle's angle at the begin.
             end_deg: The axle's angle at the end.
-            middle: The part of the way that it turns in the first half of the time; each half is taken as even.
+            middle: Share of the turn, 0 … 1, that falls in the first half of the time; the speed in each half is
+                constant.
         """
         count = floor(2.0 * end_deg)
         last = self.count
@@ -96,7 +100,7 @@ class Counter:
             del times[:-CAPACITY], counts[:-CAPACITY]
 
     def record_rest(self, end: float) -> None:
-        """Note that the count has not changed until a time."""
+        """Record that the count has not changed until `end`, in ticks of the clock."""
         times = self._times
         if end - times[-1] < MIN_IDLE:
             return
@@ -111,7 +115,7 @@ class Counter:
         del times[:-MAX_CHANGES], self._counts[:-MAX_CHANGES]
 
     def take_back(self, angle_deg: float) -> None:
-        """Forget the last changes in one direction, beyond an angle: an obstacle has stopped the axle there."""
+        """Remove the newest changes in one direction beyond the angle at which an obstacle stopped the axle."""
         count = floor(2 * angle_deg)
         counts = self._counts
         direction = 1 if self.count > count else -1
@@ -126,15 +130,15 @@ class Counter:
         return (self._straight if speed_dps > 0 else -self._straight) >= self._depth + STRIDE
 
     def find_time(self, back: int) -> int:
-        """Return when the count changed, in ticks of the clock: `back` changes before the last one."""
+        """Return the time of the change that is `back` changes before the last one, in ticks of the clock."""
         return self._times[-1 - back]
 
     def add_straight(self, count: int, times: list[int]) -> None:
-        """Add several changes in the direction of the last ones.
+        """Add several changes in the same direction as the last ones.
 
         Args:
-            count: The count after the last of them.
-            times: When the newest of them came, in ticks of the clock: all that matter from now on.
+            count: The count after these changes.
+            times: Times of the newest of these changes in ticks of the clock; older changes no longer affect the speed.
         """
         if not times:
             return
@@ -147,7 +151,7 @@ class Counter:
         del self._times[:-MAX_CHANGES], self._counts[:-MAX_CHANGES]
 
     def fill_evenly(self, time: float, angle_deg: float, speed_dps: float) -> None:
-        """Set the last changes as if the axle had turned evenly, for longer than any speed is measured.
+        """Replace all recorded changes by those of an axle that has turned at a constant speed.
 
         Args:
             time: Now, in ticks of the clock.
@@ -167,7 +171,7 @@ class Counter:
         self._speed_dps = None
 
     def measure_speed_dps(self) -> int:
-        """Return the speed that the driver computes from the last changes."""
+        """Return the speed that the driver computes from the last changes, in whole degrees per second."""
         speed_dps = self._speed_dps
         if speed_dps is not None:
             return speed_dps
@@ -195,7 +199,7 @@ class Counter:
         return speed_dps
 
     def _search(self, time: int) -> tuple[int, int]:
-        """Return over how many counts the speed is measured, and the time that they took, in ticks of the clock."""
+        """Return the change of the count from which the driver computes a speed, and its time in ticks of the clock."""
         turned = span = 0
         for depth in range(STRIDE, MAX_DEPTH + 1, STRIDE):
             turned = self.count - self._counts[-1 - depth]

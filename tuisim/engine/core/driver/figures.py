@@ -30,7 +30,7 @@ PLANT_SOURCES = {
 
 
 class Figure(NamedTuple):
-    """A figure of the large and of the medium motor, with its source."""
+    """A constant of the large and of the medium motor, with its source."""
 
     name: str
     large: float
@@ -39,7 +39,7 @@ class Figure(NamedTuple):
 
 
 def list_figures() -> list[Figure]:
-    """Return all figures: of the motor, of its load, and of its driver."""
+    """Return all constants of simulated EV3 motors: of the motor, of its load, and of its driver."""
     large = MODELS["large"]
     medium = MODELS["medium"]
     common = {

@@ -21,7 +21,7 @@ COARSER = 8
 
 @dataclass(frozen=True, slots=True)
 class Jiffies:
-    """The kernel's clock in a run: at which jiffy, and how far into it, the run begins."""
+    """The clock of the kernel in a run: it counts jiffies of 10 ms, and has begun to count before the run."""
 
     first: int = 0
     """Jiffies at the start of the run."""
@@ -31,15 +31,15 @@ class Jiffies:
     """Number of jiffies until the drivers look for the first time whether a state has changed."""
 
     def count(self, time_ns: int) -> int:
-        """Return how many jiffies the kernel has counted at a time."""
+        """Return how many jiffies the kernel has counted at a time in ns from the start of the run."""
         return self.first + (time_ns // NS_PER_US + self.phase_us) // JIFFY_US
 
     def begin_ns(self, jiffy: int) -> int:
-        """Return when a jiffy begins."""
+        """Return when a jiffy begins, in ns from the start of the run."""
         return ((jiffy - self.first) * JIFFY_US - self.phase_us) * NS_PER_US
 
     def find_expiry_ns(self, now_ns: int, jiffies: int) -> int:
-        """Return when a timer fires that is set at `now_ns` for a number of jiffies."""
+        """Return when a timer fires, in ns, that was set at `now_ns` to wait for a number of jiffies."""
         expiry = self.count(now_ns) + jiffies
         grain = 1
         reach = LEVEL_JIFFIES
@@ -50,7 +50,7 @@ class Jiffies:
 
 
 def draw_jiffies(seed: int) -> Jiffies:
-    """Return the kernel's clock in a run; its jiffies begin together with a step of the control."""
+    """Return the kernel's clock of a run with a seed; its jiffies begin together with a step of the control."""
     first, phase, look = draw_numbers(seed, 0, "jiffies", 3)
     steps = JIFFY_US // STEP_US
     return Jiffies(

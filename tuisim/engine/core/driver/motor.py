@@ -32,7 +32,7 @@ RAMP_LEAD_JIFFIES = 5
 
 
 class Command(StrEnum):
-    """The commands that a program can write to `command`."""
+    """The commands that a program can write to the attribute `command` of a motor."""
 
     RUN_FOREVER = "run-forever"
     RUN_TO_ABS_POS = "run-to-abs-pos"
@@ -48,7 +48,7 @@ RUN_FOREVER, RUN_TO_ABS_POS, RUN_TO_REL_POS, RUN_TIMED, RUN_DIRECT, STOP, RESET 
 
 
 class State(StrEnum):
-    """The states that `state` can list, in this order."""
+    """The states that the attribute `state` of a motor can list, in this order."""
 
     RUNNING = "running"
     RAMPING = "ramping"
@@ -65,7 +65,7 @@ STATES = tuple(
 
 
 class SetPoints(NamedTuple):
-    """All that a program has set when it gives a command, in the motor's own direction."""
+    """The attributes of a motor that a program has set when it gives a command, in the motor's own direction."""
 
     speed_dps: int = 0
     position: int = 0
@@ -92,7 +92,7 @@ class Ramp:
     end_dps: int
 
     def compute_setpoint(self, jiffy: int) -> int:
-        """Return the speed setpoint at a jiffy."""
+        """Return the speed setpoint at a jiffy, in degrees per second."""
         left = self.start_jiffy + self.jiffies - jiffy
         if left <= 0:
             return self.end_dps
@@ -100,7 +100,7 @@ class Ramp:
 
 
 class DriverMotor(MotorDriver):
-    """A motor with its driver, and the class of all motors above the driver, which programs see.
+    """A motor with its driver and the kernel's `tacho-motor` class, whose attributes programs use.
 
     Args:
         model: The kind of motor.
@@ -158,7 +158,7 @@ class DriverMotor(MotorDriver):
 
     @property
     def state_bits(self) -> int:
-        """The present states, as bits in the order of `STATES`."""
+        """The present states of the motor as the bits of `STATE_BITS`."""
         bits = 0
         if self.is_running:
             bits = STALLED | RUNNING if self.is_stalled else RUNNING
@@ -174,7 +174,7 @@ class DriverMotor(MotorDriver):
 
     @property
     def states(self) -> tuple[State, ...]:
-        """The present states, as `state` lists them."""
+        """The present states of the motor, as its attribute `state` lists them."""
         return STATES[self.state_bits]
 
     @property
@@ -190,15 +190,15 @@ class DriverMotor(MotorDriver):
 
     @property
     def next_look_ns(self) -> int:
-        """When the driver next checks whether the state has changed."""
+        """When the driver next checks whether the motor's state has changed, in ns."""
         return self._look_ns
 
     def find_last_look_ns(self, time_ns: int) -> int:
-        """Return when the driver checks for the last time until `time_ns`, from its next check on; else that one."""
+        """Return the time of the driver's last check up to `time_ns`; if its next check is later, the time of that."""
         return self._look_ns + max(0, time_ns - self._look_ns) // LOOK_NS * LOOK_NS
 
     def run_until(self, time_ns: int) -> None:
-        """Run all steps and timers that are due."""
+        """Run all steps of the control and all timers that are due until `time_ns`."""
         if self.is_at_rest:
             self._skip(time_ns)
             return
@@ -230,11 +230,11 @@ class DriverMotor(MotorDriver):
             self._fire()
 
     def _try_to_roll(self) -> bool:
-        """Return whether the motor rolls on from now, without any control or timer; if so, begin to."""
+        """Begin to roll if neither a controller nor a timer is active; return whether the motor rolls."""
         return self._timers_ns == NEVER_NS and super()._try_to_roll()
 
     def _follow_roll(self, time_ns: int) -> bool:
-        """Roll until a time; return whether the motor still rolls then."""
+        """Let the motor roll until a time; return whether it still rolls then."""
         rolls_on = self._advance_roll(time_ns)
         self._step_ns = (self._moved_ns // STEP_NS + 1) * STEP_NS
         while rolls_on and self._due_ns <= time_ns:
@@ -242,7 +242,7 @@ class DriverMotor(MotorDriver):
         return rolls_on
 
     def _is_still(self) -> bool:
-        """Return whether only the measured speed can still change: the axle stands, and no timer is set."""
+        """Return whether only the measured speed can still change: the axle is at rest, and no timer is set."""
         return (
             self._timers_ns == NEVER_NS
             and self.axle.stands
@@ -251,7 +251,7 @@ class DriverMotor(MotorDriver):
         )
 
     def settle(self) -> bool:
-        """Return, and remember, whether the motor is at rest: the passing of time changes nothing any more."""
+        """Set `is_at_rest` to whether the passing of time no longer changes the motor, and return it."""
         self.is_at_rest = (
             self.is_stalled == self.is_running
             and not (self.speed_dps or self._timers_ns < NEVER_NS)
@@ -262,14 +262,14 @@ class DriverMotor(MotorDriver):
         return self.is_at_rest
 
     def _skip(self, time_ns: int) -> None:
-        """Let time pass for a motor at rest."""
+        """Advance the time of a motor at rest, in which nothing else changes."""
         if self._step_ns <= time_ns:
             self._step_ns = (time_ns // STEP_NS + 1) * STEP_NS
             self._moved_ns = time_ns
         self._skip_looks(time_ns)
 
     def _skip_looks(self, time_ns: int) -> None:
-        """Let pass the driver's checks that have no new state to notice."""
+        """Skip the driver's checks until a time at which the motor's state cannot have changed."""
         if self._look_ns <= time_ns:
             passed = (time_ns - self._look_ns) // LOOK_NS + 1
             self._look_ns += passed * LOOK_NS
@@ -300,7 +300,7 @@ class DriverMotor(MotorDriver):
     # Commands
 
     def wake(self, time_ns: int) -> None:
-        """Run until a time, and end rest and roll: a command or an obstacle changes something then."""
+        """Run the motor until `time_ns`, and from then on in single steps: a command or an obstacle changes it."""
         if self._step_ns <= time_ns or self._due_ns <= time_ns:
             self.run_until(time_ns)
         if self._roll is not None:
@@ -308,13 +308,13 @@ class DriverMotor(MotorDriver):
         self.is_at_rest = False
 
     def set_duty(self, time_ns: int, duty: int) -> None:
-        """Set the duty; it takes effect at once if `run-direct` was the last command, else it is ignored."""
+        """Set the duty. It changes the motor if `run-direct` was the last command; otherwise it is ignored."""
         if self._last_command is RUN_DIRECT:
             self.wake(time_ns)
             self.run_direct(time_ns, duty)
 
     def obey(self, time_ns: int, command: Command, active: SetPoints) -> None:
-        """Do a command, after all steps and timers that are due."""
+        """Run all steps and timers due until `time_ns`, then execute a command with the set points `active`."""
         if command is RUN_FOREVER and self._keeps_running(active):
             if active != self.active:
                 self.wake(time_ns)
@@ -350,7 +350,7 @@ class DriverMotor(MotorDriver):
             self._reset(time_ns)
 
     def _keeps_running(self, active: SetPoints) -> bool:
-        """Whether a new `run-forever` follows another one, without ramps: then at most the speed changes."""
+        """Return whether a `run-forever` follows another one without ramps, so that only the speed can change."""
         before = self.active
         return (
             self._last_command is RUN_FOREVER
@@ -408,7 +408,7 @@ class DriverMotor(MotorDriver):
         self.set_position(0)
 
     def end_move(self, time_ns: int, action: StopAction) -> None:
-        """End a move to a position, and all ramps and timers with it."""
+        """End a move to a position with a stop action, and cancel all ramps and timers."""
         super().end_move(time_ns, action)
         self._set_timers()
         self.is_ramping = False
@@ -416,7 +416,7 @@ class DriverMotor(MotorDriver):
     # Ramps
 
     def _begin_ramp(self, time_ns: int, goal_dps: int) -> None:
-        """Begin to change the speed setpoint to a goal; first to 0 if the sign changes."""
+        """Begin to change the speed setpoint to a goal. If the sign changes, the first ramp leads to 0."""
         start_dps = self._ramp_setpoint if self.is_ramping else self.speed_dps
         self._ramp_goal_dps = goal_dps
         end_dps = 0 if start_dps * goal_dps < 0 else goal_dps
@@ -444,7 +444,7 @@ class DriverMotor(MotorDriver):
         self._set_timers(self._jiffies.find_expiry_ns(time_ns, wait), self._timed_ns)
 
     def _continue_ramp(self, time_ns: int) -> None:
-        """Change the setpoint again; end the ramp if it has reached its goal."""
+        """Set the next speed setpoint of the ramp; end the ramp if it has reached its goal."""
         if self._ramp_setpoint != self._ramp.end_dps:
             self._change_ramp(time_ns)
         elif self._ramp_setpoint != self._ramp_goal_dps:

@@ -63,7 +63,7 @@ MEDIUM = PlantSpec(
 
 @dataclass(frozen=True, slots=True)
 class Circuit:
-    """What follows from a motor's constants while the bridge is in one state; braking is a duty of 0."""
+    """Values derived from a motor's constants, either with the bridge powered (braking is a duty of 0) or coasting."""
 
     dps_per_percent: float
     """Steady speed per percent of duty, without friction; 0 while it coasts."""
@@ -77,7 +77,7 @@ class Circuit:
 
 
 def build_circuit(plant: PlantSpec, battery_v: float | None) -> Circuit:
-    """Return the circuit of a motor on a battery; without a battery the motor coasts."""
+    """Return the circuit of a motor on a battery; if `battery_v` is None, that of a motor that coasts."""
     damping = plant.damping_nm_s
     torque_per_percent = 0.0
     if battery_v is not None:
@@ -95,7 +95,7 @@ def build_circuit(plant: PlantSpec, battery_v: float | None) -> Circuit:
 
 
 class Axle:
-    """The axle of a motor. It stands at first, and the bridge lets it coast.
+    """The axle of a motor. At first it is at rest and coasts.
 
     Args:
         plant: The motor, with its load.
@@ -151,14 +151,14 @@ class Axle:
         )
 
     def power(self, duty: float | None) -> None:
-        """Set the duty of the bridge in percent; 0 brakes, None coasts."""
+        """Set the duty of the motor's bridge in percent; 0 brakes, and None lets the motor coast."""
         self.circuit = self._coasting if duty is None else self._powered
         self.goal_dps = 0.0 if duty is None else duty * self._powered.dps_per_percent
 
     def turn_step(self) -> bool:
-        """Turn for one step of the control; return whether that was possible.
+        """Turn the axle for one step of the control; return whether it has turned.
 
-        It is not if the axle would come to rest or meet an obstacle in the step: then nothing has changed.
+        If the axle would come to rest or meet an obstacle during the step, nothing changes and the result is False.
         """
         circuit = self.circuit
         speed_dps = self.speed_dps
@@ -181,7 +181,7 @@ class Axle:
         return True
 
     def advance(self, duration_ns: float) -> float:
-        """Turn until the time is over or the axle comes to rest on its way; return the rest of the time, in ns."""
+        """Turn the axle for a time, but no longer than until it comes to rest; return the rest of the time in ns."""
         circuit = self.circuit
         speed_dps = self.speed_dps
         forwards = speed_dps > 0.0 if speed_dps else self.goal_dps > 0.0
@@ -207,7 +207,7 @@ class Axle:
         return left_ns
 
     def _can_start(self, forwards: bool) -> bool:
-        """Whether an axle at rest begins to turn: the torque is large enough, and no obstacle is in the way."""
+        """Return whether an axle at rest begins to turn: the torque is large enough, and no obstacle is in the way."""
         if abs(self.goal_dps) <= self.circuit.breakaway_dps:
             return False
         return self.angle_deg < self.high_deg if forwards else self.angle_deg > self.low_deg

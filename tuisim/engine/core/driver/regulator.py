@@ -37,7 +37,7 @@ COAST, BRAKE, HOLD = StopAction
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A kind of motor, as the driver knows it."""
+    """Constants of a kind of motor, as its driver uses them."""
 
     plant: PlantSpec
     max_speed_dps: int
@@ -48,7 +48,7 @@ MODELS = {"large": Model(LARGE, 1050, 80_000), "medium": Model(MEDIUM, 1560, 160
 
 
 class MotorDriver:
-    """A motor with its driver; its axle stands at first, and nothing controls it.
+    """A motor with its driver. At first the axle is at rest, and no controller is active.
 
     Args:
         model: The kind of motor.
@@ -109,23 +109,23 @@ class MotorDriver:
 
     @property
     def lowering_s(self) -> float:
-        """How many seconds before its target a motor begins to slow down."""
+        """How many seconds before its target the motor begins to slow down."""
         return abs(self.speed_dps) * self.ramp_down_ms / self.model.max_speed_dps / 2000
 
     # Commands
 
     def run_regulated(self, speed_dps: int) -> None:
-        """Keep a speed, beginning with the next step of the control."""
+        """Run at a speed that the speed control keeps, from its next step on."""
         self.speed_control.setpoint = speed_dps
         self._start(self.speed_control)
 
     def run_direct(self, time_ns: int, duty: int) -> None:
-        """Keep a duty, without any control."""
+        """Run with a constant duty in percent, without any controller."""
         self._start(None)
         self._set_duty(time_ns, duty)
 
     def run_to(self, target: int, speed_dps: int, action: StopAction) -> None:
-        """Run to a position; the sign of the speed is ignored."""
+        """Run to the position `target`, with a stop action there; the sign of the speed is ignored."""
         self.speed_control.setpoint = -abs(speed_dps) if self.position > target else abs(speed_dps)
         self._start(self.speed_control)
         self.target = target
@@ -140,7 +140,7 @@ class MotorDriver:
         self._is_regulated = control is not None and control.setpoint != 0
 
     def halt(self, time_ns: int, action: StopAction, held: int | None = None) -> None:
-        """Stop; if `action` is to hold, hold the position `held`, by default the present one."""
+        """Stop the motor with a stop action; `held` is the position to hold, by default the present one."""
         self.speed_control.clear()
         self.hold_control.clear()
         self._control = self._arrival_action = self._still_ns = None
@@ -154,14 +154,14 @@ class MotorDriver:
             self.axle.power(None if action is COAST else 0)
 
     def set_position(self, position: int) -> None:
-        """Set the number that stands for the present position; it becomes the target, too."""
+        """Set the number that the present position is given as; it also becomes the target."""
         self._offset = position - self._raw
         self.position = self.target = self.hold_control.setpoint = position
 
     # Time
 
     def move_axle(self, time_ns: int) -> None:
-        """Let the axle turn until a time."""
+        """Turn the axle until a time, and count its turns."""
         axle = self.axle
         left_ns = float(time_ns - self._moved_ns)
         self._moved_ns = time_ns
@@ -181,7 +181,7 @@ class MotorDriver:
                 self.counter.record_rest(time_ns * TICKS_PER_NS)
 
     def read_counts(self, count: int) -> None:
-        """Set the position from a count of half degrees."""
+        """Set the motor's position from a count of half degrees."""
         self._raw = raw = count // 2 if count >= 0 else -(-count // 2)
         self.position = raw + self._offset
 
@@ -221,14 +221,14 @@ class MotorDriver:
             self._slow_down(time_ns, self._arrival_action)
 
     def _try_to_roll(self) -> bool:
-        """Begin to roll, without single steps, if the motor turns on without any control; return whether it does."""
+        """Begin a roll, which needs no single steps, if the motor turns freely; return whether it rolls."""
         if self.is_running and not self.speed_dps:
             return False
         self._roll = begin_roll(self.axle, self.counter, self._moved_ns)
         return self._roll is not None
 
     def _advance_roll(self, time_ns: int) -> bool:
-        """Roll until the last step that is due; if the roll ends before that, roll no further and return False."""
+        """Advance the roll to the last step that is due; if it has ended before that, remove it and return False."""
         roll = self._roll
         if roll is None:
             return False
@@ -244,13 +244,13 @@ class MotorDriver:
         return False
 
     def leave_roll(self) -> None:
-        """Go on in single steps from where the axle is."""
+        """End the roll, and go on in single steps from the axle's present angle."""
         if self._roll is not None:
             self._roll.tell_counter()
             self._roll = None
 
     def _can_regulate(self, step_ns: int) -> bool:
-        """Whether the next step needs the speed control alone: the motor turns freely, and is not about to stall."""
+        """Return whether the next step needs only the speed control: the motor turns freely, and is not stalling."""
         return (
             self.speed_dps != 0
             and self._still_ns is None
@@ -259,7 +259,7 @@ class MotorDriver:
         )
 
     def _find_arrival_ns(self, step_ns: int) -> int:
-        """Return a time until which the motor cannot reach its target, unless it slows down before."""
+        """Return a time, in ns, before which the motor cannot reach its target."""
         way = self.target - self.position
         way_deg = (way if self.speed_control.setpoint > 0 else -way) - COUNTED_DEG
         top_dps = max(abs(self.axle.speed_dps), MAX_DUTY * self.axle.circuit.dps_per_percent)
@@ -269,7 +269,7 @@ class MotorDriver:
         """Run steps of the speed control alone, in few calls, as long as the motor turns on.
 
         Returns:
-            When the next step is due: before `end_ns` if that step needs more than the speed control.
+            When the next step is due, in ns. It is before `end_ns` if that step needs more than the speed control.
         """
         axle = self.axle
         counter = self.counter
@@ -340,7 +340,7 @@ class MotorDriver:
             self.is_stalled = True
 
     def _slow_down(self, time_ns: int, action: StopAction) -> None:
-        """Slow down before the target, and stop at it."""
+        """Lower the speed setpoint before the target, and stop the motor at the target."""
         target = self.target
         position = self.position
         speed_dps = self.speed_dps
@@ -355,5 +355,5 @@ class MotorDriver:
             self.end_move(time_ns, action)
 
     def end_move(self, time_ns: int, action: StopAction) -> None:
-        """End a move to a position."""
+        """End a move to a position with a stop action; to hold means to hold the target."""
         self.halt(time_ns, action, held=self.target)

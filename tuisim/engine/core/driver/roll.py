@@ -29,7 +29,9 @@ KEPT_COUNTS = 3 * STRIDE
 
 
 class Roll:
-    """A stretch of time in which an axle turns freely under a constant duty, and its counter is left out.
+    """A stretch of time in which an axle turns freely under a constant duty.
+
+    Angle and speed are computed for any time at once. The counter is updated only when the roll ends.
 
     Args:
         axle: The axle, which turns at a speed of at least `MIN_ROLL_DPS`.
@@ -94,7 +96,7 @@ class Roll:
         self.count = floor(2 * axle.angle_deg)
 
     def measure_speed_dps(self) -> int:
-        """Return the speed that the driver reads now."""
+        """Return the speed that the driver measures now, in whole degrees per second."""
         if self.count == self._counter.count:
             return self._counter.measure_speed_dps()
         time = self._find_time(0)
@@ -108,7 +110,7 @@ class Roll:
         return speed_dps if self._sign > 0 else -speed_dps
 
     def _find_time(self, back: int) -> int:
-        """Return when the axle came to a count, in ticks of the clock: `back` counts before the newest one."""
+        """Return when the axle reached the count that is `back` counts before the newest one, in ticks of the clock."""
         counter = self._counter
         count = self.count
         sign = self._sign
@@ -135,7 +137,7 @@ class Roll:
         return age_s
 
     def tell_counter(self) -> None:
-        """Pass on to the counter the newest counts, from which a speed may still be measured."""
+        """Add the newest counts of the roll to the counter: those over which the driver may still measure a speed."""
         times: list[int] = []
         for back in range(abs(self.count - self._counter.count)):
             times.append(self._find_time(back))
@@ -145,7 +147,7 @@ class Roll:
 
 
 def begin_roll(axle: Axle, counter: Counter, begin_ns: int) -> Roll | None:
-    """Return how a motor rolls from a time on; None if it turns too slowly, or not freely."""
+    """Return the roll that an axle begins at a time; None if it turns too slowly, or not freely."""
     if abs(axle.speed_dps) < MIN_ROLL_DPS or axle.low_deg > -inf or axle.high_deg < inf:
         return None
     is_straight = counter.is_straight(axle.speed_dps)

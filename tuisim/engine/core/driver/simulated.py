@@ -60,7 +60,9 @@ def choose_plant(spec: RunSpec, kind: str, *, free: bool) -> PlantSpec:
     """Return the constants of a motor with its load.
 
     Args:
-        free: Whether it drives no wheel; otherwise it carries a wheel with its share of the robot.
+        spec: The run.
+        kind: The kind of motor.
+        free: Whether the motor drives no wheel; otherwise it carries a wheel with its share of the robot.
     """
     plant = MODELS[kind].plant if kind in MODELS else _find_hub_plant(kind)
     return plant if free else load_wheel(plant, spec.robot)
@@ -79,12 +81,12 @@ def build_motor(spec: RunSpec, kind: str, *, free: bool) -> SimulatedMotor:
 
 
 def build_axle(spec: RunSpec, kind: str, *, free: bool) -> Axle:
-    """Return the axle of a motor that has another control than the driver's; arguments as of `choose_plant`."""
+    """Return the axle of a motor that is not controlled by the EV3 driver; arguments as of `choose_plant`."""
     return Axle(choose_plant(spec, kind, free=free), spec.robot.battery_v)
 
 
 def change_load(axle: Axle, spec: RunSpec, kind: str, *, free: bool) -> None:
-    """Let an axle carry a wheel from now on, or no longer; arguments as of `choose_plant`."""
+    """Change the load of an axle to that of a motor with or without a wheel; arguments as of `choose_plant`."""
     axle.change_load(choose_plant(spec, kind, free=free), spec.robot.battery_v)
 
 
@@ -138,7 +140,7 @@ class SimulatedMotor(DriverMotor):
 
     @property
     def mode(self) -> int:
-        """The current command; anything but `STOPPED` counts as running."""
+        """One of the modes in `engine.core.motors`; the motor runs in all of them but `STOPPED`."""
         if not self.is_running:
             return STOPPED
         if self._timed_ns < NEVER_NS:
@@ -147,29 +149,29 @@ class SimulatedMotor(DriverMotor):
 
     @property
     def goal_deg(self) -> float:
-        """Target of a move to a position."""
+        """Target of the last move to a position, in degrees."""
         return float(self.target)
 
     @property
     def end_tick(self) -> float:
-        """The tick at which a timed move ends, as a fraction; `ENDLESS` without one."""
+        """The tick at which a timed move ends, which need not be whole; `ENDLESS` without a timed move."""
         return ENDLESS if self._timed_ns == NEVER_NS else self._timed_ns / self._tick_ns
 
     @property
     def moving_dps(self) -> float:
-        """Current speed of the wheel, signed."""
+        """Current speed of the wheel in degrees per second, negative if it turns backwards."""
         return self.axle.speed_dps
 
     @property
     def aim_dps(self) -> float:
-        """Speed that the control keeps, or that the duty leads to, signed."""
+        """Speed that the control keeps, or that the duty leads to, in degrees per second; negative backwards."""
         if self._control is self.speed_control:
             return float(self.speed_control.setpoint)
         return self.axle.goal_dps
 
     @property
     def resting(self) -> bool:
-        """Whether ticks leave this motor unchanged until its next command."""
+        """Whether the motor stays unchanged until its next command."""
         return self.is_at_rest
 
     @property
@@ -178,13 +180,16 @@ class SimulatedMotor(DriverMotor):
         return 0 if self.is_at_rest or self._cruise_dps else 1
 
     def set_position(self, position: int) -> None:
-        """Set the number that stands for the present position; it becomes the target, too."""
+        """Set the number that the present position is given as; it also becomes the target."""
         before = self.position
         super().set_position(position)
         self.position_deg += position - before
 
     def record(self, buffer: Buffer, at: int) -> None:
-        """Write a `MOTOR_RECORD` at an offset of a buffer; its asked speed is 0 unless the speed control is active."""
+        """Write the motor's `MOTOR_RECORD` to a buffer, at the offset `at`.
+
+        Its `asked_dps` is 0 unless the speed control is active.
+        """
         control = self.speed_control
         asked_dps = control.setpoint if self._control is control else 0
         _pack_into(buffer, at, asked_dps, self.speed_dps, self.duty, self.state_bits)
@@ -195,7 +200,7 @@ class SimulatedMotor(DriverMotor):
         return -(-tick * NS_PER_S // self._hz)
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Run one tick; see `Motor.step`."""
+        """Advance the motor by one tick, and return the rotation of the wheel in degrees; see `Motor.step`."""
         end_ns = self._end_ns(tick)
         if self._cruise_dps:
             if end_ns < self._cruise_end_ns and not noise_dps:
@@ -231,7 +236,10 @@ class SimulatedMotor(DriverMotor):
     # Even speed
 
     def _begin_cruise(self, now_ns: int, noise_dps: float) -> None:
-        """Begin to run evenly if the speed has been right for a while, and nothing is due for a while."""
+        """Begin to run at constant speed, without single steps, if the speed has been right for some ticks.
+
+        The motor does not begin if a timer, its target or an end stop is near.
+        """
         setpoint = self.speed_control.setpoint
         if noise_dps or not -MAX_ERROR_DPS <= self.speed_dps - setpoint <= MAX_ERROR_DPS:
             self._even_ticks = 0
@@ -247,7 +255,7 @@ class SimulatedMotor(DriverMotor):
             self.axle.speed_dps = cruise_dps
 
     def _estimate_free_ns(self, cruise_dps: float) -> int:
-        """Return for how long target and end stops are too far to matter."""
+        """Return for how many ns a motor at a constant speed stays away from its target and its end stops."""
         axle = self.axle
         end_deg = axle.high_deg if cruise_dps > 0 else axle.low_deg
         free_s = (end_deg - axle.angle_deg) / cruise_dps
@@ -256,7 +264,7 @@ class SimulatedMotor(DriverMotor):
         return int(min((free_s - MARGIN_S), MAX_CRUISE_S) * NS_PER_S)
 
     def _leave_cruise(self) -> None:
-        """Go on in single steps from the end of the last tick."""
+        """End the run at constant speed, and go on in single steps from the end of the last tick."""
         now_ns = self._end_ns(self._tick)
         cruise_dps = self._cruise_dps
         axle = self.axle
@@ -269,14 +277,14 @@ class SimulatedMotor(DriverMotor):
         self.read_counts(self.counter.count)
 
     def wake(self, time_ns: int) -> None:
-        """Run until a time, and end rest and even motion: a command or an obstacle changes something then."""
+        """Run the motor until `time_ns`, and from then on in single steps: a command or an obstacle changes it."""
         if self._cruise_dps:
             self._leave_cruise()
         DriverMotor.wake(self, time_ns)
         self._even_ticks = 0
 
     def run_until(self, time_ns: int) -> None:
-        """Run all steps and timers that are due."""
+        """Run all steps of the control and all timers that are due until `time_ns`."""
         if self._cruise_dps and time_ns >= self._cruise_end_ns:
             self._leave_cruise()
         if not self._cruise_dps:
@@ -287,7 +295,7 @@ class SimulatedMotor(DriverMotor):
         self.read_counts(floor(2 * (self._angle_deg + self._cruise_dps * since_s)))
 
     def _turn_axle(self, time_ns: int, angle_deg: float) -> None:
-        """Turn the axle to an angle at once, as noise or an obstacle does."""
+        """Set the axle's angle to another one, in no time, as noise or an obstacle does."""
         self.leave_roll()
         axle = self.axle
         before_deg = self.axle.angle_deg
@@ -295,21 +303,21 @@ class SimulatedMotor(DriverMotor):
         self.counter.record(time_ns * TICKS_PER_NS, 0.0, before_deg, axle.angle_deg, 0.5)
 
     def count_quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks after `tick` the motor rests or runs evenly."""
+        """Return for how many ticks after `tick` the motor is at rest or runs at constant speed."""
         self._tick = tick
         if self.is_at_rest:
             return ENDLESS
         return int((self._cruise_end_ns - 1) // self._tick_ns) - tick if self._cruise_dps else 0
 
     def glide(self, ticks: int) -> Glide:
-        """Run quiet ticks."""
+        """Advance the motor by several ticks at rest or at constant speed; see `Motor.glide`."""
         even = self.glide_evenly(ticks)
         counts_deg = [*even.counts_deg]
         self.position_deg = counts_deg[-1]
         return Glide([even.roll_deg] * ticks, counts_deg)
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Run quiet ticks of a motor at a steady speed; see `Motor.glide_evenly`."""
+        """Return the rotation of the wheel in several ticks of constant speed; see `Motor.glide_evenly`."""
         self._tick += ticks
         turned_deg = self._cruise_dps / self._hz
         if not turned_deg:
@@ -322,11 +330,11 @@ class SimulatedMotor(DriverMotor):
     # Obstacles
 
     def state(self) -> MotorState:
-        """Return the state that `hold_back` needs: the axle's angle at the end of the last tick."""
+        """Return the state that `hold_back` needs; only the axle's angle at the end of the last tick is used."""
         return STOPPED, 1.0, 0.0, self._angle_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Put the axle where an obstacle stopped it in the last tick; see `Motor.hold_back`."""
+        """Set the axle to the angle at which an obstacle stopped it in the last tick; see `Motor.hold_back`."""
         if turned_deg == 0.0:
             return
         if self._cruise_dps:
@@ -358,7 +366,11 @@ class SimulatedMotor(DriverMotor):
         return -PUSH_DEG
 
     def bar(self, direction: float) -> None:
-        """Keep the axle from turning further in the direction of a sign; 0 sets it free."""
+        """Block turns of the axle in one direction.
+
+        Args:
+            direction: Its sign is that of the turns to block; 0 removes the block.
+        """
         axle = self.axle
         low_deg = axle.angle_deg if direction < 0 else -inf
         high_deg = axle.angle_deg if direction > 0 else inf
