@@ -16,7 +16,7 @@ def _build_field(high: float, typical: float, unit: str, about: str, source: str
 
 @spec
 class DriftSpec(Spec):
-    """Sizes of the errors of robot and sensors that a program does not expect. Encoders do not notice them."""
+    """Sizes of the errors of robot and sensors that a program does not expect; encoders do not notice these errors."""
 
     KEY = "drift"
 

@@ -67,12 +67,12 @@ class Fence(EndStops):
         motor.limit_axle(self._low_deg, self._high_deg)
 
     def step(self, motor: Motor, tick: int) -> None:
-        """Run one tick of the motor, which stops by itself."""
+        """Run one tick of a motor that keeps itself between its end stops."""
         self._at_deg += motor.step(tick, 0.0)
 
 
 def build_stops(robot: RobotSpec, spec: MotorSpec, motor: Motor) -> EndStops:
-    """Return the stops of a motor."""
+    """Return the end stops of a motor."""
     if isinstance(motor, SimulatedMotor):
         return Fence(robot, spec, motor)
     return EndStops(robot, spec)

@@ -38,7 +38,7 @@ def count_disc_pixels(diameter: int) -> int:
 
 @lru_cache(maxsize=16)
 def list_disc_spans(diameter: int) -> tuple[tuple[int, int, int], ...]:
-    """Return the rows of a disc: the number of the row in its box, its first column, and the column after its last."""
+    """Return for each row of a disc its number in the disc's box, its first column, and the column after its last."""
     rows = enumerate(build_disc_mask(diameter))
     return tuple(
         (row, inside.index(True), diameter - inside[::-1].index(True))
@@ -66,9 +66,11 @@ class Field:
     """Colour of the floor around the mat; None for no floor, where nothing reflects."""
 
     def sum_disc(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
-        """Return the sums of red, green and blue over a disc; the upper left corner of its box may be off the mat.
+        """Return the sums of red, green and blue over a disc of the mat.
 
-        `diameter` is a key of `sums`.
+        Args:
+            diameter: The disc's diameter in pixels, a key of `sums`.
+            col, row: The upper left corner of the disc's box, which may be off the mat.
         """
         width = self.width_px + diameter
         left = col + diameter
@@ -99,7 +101,7 @@ class Field:
         return count
 
     def pixel(self, col: int, row: int) -> Rgb:
-        """Return the colour of a pixel; off the mat, the colour of what is around it."""
+        """Return the colour of a pixel; off the mat, the colour of the floor."""
         if 0 <= col < self.width_px and 0 <= row < self.height_px:
             offset = 3 * (row * self.width_px + col)
             return self.pixels[offset], self.pixels[offset + 1], self.pixels[offset + 2]

@@ -10,7 +10,7 @@ from tuisim.base.errors import RobotError
 
 
 class HubKind(NamedTuple):
-    """One kind of hub."""
+    """The ports of one kind of hub, and its usual motor."""
 
     ports: str
     """The hub's ports, for motors and sensors alike."""
@@ -57,21 +57,24 @@ INSIDE = "inside"
 
 
 def check_motor_kinds(hub: str, kinds: Mapping[str, str]) -> None:
-    """Check that motors fit to a hub.
+    """Check that a hub can have motors of these kinds.
 
     Args:
         hub: One of `HUBS`; empty for the EV3.
         kinds: The motors' kinds by the keys in a robot file.
 
     Raises:
-        RobotError: a motor does not fit.
+        RobotError: the hub has no such kind of motor.
     """
     for key, kind in kinds.items():
         require_one_of(kind, "kind of motor", HUB_MOTORS if hub else EV3_MOTORS, key)
 
 
 def find_touch_keys(ports: Sequence[str]) -> dict[str, str]:
-    """Return ports of touch sensors by the digits that press them: one after another where ports are letters."""
+    """Return the port of each touch sensor by the digit key that presses the sensor.
+
+    The digit of `in1` is 1. Ports that are letters get 1, 2, 3 … in the given order.
+    """
     return {port[2:] or str(number): port for number, port in enumerate(ports, 1)}
 
 

@@ -86,7 +86,9 @@ def create_motor(spec: RunSpec, kind: str, *, free: bool = False) -> Motor:
     """Return a motor of one of `MOTOR_KINDS`, in its initial state.
 
     Args:
-        free: Whether it drives no wheel.
+        spec: The run, whose profile says which motor law applies.
+        kind: The kind of motor.
+        free: Whether the motor drives no wheel.
     """
     profile = spec.profile
     step = compute_weight_step(spec)
@@ -120,7 +122,7 @@ def build_drive(spec: RunSpec) -> Drive:
 
 
 class Motion:
-    """Robot and motors of one run.
+    """The robot's pose and motors in one run, which are advanced in whole ticks.
 
     Args:
         spec: Robot, world, profile and seed.
@@ -206,7 +208,7 @@ class Motion:
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
 
     def _begin(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
-        """Set the part of the initial state in which runs of one robot in one world can differ."""
+        """Set the part of the initial state that can differ between runs of one robot in one world."""
         self.spec = spec
         self._sink = sink
         self.noise = spec.world.noise
@@ -241,7 +243,7 @@ class Motion:
 
     @property
     def motor_values(self) -> tuple[MotorValues, ...]:
-        """What the drivers of all motors knew at the end of the last tick, as recorded; empty without drivers."""
+        """The values of all motors' drivers that were recorded at the last tick; empty without drivers."""
         return self._motor_recorder.read_values(self._sink.count - 1)
 
     def _publish(self, ticks: int) -> None:
@@ -268,7 +270,12 @@ class Motion:
         return self.changed
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
-        """Run ticks and return their number; with `until_change` they end early when a motor ends a move."""
+        """Advance the simulation by ticks, and return their number.
+
+        Args:
+            ticks: Number of ticks.
+            until_change: Whether to return earlier, as soon as a motor has ended a move.
+        """
         if ticks == 1 and not until_change:
             self.tick_once()
             return 1
@@ -288,7 +295,7 @@ class Motion:
         return done
 
     def _count_quiet_ticks(self, most: int) -> int:
-        """Return for how many ticks, at most `most`, nothing but ramps and motion happens."""
+        """Return for how many ticks, at most `most`, nothing happens but ramps of motors and motion of the robot."""
         left, right = self.left, self.right
         if self._slipping is not None or (self.noise.motor and not self._can_glide_with_noise()):
             return 0
@@ -305,7 +312,7 @@ class Motion:
         return isinstance(left, BrickMotor) and isinstance(right, BrickMotor)
 
     def tick_once(self) -> None:
-        """Run one tick in full: the reference for the loops below."""
+        """Advance the simulation by one tick; the faster loops below give the same results."""
         count = self._sink.count
         # Reserve space before anything moves: if there is none, the tick does not happen.
         buffer = self._buffer if count < self._room_end else self._make_room(1)
@@ -358,12 +365,12 @@ class Motion:
         self._publish(1)
 
     def _push(self, aside_mm: tuple[float, float]) -> None:
-        """Move the robot aside, along x and y."""
+        """Move the robot aside by a distance along x and along y."""
         drive = self.drive
         drive.x_mm, drive.y_mm = drive.x_mm + aside_mm[0], drive.y_mm + aside_mm[1]
 
     def _clear_ticks(self, most: int) -> int:
-        """Return for how many ticks, at most `most`, no collision is possible unless a command comes."""
+        """Return for how many ticks, at most `most`, no collision is possible unless a command changes the motion."""
         left, right = self.left, self.right
         if self._solids is None or (self._driven and left.resting and right.resting):
             return most
@@ -393,7 +400,7 @@ class Motion:
     def _list_wheel_speeds(
         self, left: Motor, right: Motor
     ) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Return the current and the target speed of the left and of the right wheel, positive forwards."""
+        """Return the present and the target speed of the left and of the right wheel, positive forwards."""
         left_ends, right_ends = (left.moving_dps, left.aim_dps), (right.moving_dps, right.aim_dps)
         return (
             left_ends if self._left_mm_per_deg > 0 else (-left_ends[0], -left_ends[1]),
@@ -430,7 +437,7 @@ class Motion:
         return part, aside_mm
 
     def _free_wheels(self) -> None:
-        """Set both wheels free if nothing blocks the robot any more."""
+        """Remove the block from both wheels' motors if no obstacle blocks the robot any more."""
         left, right = self._driven[0], self._driven[1]
         if not (left.is_barred or right.is_barred):
             return
@@ -441,7 +448,7 @@ class Motion:
         right.bar(right_deg if blocked else 0.0)
 
     def _is_blocked(self, left_mm: float, right_mm: float) -> bool:
-        """Whether an obstacle allows no noticeable part of a motion of the wheels."""
+        """Return whether an obstacle allows no noticeable part of a motion of the wheels."""
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
             return False
         turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
@@ -482,7 +489,7 @@ class Motion:
         return self._buffer
 
     def _glide(self, ticks: int) -> None:
-        """Run ticks in which only ramps and motion happen."""
+        """Advance the simulation by ticks in which nothing happens but ramps of the motors and motion of the robot."""
         while ticks:
             noise = self.noise.motor
             ramping = (
@@ -525,7 +532,7 @@ class Motion:
             ticks -= part
 
     def _glide_with_noise(self, ticks: int) -> tuple[Glide, Glide]:
-        """Run the motors with noise."""
+        """Advance both wheels' motors by ticks with noise, and return how each of them moves."""
         assert isinstance(self.left, BrickMotor) and isinstance(self.right, BrickMotor)
         left, right = draw_noises(self.spec.seed, self.tick + 1, ticks, self.noise.motor)
         return self.left.glide_noisily(ticks, left), self.right.glide_noisily(ticks, right)

@@ -30,13 +30,13 @@ MOTOR_RECORD = Struct("<ihbB")
 
 
 class MotorSink(Protocol):
-    """Receives the `MOTOR_RECORD`s of all motors for each tick; only telemetry says how many ticks there are."""
+    """Receives the `MOTOR_RECORD`s of all motors at each tick; the telemetry has the number of ticks."""
 
     def extend_buffer(self, ticks: int) -> Buffer:
         """Return a writable buffer with space for the records of `ticks` ticks, from byte 64 on."""
 
     def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
-        """Rewrite the records of all ticks for another set of motors.
+        """Rewrite the records of all past ticks for another set of motors.
 
         Args:
             sources: For each new motor the number that it had before; None for one that has been at rest.
@@ -87,7 +87,7 @@ class MotorRecorder:
             self._sink.arrange(sources, ticks)
 
     def make_room(self, ticks: int) -> None:
-        """Make room for the records of `ticks` ticks."""
+        """Make the sink's buffer large enough for the records of `ticks` ticks in all."""
         if self._sink is not None:
             self._buffer = self._sink.extend_buffer(ticks)
 
@@ -116,7 +116,7 @@ class MotorRecorder:
 
 
 def has_driver(run: RunSpec) -> bool:
-    """Return whether the motors of a run have a driver that knows more of them than telemetry holds."""
+    """Return whether the motors of a run have a driver, whose values are recorded in addition to the telemetry."""
     return run.profile.motor_law is MotorLaw.EV3DEV
 
 
@@ -126,7 +126,7 @@ def name_motors(robot: RobotSpec) -> tuple[str, ...]:
 
 
 def build_motor_columns(name: str) -> tuple[Column, ...]:
-    """Return the columns of a motor: the measured ones, and one for each state, 1 while it applies."""
+    """Return the columns of a motor: the measured ones, then one for each state, 1 while the motor has it."""
     measured = (Column(f"{name}_{field}", is_traced=field != "state") for field, _ in MOTOR_FIELDS)
     states = (
         Column(f"{name}_{state}", partial(_apply_bit, bit)) for state, bit in STATE_BITS.items()
@@ -147,7 +147,7 @@ def measure_motor(number: int, instant: Instant, _: RunSpec, __: Field) -> tuple
 def find_motor_owners(
     run: RunSpec,
 ) -> list[tuple[tuple[Column, ...], Callable[[Instant, RunSpec, Field], tuple[float, ...]]]]:
-    """Return the columns of each motor, and the function that measures them; none without a driver."""
+    """Return for each motor its columns and the function that measures them; an empty list if motors have no driver."""
     if not has_driver(run):
         return []
     return [

@@ -27,7 +27,7 @@ STANDSTILL_DEG = 1e-3
 
 
 def find_top_speed_dps(kind: str, profile: ProfileSpec) -> float:
-    """Return the highest speed of a kind of motor, without load."""
+    """Return the highest speed of a kind of motor without load, in degrees per second."""
     return MEDIUM_MAX_SPEED_DPS if kind == "medium" else profile.max_speed_dps
 
 
@@ -36,7 +36,7 @@ MotorState = tuple[int, float, float, float]
 
 
 class Motor(Protocol):
-    """One motor with its encoder. Its class implements the motor law; `BrickMotor` explains what is without a text."""
+    """One motor with its encoder, under any motor law; members without a docstring are as in `BrickMotor`."""
 
     position_deg: float
     """Encoder position."""
@@ -45,15 +45,15 @@ class Motor(Protocol):
 
     @property
     def mode(self) -> int:
-        """The current command; anything but `STOPPED` counts as running."""
+        """What the motor does: one of the modes above; it runs in all of them but `STOPPED`."""
 
     @property
     def speed_dps(self) -> float:
-        """Current speed; some laws keep it while the motor is stopped."""
+        """Current speed in degrees per second; some motor laws keep it while the motor is stopped."""
 
     @property
     def goal_deg(self) -> float:
-        """Target of a move to a position."""
+        """Encoder position in degrees at which a move to a position ends."""
 
     @property
     def end_tick(self) -> float:
@@ -76,16 +76,21 @@ class Motor(Protocol):
         """Approximate number of ticks until the speed is steady; 0 only if it is steady."""
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Run one tick with noise added to the speed; return the rotation of the wheel, in degrees."""
+        """Advance the motor by one tick; return the rotation of the wheel in degrees.
+
+        Args:
+            tick: The number of the tick.
+            noise_dps: The noise that is added to the motor's speed.
+        """
 
     def count_quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks after `tick` only the ramp changes this motor."""
+        """Return for how many ticks after `tick` nothing but the ramp of its speed changes this motor."""
 
     def glide(self, ticks: int) -> Glide:
-        """Run quiet ticks: ticks in which only the ramp changes the motor."""
+        """Advance the motor by several ticks in which nothing but the ramp of its speed changes it."""
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Run quiet ticks of a motor at a steady speed; the caller sets the final encoder position."""
+        """Return how the motor moves in several ticks of constant speed; the caller sets `position_deg` afterwards."""
 
     def state(self) -> MotorState: ...
 

@@ -36,7 +36,7 @@ def _load_shake_128() -> Any:
 
 
 def prepare() -> None:
-    """Import what noise needs now, not when the first random bytes are drawn."""
+    """Import the module that noise needs now, so that the first random bytes do not have to wait for it."""
     _load_shake_128()
 
 
@@ -48,12 +48,12 @@ def generate_bytes(seed: int, tick: int, channel: str, size: int) -> bytes:
 
 @lru_cache(maxsize=8)
 def _list_errors(level: int) -> tuple[int, ...]:
-    """Return the error of a pixel for each byte of the stream: uniform ±level, rounded."""
+    """Return the error of a pixel for each value of a random byte: evenly distributed up to ±level, rounded."""
     return tuple(round(level * (2 * byte / 255 - 1)) for byte in range(256))
 
 
 class Clamping(NamedTuple):
-    """What errors of a level do to the values of a pixel, which are clamped to 0 … 255."""
+    """Mean and variance of the error of a pixel's value after clamping to 0 … 255, for errors up to one level."""
 
     shift: tuple[float, ...]
     """By value: its mean error, which is not 0 near the ends of the range, because values are clamped."""
@@ -66,7 +66,7 @@ class Clamping(NamedTuple):
 
 @lru_cache(maxsize=8)
 def compute_clamping(level: int) -> Clamping:
-    """Return what errors of up to ±level do to each value of a pixel, after clamping."""
+    """Return mean and variance of errors of up to ±level after clamping, for each value of a pixel."""
     errors = sorted(_list_errors(level))
     first = [0, *accumulate(errors)]
     second = [0, *accumulate(error * error for error in errors)]
@@ -130,7 +130,7 @@ def add_noise_to_sums(
 
 
 def _compute_shift(values: bytes, level: int) -> tuple[float, float]:
-    """Return the mean error of the sum of a channel's values, and the standard deviation of that error."""
+    """Return the mean and the standard deviation of the error that noise gives the sum of a channel's values."""
     law = compute_clamping(level)
     count = len(values)
     if values.count(values[0]) == count:
@@ -163,7 +163,7 @@ def draw_numbers(seed: int, tick: int, channel: str, count: int) -> list[float]:
 
 
 def draw_reading_noise(seed: int, tick: int, channel: str) -> tuple[float, float, float]:
-    """Return three normally distributed numbers, for the light noise of a sensor's reading in one tick."""
+    """Return three normally distributed numbers for the light noise of a colour sensor's reading in one tick."""
     block, offset = divmod(tick, _BLOCK_TICKS)
     numbers = _FOUR_NUMBERS.unpack_from(
         _generate_reading_block(seed, block, channel), offset * _READING_BYTES
@@ -222,7 +222,7 @@ def _generate_wheel_block(
 
 
 def draw_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[float], list[float]]:
-    """Return the noise of the left and the right wheel's speed in `count` ticks: uniform, up to ±`most_dps`."""
+    """Return the speed noise of the left and the right wheel in `count` ticks, evenly distributed up to ±`most_dps`."""
     block, offset = divmod(tick, _BLOCK_TICKS)
     left, right = _generate_wheel_block(seed, block, most_dps)
     left, right = left[offset : offset + count], right[offset : offset + count]
@@ -235,12 +235,12 @@ def draw_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[f
 
 
 def draw_noise(seed: int, tick: int, most_dps: int) -> tuple[float, float]:
-    """Return the noise of the left and the right wheel's speed in one tick: uniform, up to ±`most_dps`."""
+    """Return the speed noise of the left and the right wheel in one tick, evenly distributed up to ±`most_dps`."""
     left, right = _generate_wheel_block(seed, tick // _BLOCK_TICKS, most_dps)
     return left[tick % _BLOCK_TICKS], right[tick % _BLOCK_TICKS]
 
 
 def draw_slip(seed: int, tick: int) -> tuple[float, float]:
-    """Return a number for the slip of the left and the right wheel in one tick: uniform, with a variance of 1."""
+    """Return a random number for the slip of each wheel in one tick, evenly distributed with a variance of 1."""
     left, right = _generate_wheel_block(seed, tick // _BLOCK_TICKS, sqrt(3), "slip")
     return left[tick % _BLOCK_TICKS], right[tick % _BLOCK_TICKS]

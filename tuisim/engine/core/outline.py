@@ -58,7 +58,7 @@ class RobotOutline:
 
 
 def build_outline(robot: RobotSpec) -> RobotOutline:
-    """Return the outline of a robot."""
+    """Return the outline of a robot seen from above, with the places of its sensors."""
     sensors = [sensor.y_mm for sensor in robot.color_sensors]
     return RobotOutline(
         half_width_mm=(robot.wheel_spacing_mm + robot.wheel_width_mm) / 2,

@@ -33,7 +33,7 @@ class MarkedField(Field):
 
     @classmethod
     def on(cls, field: Field, marks: Marks) -> MarkedField:
-        """Return a mat with `marks` in place of its own marks."""
+        """Return the mat of `field` with `marks` on it; marks that `field` already has are left out."""
         blocks = {(col // _BLOCK_PX, row // _BLOCK_PX) for col, row in marks}
         mat = field.width_px, field.height_px, field.pixels, field.sums, field.floor_rgb
         return cls(*mat, marks, blocks)
@@ -46,7 +46,7 @@ class MarkedField(Field):
         )
 
     def sum_disc(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
-        """Do the same as `Field.sum_disc`, including marks."""
+        """Return the sums of red, green and blue over a disc, including marks; see `Field.sum_disc`."""
         # Not `super()`: `slots=True` makes a new class, which `super()` without arguments does not find.
         red, green, blue = Field.sum_disc(self, diameter, col, row)
         if not self._has_marks(diameter, col, row):
@@ -62,13 +62,13 @@ class MarkedField(Field):
         return red, green, blue
 
     def read_disc(self, diameter: int, col: int, row: int) -> bytes:
-        """Do the same as `Field.read_disc`, including marks."""
+        """Return the pixels of a disc, including marks; see `Field.read_disc`."""
         if self._has_marks(diameter, col, row):
             return in_disc(self.read_box(diameter, col, row), diameter)
         return Field.read_disc(self, diameter, col, row)
 
     def read_box(self, diameter: int, col: int, row: int) -> bytes:
-        """Do the same as `Field.read_box`, including marks."""
+        """Return the pixels of a box, including marks; see `Field.read_box`."""
         pixels = Field.read_box(self, diameter, col, row)
         if not self._has_marks(diameter, col, row):
             return pixels
@@ -87,7 +87,7 @@ _Point = tuple[float, float]
 
 
 class PenMarks:
-    """Draws the pen's trace, tick record by tick record."""
+    """Draws the pen's trace on a mat, from one tick record after the other."""
 
     def __init__(self, field: Field, spec: RunSpec) -> None:
         self._pen = spec.robot.pen
@@ -100,7 +100,7 @@ class PenMarks:
         self._last_actions = 0
 
     def field_of_first(self, count: int) -> MarkedField:
-        """Return the mat with only its first `count` marks, as it was when there were no more."""
+        """Return the mat with only the first `count` marked pixels, as it was before the others were marked."""
         return MarkedField.on(self.field, dict(islice(self.field.marks.items(), count)))
 
     def add_records(self, records: Iterable[tuple[float, ...]]) -> None:

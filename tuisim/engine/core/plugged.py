@@ -69,7 +69,7 @@ PART_CODES: Mapping[tuple[str, str, str], int] = {
 
 @dataclass(frozen=True, slots=True)
 class PluggedPart:
-    """A part that was plugged in when the program asked for it."""
+    """A motor or sensor that tuisim plugged into the robot during a run, because the program asked for it."""
 
     port: str
     part: str
@@ -86,13 +86,13 @@ class PluggedPart:
             raise ValueError(f"there is no part {self.part!r} on {self.port!r} as {self.role!r}")
 
     def to_plain(self) -> dict[str, Any]:
-        """Return the form that is stored with a run."""
+        """Return the part as a dictionary for JSON, as it is stored with a run."""
         plain = {"port": self.port, "class": self.part, "tick": self.tick, "line": self.line}
         return {**plain, "role": self.role} if self.role else plain
 
     @classmethod
     def from_plain(cls, plain: Mapping[str, Any]) -> PluggedPart:
-        """Rebuild a part from the output of `to_plain`.
+        """Return the part that `to_plain` has turned into a dictionary.
 
         Raises:
             KeyError, TypeError, ValueError: the data is not a part.
@@ -103,7 +103,7 @@ class PluggedPart:
 
 
 def plug_parts(robot: RobotSpec, parts: Sequence[PluggedPart]) -> RobotSpec:
-    """Return a robot with parts plugged in, one after another."""
+    """Return the robot with these parts plugged in one after another; a part replaces what was on its port."""
     for part, following in pairwise([*parts, None]):
         assert part is not None
         if part.role == LEFT:
@@ -172,7 +172,7 @@ def _find_place(sensor: Any) -> tuple[float, float]:
 
 
 def _put_sensors(robot: RobotSpec, sensors: Sequence[SensorSpec]) -> RobotSpec:
-    """Return a robot that has exactly these sensors; those of a kind in the given order."""
+    """Return the robot with these sensors in place of all its own; those of one kind are in the given order."""
     fields: dict[str, Any] = {}
     left = [*sensors]
     for mount in sorted(MOUNTS, key=lambda mount: mount.many):

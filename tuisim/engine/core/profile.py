@@ -32,14 +32,14 @@ def compute_due_ns(tick: int, tick_hz: int) -> int:
 
 
 class Library(StrEnum):
-    """The library that a program drives the robot with."""
+    """The library for the robot that a program imports."""
 
     EV3DEV2 = "ev3dev2"
     PYBRICKS = "pybricks"
 
     @property
     def joins_threads(self) -> bool:
-        """Whether the end of a program waits for its threads, as in Python; MicroPython ends with the main thread."""
+        """Whether a program's end waits for its threads, as in Python; MicroPython ends with the main thread."""
         return self is not Library.PYBRICKS
 
     @property
@@ -49,7 +49,7 @@ class Library(StrEnum):
 
 
 class MotorLaw(StrEnum):
-    """How motors obey commands and move, and how the library drives them."""
+    """How motors move and execute commands, and which library controls them."""
 
     BRICK = "brick"
     """Moves end exactly at their goal or time, as the course says."""
@@ -64,7 +64,7 @@ class MotorLaw(StrEnum):
 
     @property
     def library(self) -> Library:
-        """The library whose programs can drive such motors."""
+        """The library whose programs can control such motors."""
         return (
             Library.PYBRICKS
             if self in (MotorLaw.PYBRICKS, MotorLaw.PYBRICKS_4)
@@ -73,7 +73,7 @@ class MotorLaw(StrEnum):
 
     @property
     def is_measured(self) -> bool:
-        """Whether the robot behaves as bricks were measured to, and not as a course or a simulator says."""
+        """Whether robots behave as measured on real bricks, and not as a course or another simulator defines."""
         return self not in (MotorLaw.BRICK, MotorLaw.NBEV3DEVSIM)
 
 
@@ -85,7 +85,7 @@ MAX_COST_MS = 60_000
 
 
 def _build_cost(*, default: int, source: str, later: bool = False) -> Any:
-    """Return a field for a cost in simulated nanoseconds; files may also give it in milliseconds."""
+    """Return a data class field for the duration of a call in simulated ns; files may also give it in ms."""
     return whole(0, MAX_COST_MS * MS, default=default, unit="ns", source=source, later=later)
 
 

@@ -60,7 +60,7 @@ def measure_body(robot: RobotSpec) -> Body:
 
 
 def _name(base: str, side: str, names: Collection[str]) -> str:
-    """Return a sensor's name that is not in `names`: `base`, else with the side, else with a number."""
+    """Return a name for a new sensor that is not in `names`: `base`, or else `base` with the side, or with a number."""
     choices = [base, f"{base}_{side}", *(f"{base}{number}" for number in range(2, 6))]
     return next(name for name in choices if name not in names)
 

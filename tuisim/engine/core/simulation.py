@@ -34,7 +34,7 @@ Turn = tuple[float, float]
 
 
 class Simulation(Motion):
-    """The world of one run."""
+    """The simulation of one run: robot, motors and world, as programs and users read and change them."""
 
     __slots__ = (
         "_reported",
@@ -74,11 +74,11 @@ class Simulation(Motion):
     # Reading
 
     def compute_due_ns(self, tick: int) -> int:
-        """Return when a tick is due, in ns from the start: `profile.compute_due_ns`, inlined."""
+        """Return when a tick is due, in ns from the start; the same as `profile.compute_due_ns`, but faster."""
         return -(-tick * NS_PER_S // self._hz)
 
     def count_ticks(self, time_ns: int) -> int:
-        """Return the number of ticks that are due at a time."""
+        """Return the number of ticks that are due at a time in ns from the start."""
         return time_ns * self._hz // NS_PER_S
 
     @property
@@ -122,20 +122,20 @@ class Simulation(Motion):
     # Changing
 
     def find_number(self, motor: Motor) -> int:
-        """Return the number by which commands name a motor."""
+        """Return the number that stands for a motor in commands."""
         return self.motors.index(motor)
 
     def press(self, hand_flags: int) -> None:
-        """Set which touch sensors hands press: those with these flags, and no others."""
+        """Set which touch sensors are pressed by hand: those of `hand_flags`, and no others."""
         self.press_flags = self.press_flags & END_FLAGS | hand_flags
 
     def restart(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
-        """Begin the recorded run of a simulation that was prepared without a recording, and has not run yet.
+        """Begin a recorded run with a simulation that was prepared without a recording, and has not run yet.
 
         Args:
             spec: The run; it may differ from the prepared one in seed, noise and start only.
             sink: Receives the tick records.
-            motor_sink: Receives what the drivers of the motors know; None if they have none, or nobody asks.
+            motor_sink: Receives the values of the motors' drivers; None without drivers, or if they are not recorded.
         """
         self._begin(spec, sink, motor_sink)
 
@@ -158,11 +158,10 @@ class Simulation(Motion):
         return self.drive.gyro_zero_deg - self.drive.heading_deg
 
     def change_robot(self, robot: RobotSpec) -> None:
-        """Continue with a robot that has other parts.
+        """Continue the run with a robot that has other parts.
 
         A motor keeps its state if its port has the same kind of motor as before, even if it now drives a wheel or no
-        longer
-        does; every other motor is new, and at rest.
+        longer does; every other motor is new, and at rest.
         """
         before = {
             find_place(number, motor): number for number, motor in enumerate(self.spec.robot.motors)
@@ -189,7 +188,10 @@ class Simulation(Motion):
             self.__class__ = FurtherMotors
 
     def _take_others(self, sources: Sequence[int | None]) -> None:
-        """Keep stops and reports of the motors that drive no wheel, by their earlier numbers among all motors."""
+        """Update the end stops and the reports of the motors that drive no wheel after a change of the robot.
+
+        `sources` has the earlier number of each such motor among all motors; None for a new one.
+        """
         stops = self._stops
         reported = self._reported
         robot = self.spec.robot
@@ -247,7 +249,7 @@ REPORT_DEG = 0.25
 
 
 def find_place(number: int, motor: MotorSpec) -> tuple[str | int, str]:
-    """Return what identifies a motor when the robot changes: its port, or its number if it has none, and its kind."""
+    """Return what identifies a motor when the robot changes: its port, or else its number, and its kind."""
     return number if motor.port == NO_PORT else motor.port, motor.kind
 
 
@@ -270,7 +272,7 @@ class FurtherMotors(Simulation):
         return done + super().advance(ticks - done, until_change) if done < ticks else done
 
     def notice_change(self) -> bool:
-        """Report the motors' turns, as `advance` does, then do the same as `Motion.notice_change`."""
+        """Report the turns of the other motors as `advance` does, then do the same as `Motion.notice_change`."""
         self._report_turns()
         return super().notice_change()
 
@@ -305,5 +307,5 @@ class FurtherMotors(Simulation):
 
 
 def build_simulation(spec: RunSpec, sink: TickSink) -> Simulation:
-    """Return the simulation of a run; a `FurtherMotors` if it has motors besides the wheel motors."""
+    """Return the simulation of a run; a `FurtherMotors` if the robot has motors besides its wheel motors."""
     return FurtherMotors(spec, sink) if spec.robot.extra_motors else Simulation(spec, sink)

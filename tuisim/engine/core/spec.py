@@ -181,7 +181,7 @@ class MotorSpec(Spec):
 
 @spec
 class SensorSpec(Spec):
-    """Any sensor."""
+    """The name and the port that every sensor of a robot has."""
 
     name: str = _build_sensor_name("sensor")
     """Prefix of its telemetry columns, such as `left`."""
@@ -546,7 +546,7 @@ class RobotSpec(Spec):
             self._check_presser(touch)
 
     def _check_wheel_ports(self) -> set[str]:
-        """Check the ports of the wheels' motors, and return them."""
+        """Check that the wheels' motors have valid ports, and return these ports."""
         if self.left_port == self.right_port == NO_PORT:
             return set()
         for key in ("left_port", "right_port"):
@@ -584,7 +584,7 @@ class RobotSpec(Spec):
 
 
 class Mount(NamedTuple):
-    """Where `RobotSpec` stores sensors of one class."""
+    """The field of `RobotSpec` that has the sensors of one class."""
 
     field: str
     """The field of `RobotSpec`."""
@@ -625,7 +625,7 @@ class Obstacle(Spec):
 
 @spec
 class NoiseSpec(Spec):
-    """Amplitude of the noise on readings and wheel speeds."""
+    """Sizes of the random errors of readings and wheel speeds."""
 
     KEY = "noise"
 

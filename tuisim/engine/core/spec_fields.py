@@ -35,70 +35,70 @@ def _field(value: Value, default: Any, *, optional: bool = False) -> Any:
 
 
 def flag(*, default: Any = MISSING, **about: Any) -> Any:
-    """Return a field for a `Flag`."""
+    """Return a data class field for true or false; `about` are arguments of `values.Flag`."""
     return _field(Flag(**about), default)
 
 
 def number(low: float, high: float, *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a field for a `Number`."""
+    """Return a data class field for a number from `low` to `high`; `about` are arguments of `values.Number`."""
     return _field(Number(low, high, **about), default)
 
 
 def whole(low: int, high: int, *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a field for a `Whole` number."""
+    """Return a data class field for a whole number from `low` to `high`; `about` are arguments of `values.Whole`."""
     return _field(Whole(low, high, **about), default)
 
 
 def seed(*, default: Any = MISSING, **about: Any) -> Any:
-    """Return a field for a `Seed`."""
+    """Return a data class field for a seed; `about` are arguments of `values.Seed`."""
     return _field(Seed(0, MAX_SEED, **about), default)
 
 
 def named_number(
     low: float, high: float, names: Mapping[str, float], *, default: Any = MISSING, **about: Any
 ) -> Any:
-    """Return a field for a `NamedNumber`."""
+    """Return a data class field for a number or its name in `names`; `about` are arguments of `values.NamedNumber`."""
     return _field(NamedNumber(low, high, names, **about), default)
 
 
 def numbers(low: float, high: float, most: int, *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a field for `Numbers`."""
+    """Return a data class field for up to `most` numbers; `about` are arguments of `values.Numbers`."""
     return _field(Numbers(low, high, most, **about), default)
 
 
 def text(*, default: Any = MISSING, **about: Any) -> Any:
-    """Return a field for a `Text`."""
+    """Return a data class field for one line of text; `about` are arguments of `values.Text`."""
     return _field(Text(**about), default)
 
 
 def choice(choices: Iterable[Any], *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a field for a `Choice`."""
+    """Return a data class field for one of `choices`; `about` are arguments of `values.Choice`."""
     return _field(Choice(choices, **about), default)
 
 
 def some(choices: Iterable[str], *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a field for `Choices`."""
+    """Return a data class field for some of `choices`; `about` are arguments of `values.Choices`."""
     return _field(Choices(choices, **about), default)
 
 
 def color(*, default: Any = MISSING, **about: Any) -> Any:
-    """Return a field for a `Color`."""
+    """Return a data class field for a colour; `about` are arguments of `values.Color`."""
     return _field(Color(**about), default)
 
 
 def part(of: type, *, default: Any = MISSING, optional: bool = False, **about: Any) -> Any:
-    """Return a field for a `Part`."""
+    """Return a data class field for another spec of class `of`; `about` are arguments of `values.Part`."""
     value = Part(of, **about)
     return _field(value, default, optional=optional)
 
 
 def named_part(of: type, *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a field for a `NamedPart`."""
+    """Return a data class field for a spec that may be given by name; `about` are arguments of `values.NamedPart`."""
     return _field(NamedPart(of, **about), default)
 
 
 def parts(of: type, *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a field for `Parts`."""
+    """Return a data class field for several other specs of class `of`; `about` are arguments of `values.Parts`."""
     return _field(Parts(of, **about), default)
 
 
@@ -106,9 +106,10 @@ _Spec = TypeVar("_Spec", bound="Spec")
 
 
 class Spec:
-    """Frozen data whose values are checked when an object is made.
+    """Frozen data whose values are checked when an object is created.
 
-    All specs share its methods; those of an ordinary data class are compiled for each class, at each start.
+    All specs share the methods here. An ordinary data class would compile its own for each class, at each start of
+    tuisim.
     """
 
     __slots__ = ("_hash",)
@@ -133,7 +134,7 @@ class Spec:
 
     @classmethod
     def restore(cls, **values: Any) -> Self:
-        """Return a spec from values that were checked when they were stored: they are not checked again.
+        """Return a spec with stored values, which are not checked again.
 
         Raises:
             TypeError: a value is missing or unknown.
@@ -164,14 +165,14 @@ class Spec:
                 ) from None
 
     def check(self) -> None:
-        """Check the rules that involve several values.
+        """Check the rules that involve several values of the spec.
 
         Raises:
             ConfigError: a rule is broken.
         """
 
     def name_key(self, name: str) -> str:
-        """Return the name of a value as errors give it."""
+        """Return the name of a value as error messages show it."""
         return f"{self.KEY}.{name}" if self.KEY else name
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
@@ -226,5 +227,5 @@ class Spec:
     ),
 )
 def spec(cls: type[_Spec]) -> type[_Spec]:
-    """Make a class a spec: a subclass of `Spec` whose fields are values."""
+    """Turn a class into a spec: a subclass of `Spec` whose fields describe values."""
     return dataclass(init=False, repr=False, eq=False, slots=True)(cls)

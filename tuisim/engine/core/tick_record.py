@@ -46,7 +46,7 @@ Buffer: TypeAlias = mmap | bytearray
 
 
 class TickSink(Protocol):
-    """Receives tick records."""
+    """Receives the tick records of a simulation."""
 
     count: int
 
@@ -65,7 +65,7 @@ class MemoryRecording:
         self.buffer = bytearray(TICK_RECORD.size)
 
     def reserve(self, records: int) -> bytearray:
-        """Return the buffer, with room for further records."""
+        """Return the buffer, with space for `records` more records."""
         need = TICK_RECORD.size * (1 + self.count + records)
         if need > len(self.buffer):
             self.buffer += bytes(2 * need)
@@ -86,4 +86,4 @@ class NoRecording:
         return bytearray(64 * (records + 1))
 
     def publish(self, count: int) -> None:
-        """Do nothing."""
+        """Ignore the records: nobody reads them."""

@@ -14,9 +14,10 @@ _Node = TypeVar("_Node")
 
 
 def list_leaves(kind: type) -> Iterator[tuple[str, Value]]:
-    """Yield path and value of everything that all specs of a class have; not of sensors, which a robot may lack.
+    """Yield the path and the description of each value that all specs of a class have.
 
-    Values that are given together, such as those of a `NamedPart`, count as one.
+    Values of sensors are left out, because a robot may lack the sensor. Values that are given together, such as those
+    of a `NamedPart`, are one value.
     """
     for name, value in list_values(kind).items():
         yield from _list_leaves(name, value)
@@ -31,7 +32,7 @@ def _list_leaves(path: str, value: Value) -> Iterator[tuple[str, Value]]:
 
 
 def get_value(node: object, path: str) -> Any:
-    """Return the value at a path; several sensors of a field are told apart by name.
+    """Return the value of a spec at a path; where a field has several sensors, the path has the name of one of them.
 
     Raises:
         LookupError: there is no such path.
@@ -55,7 +56,7 @@ def _find_name(part: object) -> str:
 
 
 def put(node: _Node, path: str, value: object) -> _Node:
-    """Return a spec with another value at a path.
+    """Return a copy of a spec with another value at a path.
 
     Raises:
         ConfigError: the value is wrong, or breaks a rule.
@@ -65,9 +66,10 @@ def put(node: _Node, path: str, value: object) -> _Node:
 
 
 def put_all(node: _Node, values: Mapping[str, object]) -> _Node:
-    """Return a spec with other values at some paths; values of one part are checked together.
+    """Return a copy of a spec with other values at some paths; values of one part are checked together.
 
     Args:
+        node: The spec.
         values: The new values by path.
 
     Raises:
@@ -90,7 +92,10 @@ _RUN = Part(RunSpec)
 
 
 def dump_run(spec: RunSpec) -> dict[str, Any]:
-    """Return a run as data for JSON. Values of later versions are left out at their default: exports do not change."""
+    """Return a run as data for JSON.
+
+    Values that later versions added are left out while they have their default, so that exports stay the same.
+    """
     return _dump_part(_RUN, spec)
 
 
@@ -121,7 +126,7 @@ def load_run(data: Mapping[str, Any]) -> RunSpec:
 
 
 def restore(data: Mapping[str, Any]) -> RunSpec:
-    """Return the run from data that tuisim itself has stored: their types are right, and they are not checked again.
+    """Return the run from data that tuisim itself has stored, whose values are not checked again.
 
     Raises:
         KeyError, TypeError, ValueError: `data` is not the output of `dump_run`.

@@ -30,7 +30,7 @@ MAX_SEED = 2**63 - 1
 
 
 class WrongValue(ValueError):  # noqa: N818  # the name says what it is
-    """A value is not one of those that are allowed. Whoever knows where the value is from raises a ConfigError.
+    """A value that is not allowed. Callers that know which file or option has it raise a `ConfigError` instead.
 
     Args:
         message: What is wrong.
@@ -51,13 +51,13 @@ def quote(value: object) -> str:
 
 
 def format_number(value: float) -> str:
-    """Return a number for people: six digits, no exponent where none is needed, no -0."""
+    """Return a number as text for people: six digits, no exponent where none is needed, no -0."""
     text = f"{value:.6g}"
     return "0" if text == "-0" else text
 
 
 class Value(ABC):
-    """Everything that is known about one value of a spec. Each kind of value is a subclass.
+    """The description of one value of a spec: its meaning, its unit and what is allowed. Each kind is a subclass.
 
     Args:
         help: What the value means, in a phrase that begins in lower case: for files, options, forms and tables.
@@ -106,11 +106,11 @@ class Value(ABC):
 
     @property
     def choices(self) -> tuple[Any, ...]:
-        """All allowed values if they are few, else empty."""
+        """All allowed values if they are few; empty for other values."""
         return ()
 
     def check(self, value: Any) -> None:
-        """Check a value that a Python program gives.
+        """Check that a value from a Python program is allowed.
 
         Raises:
             WrongValue: it is not allowed.
@@ -252,7 +252,7 @@ class Whole(Number):
 
 
 class Seed(Whole):
-    """A whole number. Users choose one from its range; a stored run may have any."""
+    """A whole number for random draws. Users choose one from its range; a stored run may have any."""
 
     __slots__ = ()
 
@@ -435,7 +435,7 @@ class Choice(Value):
 
 
 class Choices(Choice):
-    """Some of a few texts."""
+    """Any number of texts out of a few allowed ones."""
 
     __slots__ = ()
     stored_as = (list, tuple)
@@ -532,11 +532,10 @@ class Part(Value):
 
 
 class NamedPart(Part):
-    """A spec of numbers inside another one; it is given as a whole, by the name of its sizes or number by number.
+    """A spec of numbers inside another one, which users give by a name, number by number, or both.
 
     The names are those that its numbers have, and `none` for their defaults. As text it is a name followed by the
-    numbers
-    that differ, such as `typical gyro_dps=0`.
+    numbers that differ, such as `typical gyro_dps=0`.
     """
 
     __slots__ = ()
@@ -586,10 +585,10 @@ class NamedPart(Part):
         return self.replace_values(self.of(), values)
 
     def replace_values(self, base: Any, data: Mapping[str, object]) -> Any:
-        """Return the spec with some of its values replaced by those that a document gives.
+        """Return the spec `base` with the values that a document gives in place of its own.
 
         Raises:
-            WrongValue: one is unknown, or not allowed.
+            WrongValue: a value is unknown, or not allowed.
         """
         changes = {}
         for name, item in data.items():

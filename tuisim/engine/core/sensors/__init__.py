@@ -45,7 +45,7 @@ from tuisim.engine.core.state import Instant
 
 @dataclass(frozen=True, slots=True)
 class SensorKind:
-    """How one kind of sensor is measured and named."""
+    """The columns of one kind of sensor, how they are measured, and the sensor's names in the kernel."""
 
     driver_name: str
     """Name of the kernel driver; `ev3dev2` searches for this name."""
@@ -77,7 +77,7 @@ Measure = Callable[[Instant, RunSpec, Field], tuple[float, ...]]
 
 
 def list_owners(run: RunSpec) -> list[tuple[tuple[Column, ...], Measure]]:
-    """Return the columns of the robot, of each sensor and of each motor with a driver, and what measures them."""
+    """Return the columns of the robot, of each sensor and of each motor with a driver, each with what measures them."""
     of_sensors = [
         (mount.columns, partial(mount.kind.measure, mount.sensor))
         for mount in list_mounted(run.robot)
@@ -91,12 +91,12 @@ def list_columns(run: RunSpec) -> tuple[Column, ...]:
 
 
 def list_column_names(run: RunSpec) -> tuple[str, ...]:
-    """Return the names of `list_columns`."""
+    """Return the names of all columns of a run, in the order of telemetry."""
     return tuple(column.name for column in list_columns(run))
 
 
 def find_named_column(text: str, run: RunSpec) -> str:
-    """Return the name of the column that a text means, see `find_column_name`.
+    """Return the name of the column that a text names, perhaps in an earlier spelling; see `find_column_name`.
 
     Raises:
         ConfigError: the run has no such column.
@@ -112,7 +112,10 @@ def find_named_column(text: str, run: RunSpec) -> str:
 
 
 def build_reader(name: str, run: RunSpec) -> Callable[[Instant, RunSpec, Field], float] | None:
-    """Return a function that returns a column's value at an instant built `with_motors`; None without such a column."""
+    """Return a function that returns the value of a column at an instant; None if the run has no such column.
+
+    The instant must have been built with `with_motors=True`.
+    """
     for columns, measure in list_owners(run):
         for column in columns:
             if column.name == name:
@@ -150,7 +153,7 @@ def measure_sensors(
 
 
 class MountedSensor(NamedTuple):
-    """A sensor of a robot, with its kind and columns."""
+    """A sensor of a robot, with its kind and the columns that it has in telemetry."""
 
     kind: SensorKind
     sensor: Any
@@ -165,21 +168,24 @@ _KINDS = {kind.spec: kind for kind in SENSORS.values()}
 
 @lru_cache(maxsize=64)
 def build_mounted_sensor(sensor: SensorSpec) -> MountedSensor:
-    """Return a sensor with its kind and columns."""
+    """Return a sensor together with its kind and its columns."""
     kind = _KINDS[type(sensor)]
     return MountedSensor(kind, sensor, kind.columns(sensor), kind.names(sensor))
 
 
 @lru_cache(maxsize=16)
 def list_mounted(robot: RobotSpec) -> tuple[MountedSensor, ...]:
-    """Return the robot's sensors, in the order of the telemetry columns."""
+    """Return the robot's sensors with their kinds and columns, in the order of the telemetry columns."""
     return tuple(map(build_mounted_sensor, robot.sensors))
 
 
 def measure_obstacle(
     sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, world: WorldSpec, pose: Pose
 ) -> float:
-    """Return how far a sensor sees an obstacle of a world; infinite if it sees none or the robot would touch one."""
+    """Return the reading of a sensor that sees an obstacle of a world: mm, or percent of an infrared sensor.
+
+    The result is infinite if the sensor sees no obstacle, or if the robot would touch one.
+    """
     bare = replace(world, obstacles=())
     if isinstance(sensor, UltrasonicSpec):
         distance = ultrasonic.measure_distance_mm(pose, sensor, world)

@@ -65,17 +65,17 @@ class ColorReading:
 
     @property
     def red_percent(self) -> float:
-        """`reflected_light_intensity_pc`: 100 · (int(red) / 255)."""
+        """The value of `reflected_light_intensity_pc`: 100 · (int(red) / 255)."""
         return percent(int(self.red), WHITE)
 
     @property
     def mean_percent(self) -> float:
-        """`full_reflected_light_intensity`: 100 · (the sum of the whole channels / 765)."""
+        """The value of `full_reflected_light_intensity`: 100 · (the sum of the truncated channels / 765)."""
         return percent(sum(self.rgb), 3 * WHITE)
 
     @property
     def reflection(self) -> int:
-        """`reflection()` of Pybricks: the red light or, on a hub, that of all channels, in whole percent."""
+        """The value of Pybricks' `reflection()` in whole percent: of the red channel or, on a hub, of all channels."""
         if not self.is_hubs:
             return int(self.red) * 100 // WHITE
         return sum(measure_hub_channels(self.rgb)) * 100 // (3 * HUB_WHITE)
@@ -92,7 +92,7 @@ class ColorReading:
 
 
 def measure_hub_channels(rgb: Sequence[int]) -> tuple[int, int, int]:
-    """Return the channels as the sensor of a hub measures them, 0 … `HUB_WHITE`."""
+    """Return the channels, 0 … 255 on the mat, as the colour sensor of a hub measures them: 0 … `HUB_WHITE`."""
     red, green, blue = (HUB_WHITE * channel // WHITE for channel in rgb)
     return red, green, blue
 
@@ -182,11 +182,11 @@ class LightRead(StrEnum):
                 assert_never(self)
 
     def uses_all_channels(self, seen: ColorReading) -> bool:
-        """Return whether the value is of all channels, and not of the red one alone."""
+        """Return whether the value is computed from all channels, and not from the red one alone."""
         return self is LightRead.MEAN or (self is LightRead.REFLECTION and seen.is_hubs)
 
     def find_white(self, reflected_max: int) -> int:
-        """Return the value that a program gets on white."""
+        """Return the value that a program gets for this reading on a white surface."""
         return reflected_max if self is LightRead.REFLECTED else 100
 
 
@@ -199,7 +199,7 @@ def find_box_corner(pose: Pose, spec: ColorSensorSpec) -> tuple[int, int]:
 
 
 class Response(NamedTuple):
-    """How a colour sensor changes the channels of the mat, from 0 … 255."""
+    """How a colour sensor converts a channel of the mat, 0 … 255, to its own value."""
 
     dark: int
     """Value of a channel on black."""
@@ -226,7 +226,7 @@ def find_response(spec: ColorSensorSpec, profile: ProfileSpec) -> Response:
 
 
 def compute_light(x_mm: Any, y_mm: Any, spec: ColorSensorSpec, drift: DriftSpec, seed: int) -> Any:
-    """Return the brightness that a sensor sees at places of the field, numbers or arrays; 1 without drift."""
+    """Return the brightness that a sensor sees at positions in mm, given as numbers or arrays; 1 without drift."""
     share = compute_light_share(x_mm, y_mm, drift, seed) if drift.light_pc else 1.0
     return share * draw_light_gain(spec.port, drift, seed) if drift.light_gain_pc else share
 
@@ -239,7 +239,7 @@ def _has_floor(field: Field, diameter: int, corner: tuple[int, int]) -> bool:
 
 
 def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReading:
-    """Return the mean of the mat under a colour sensor, without noise."""
+    """Return what a colour sensor reads without noise: the mean colour of the mat under it."""
     if spec.strategy != "mean":
         box = field.read_box(spec.diameter_mm, *find_box_corner(pose, spec))
         return ColorReading(*weighted_mean(box, spec.diameter_mm, spec.strategy))
@@ -263,11 +263,11 @@ def _read_in_full(
 def build_rgb_reader(
     spec: ColorSensorSpec, profile: ProfileSpec, field: Field
 ) -> Callable[[float, float, float], tuple[int, int, int]]:
-    """Return a function that gives a sensor's channels without noise and drift, truncated to integers.
+    """Return a function that computes a sensor's red, green and blue without noise and drift, truncated to integers.
 
-    It takes the robot's x and y in mm and its heading in degrees, and agrees with
-    `measure_color(...).rgb`. A tight control loop spends much of its time here, so everything
-    that depends on the sensor is precomputed, and the steps are inlined.
+    It takes the robot's x and y in mm and its heading in degrees, and agrees with `measure_color(...).rgb`. A tight
+    control loop spends much of its time here, so everything that depends on the sensor is precomputed, and the steps
+    are inlined.
     """
     if spec.strategy != "mean" or field.floor_rgb is not None:
         return partial(_read_in_full, spec, profile, field)
@@ -303,7 +303,7 @@ def build_rgb_reader(
 def build_noisy_rgb_reader(
     spec: ColorSensorSpec, profile: ProfileSpec, field: Field
 ) -> Callable[[float, float, float, int, int, int], tuple[int, int, int]]:
-    """Return a function that gives a sensor's channels with noise, truncated to integers.
+    """Return a function that computes a sensor's red, green and blue with noise, truncated to integers.
 
     It takes the robot's x and y in mm, its heading in degrees, and the level, seed and tick of the noise, and agrees
     with `measure_color(...).rgb`; as `build_rgb_reader`, it is called in every turn of a control loop.
@@ -341,7 +341,7 @@ def build_noisy_rgb_reader(
 def _measure_noisy_sums(
     spec: ColorSensorSpec, instant: Instant, field: Field
 ) -> tuple[int, int, int]:
-    """Return the sums of the channels in the disc under a sensor, including noise."""
+    """Return the sums of red, green and blue in the disc under a sensor, including noise."""
     diameter, (col, row) = spec.diameter_mm, find_box_corner(instant.pose, spec)
     normals = draw_reading_noise(instant.seed, instant.tick, spec.name)
     return add_noise_to_sums(
@@ -374,7 +374,7 @@ def _read_noisy_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> by
 
 
 def measure_color(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
-    """Return the reading of a colour sensor at an instant, including noise, its response and the light of the place."""
+    """Return the reading of a colour sensor at an instant, with noise, the sensor's response and the brightness."""
     mean = _mean_of_mat(spec, instant, field)
     tell = _build_channel_reader(spec, instant, field)
     return ColorReading(
@@ -389,7 +389,7 @@ def measure_color(spec: ColorSensorSpec, instant: Instant, field: Field) -> Colo
 def _build_channel_reader(
     spec: ColorSensorSpec, instant: Instant, field: Field
 ) -> Callable[[float], float]:
-    """Return a function that turns a channel of the mat into the sensor's value, by its response and the light."""
+    """Return a function that converts a channel of the mat to the sensor's value, by its response and brightness."""
     response = find_response(spec, instant.profile)
     is_over = _has_floor(field, spec.diameter_mm, find_box_corner(instant.pose, spec))
     place = world_point(instant.pose, spec.x_mm, spec.y_mm)
@@ -445,7 +445,7 @@ def _compute(name: str) -> Callable[[Iterable[Sequence[float]], RunSpec], list[f
 
 
 def columns(spec: ColorSensorSpec) -> tuple[Column, ...]:
-    """Return the columns of a sensor: its channels, and the readings that a program gets."""
+    """Return the columns of a colour sensor: its channels, and the readings that a program gets."""
     name = spec.name
     return (
         Column(f"{name}_red"),
@@ -469,6 +469,6 @@ def columns(spec: ColorSensorSpec) -> tuple[Column, ...]:
 def measure(
     spec: ColorSensorSpec, instant: Instant, run: RunSpec, field: Field
 ) -> tuple[float, ...]:
-    """Return the values of the measured columns: mean red, green and blue, 0 … 255."""
+    """Return the values of a colour sensor's measured columns: mean red, green and blue, 0 … 255."""
     seen = measure_color(spec, instant, field)
     return seen.red, seen.green, seen.blue

@@ -36,7 +36,7 @@ _REM_A_BUTTONS = {"top_left": 16, "bottom_left": 32, "top_right": 64, "bottom_ri
 def _measure_way_mm(
     place: tuple[float, float], angle_deg: float, world: WorldSpec, most_mm: float
 ) -> float:
-    """Return how far light travels from a place before it meets a surface, at most `most_mm`."""
+    """Return how far infrared light travels from a place before it meets a surface, at most `most_mm`."""
     edges = find_surfaces(world)
     angle = math.radians(angle_deg)
     (x_mm, y_mm), cos, sin = place, math.cos(angle), math.sin(angle)
@@ -45,7 +45,7 @@ def _measure_way_mm(
 
 
 def proximity(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> int:
-    """Return the distance to the nearest surface ahead, 0 … 100 % of `PROXIMITY_RANGE_MM`."""
+    """Return the distance of an infrared sensor to the nearest surface ahead, 0 … 100 % of `PROXIMITY_RANGE_MM`."""
     place = world_point(pose, spec.x_mm, spec.y_mm)
     facing = pose.heading_deg + spec.angle_deg
     nearest = min(
@@ -56,7 +56,10 @@ def proximity(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> int:
 
 
 def seek(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> tuple[int, ...]:
-    """Return heading (-25 … 25, positive to the right) and distance (0 … 100, or -128) for channels 1 to 4."""
+    """Return what an infrared sensor reads of the beacon: a heading and a distance for each of the channels 1 to 4.
+
+    The heading is from -25 to 25, positive to the right. The distance is from 0 to 100, or -128 if there is no beacon.
+    """
     beacon = world.beacon
     if beacon is None:
         return NOT_FOUND * 4
@@ -77,7 +80,10 @@ def seek(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> tuple[int, ...]:
 def _find_pressed(
     channel: int, time_s: float, world: WorldSpec, by_hand: Collection[str]
 ) -> frozenset[str]:
-    """Return the buttons pressed on a channel; of two presses at the same time the later in the list counts."""
+    """Return the buttons that are pressed on a channel of the remote control.
+
+    Buttons pressed by hand go before those of the world. If presses of the world overlap, the last in the list applies.
+    """
     if held := [button for name, button in REMOTE_BY_HAND.items() if name in by_hand]:
         return frozenset(held)
     for press in reversed(world.remote):
@@ -89,7 +95,7 @@ def _find_pressed(
 def remote(
     time_s: float, world: WorldSpec, by_hand: Collection[str] = ()
 ) -> tuple[int, int, int, int]:
-    """Return the code of the pressed buttons, for channels 1 to 4; 0 if none is pressed.
+    """Return the code of the pressed buttons of the remote control for channels 1 to 4; 0 if none is pressed.
 
     Args:
         time_s: Simulated time, which selects the presses that are part of the world.
@@ -104,7 +110,7 @@ def remote(
 
 
 def compute_remote_bits(time_s: float, world: WorldSpec, by_hand: Collection[str] = ()) -> int:
-    """Return the buttons pressed on channel 1 as bits; arguments as of `remote`."""
+    """Return the buttons of the remote control that are pressed on channel 1, as bits; arguments as of `remote`."""
     pressed = _find_pressed(1, time_s, world, by_hand)
     return _REM_A_NONE + sum(_REM_A_BUTTONS.get(button, 0) for button in pressed)
 
@@ -115,5 +121,5 @@ def columns(spec: InfraredSpec) -> tuple[Column, ...]:
 
 
 def measure(spec: InfraredSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
-    """Return the value of `columns`, 0 … 100."""
+    """Return the value of an infrared sensor's column at an instant: the proximity, 0 … 100."""
     return (float(proximity(instant.pose, spec, run.world)),)

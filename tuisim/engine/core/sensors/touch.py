@@ -34,7 +34,7 @@ REACH_MM = 2.0
 
 
 def pressed(pose: Pose, spec: TouchSpec, world: WorldSpec) -> bool:
-    """Return whether either end or the centre of a bumper touches something."""
+    """Return whether either end or the centre of a bumper touches a wall or an obstacle."""
     half = spec.width_mm / 2
     return any(
         _is_pressed(*world_point(pose, spec.x_mm + aside, spec.y_mm), world)
@@ -74,7 +74,7 @@ def columns(spec: TouchSpec) -> tuple[Column, ...]:
 
 
 def measure(spec: TouchSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
-    """Return the value of `columns`: 1 pressed, 0 not."""
+    """Return the value of a touch sensor's column at an instant: 1 if it is pressed, 0 if not."""
     if instant.press_flags & find_hand_flags((spec.port,)):
         return (1.0,)
     if spec.pressed_by:

@@ -33,7 +33,7 @@ Edge = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Surfaces:
-    """Every surface that can echo, sorted by coordinate, so that a ray meets the edges in order."""
+    """All edges that can echo, sorted by coordinate, so that a ray meets them in their order."""
 
     upright: tuple[Edge, ...]
     """x, lower y, upper y."""
@@ -69,7 +69,7 @@ def _sort_surfaces(world: WorldSpec) -> Surfaces:
 
 
 def _is_echoing(edge_deg: float, heading_deg: float) -> bool:
-    """Return whether the angle between an edge and the heading is above 40 and below 140 degrees."""
+    """Return whether an edge sends the pulse back: its angle to the heading is above 40 and below 140 degrees."""
     return MIN_ECHO_DEG < abs(edge_deg - heading_deg) % 180.0 < MAX_ECHO_DEG
 
 
@@ -80,7 +80,7 @@ def find_first_hit_mm(
     step: tuple[float, float],
     most: float,
 ) -> float:
-    """Return the distance at which a ray meets one of the edges, at most `most`.
+    """Return the distance in mm at which a ray meets one of the edges, at most `most`.
 
     Args:
         edges: Sorted by coordinate.
@@ -110,7 +110,7 @@ def find_first_hit_mm(
 def measure_rays_mm(
     pose: Pose, spec: UltrasonicSpec, world: WorldSpec
 ) -> list[tuple[float, float]]:
-    """Return each ray as (world angle in degrees, length in mm); the length is at most the range."""
+    """Return for each ray of the sensor its direction in the world in degrees and its length in mm."""
     start = world_point(pose, spec.x_mm, spec.y_mm)
     facing = pose.heading_deg + spec.angle_deg
     angles = [facing + ray_deg for ray_deg in spec.ray_angles_deg]
@@ -213,5 +213,5 @@ def columns(spec: UltrasonicSpec) -> tuple[Column, ...]:
 def measure(
     spec: UltrasonicSpec, instant: Instant, run: RunSpec, field: Field
 ) -> tuple[float, ...]:
-    """Return the value of `columns`."""
+    """Return the value of an ultrasonic sensor's column at an instant: the distance in mm."""
     return (float(measure_noisy_mm(spec, instant, run.world)),)

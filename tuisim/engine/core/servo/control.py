@@ -35,12 +35,12 @@ class Ending(IntEnum):
 
 
 class Controller:
-    """Follows one trajectory, or none.
+    """A controller, which makes a motion follow a trajectory; while it has none, it is passive.
 
     Args:
-        slips: Whether, after something has held the motion back, a new motion begins where the last one is, not where
-            it
-            should be. Wheels of a real robot that pushes a wall slip, and count on.
+        settings: The settings, in counts.
+        slips: Whether a new motion that follows a blocked one begins where the robot is, not where it should be. The
+            wheels of a real robot that pushes a wall slip, and their encoders count on.
     """
 
     __slots__ = (
@@ -93,7 +93,7 @@ class Controller:
         return self.trajectory.find_segment(then_us).find_milli(then_us) - self._behind_milli
 
     def list_millis(self, times_us: range) -> list[int]:
-        """Return the positions that the motion should have at several times of one segment."""
+        """Return where the motion should be at several times of one segment, in thousandths of a count."""
         assert self.trajectory is not None
         paused_us = self._paused_us
         behind = self._behind_milli
@@ -102,7 +102,7 @@ class Controller:
         return [milli - behind for milli in millis] if behind else millis
 
     def find_target(self, now_us: int, _motor: object) -> int:
-        """Return the position that a motor should have; see `motor.Guide`."""
+        """Return the position that a motor should have, in half thousandths of a count; see `motor.Guide`."""
         return 2 * self.milli(now_us)
 
     def list_targets(self, times_us: range, _motor: object) -> list[int]:
@@ -110,7 +110,7 @@ class Controller:
         return [2 * milli for milli in self.list_millis(times_us)]
 
     def rate(self, now_us: int, _motor: object = None) -> int:
-        """Return the rate that the motion should have; 0 while the controller is passive."""
+        """Return the rate that the motion should have, in counts per second; 0 while the controller is passive."""
         if self.trajectory is None:
             return 0
         then_us = now_us - self._paused_us
@@ -133,7 +133,10 @@ class Controller:
     # Commands
 
     def release(self, now_us: int | None = None) -> None:
-        """Become passive. With a time, remember the mean rate until then, at which a motion may soon begin."""
+        """Remove the trajectory, so that the controller is passive.
+
+        Some firmware begins the next motion at the mean rate of this one: with `now_us`, the mean rate is remembered.
+        """
         window_us = self.settings.speed_window_ms * MS_US
         if window_us and now_us is not None and self.trajectory is not None and not self._paused_us:
             self._released = now_us, self._mean_rate(now_us, self.milli(now_us), window_us)
@@ -142,7 +145,7 @@ class Controller:
         self._stalled_us = 0
 
     def hold(self, now_us: int, milli: int) -> None:
-        """Stay at a position."""
+        """Begin to hold a position, in thousandths of a count."""
         self._begin(build_rest(now_us, milli), timed=False)
 
     def move_to_position(
@@ -159,11 +162,12 @@ class Controller:
         """Begin a move to a position.
 
         Args:
+            now_us: The present time.
             measured: Returns where the motion is; the move begins there if this controller is passive.
             target: Where the move ends, in counts.
-            rate, acceleration: In counts per second (squared); the sign of the rate does not count.
+            rate, acceleration: In counts per second (squared); the sign of the rate is ignored.
             deceleration: How the move stops; None for the acceleration.
-            relative: Whether `target` counts from where the motion begins.
+            relative: Whether `target` is relative to where the motion begins.
 
         Raises:
             ValueError: the rate is 0, or the move takes too long.
@@ -181,7 +185,7 @@ class Controller:
         self._begin(trajectory, timed=False)
 
     def match_pace(self, other: Controller) -> None:
-        """Make the new trajectory as long in time as another controller's, and proportional to it at every time."""
+        """Make the new trajectory proportional in position to another controller's, so that both take the same time."""
         if self.trajectory is not None and other.trajectory is not None:
             ours = self.trajectory
             theirs = other.trajectory
@@ -191,9 +195,10 @@ class Controller:
     def run_in_proportion(
         self, now_us: int, measured: Measure, other: Controller, part: int, whole: int
     ) -> None:
-        """Begin a motion in proportion to that of another controller, `part` to `whole`.
+        """Begin a motion whose ways are in a fixed proportion, `part` to `whole`, to those of another controller.
 
         Args:
+            now_us: The present time.
             measured: Returns where the motion is, from which it begins if this controller is passive.
             other: The other controller.
             part, whole: The proportion of their ways.
@@ -246,7 +251,7 @@ class Controller:
         self._behind_milli = behind_milli
 
     def keep_running(self, now_us: int, measured: Measure) -> None:
-        """Let the move that has just begun go on at its speed; it is done where it would have ended."""
+        """Change the move that has just begun so that it runs on at its speed; it is done when it passes its target."""
         assert self.trajectory is not None
         first, even, _, end, _ = self.trajectory
         acceleration = abs(first.acceleration) or self.settings.acceleration
@@ -254,7 +259,7 @@ class Controller:
         self._goal = end._replace(rate=even.rate)
 
     def _limit(self, acceleration: int) -> int:
-        """Return an acceleration without its sign, limited to that of the settings where the firmware does so."""
+        """Return the size of an acceleration; firmware without a speed window limits it to that of the settings."""
         if self.settings.speed_window_ms:
             return abs(acceleration)
         return min(abs(acceleration), self.settings.acceleration)
@@ -280,7 +285,7 @@ class Controller:
         )
 
     def _find_start(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
-        """Return where a new trajectory begins, and the running segment if that changes the speed, else None."""
+        """Return where a new trajectory begins, and the present segment if it changes the speed, else None."""
         if self.trajectory is None or (self._slips and self._behind_milli):
             start, (then_us, rate) = measured(now_us), self._released
             window_us = self.settings.speed_window_ms * MS_US
@@ -307,9 +312,10 @@ class Controller:
     # Following
 
     def note_lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
-        """React to a motion that is not where it should be: pause, or forget the distance that is missing.
+        """React to a motion that lags behind its trajectory: pause the trajectory, or give up the missing distance.
 
         Args:
+            now_us: The present time.
             passed_us: Time since the last call, or since the motion was last where it should be.
             milli, rate: Position and rate of the motion.
         """
@@ -347,9 +353,10 @@ class Controller:
         return self.timed and (end_us := self.end_us) is not None and now_us >= end_us
 
     def done(self, now_us: int, milli: int, rate: int) -> bool:
-        """Return whether no move is under way.
+        """Return whether no move is under way: none was begun, or the last one is complete.
 
         Args:
+            now_us: The present time.
             milli, rate: Position and rate of the motion.
         """
         end_us = self.end_us
@@ -368,11 +375,11 @@ class Controller:
         return near and abs(rate) < self.settings.speed_tolerance
 
     def _mean_rate(self, now_us: int, milli: int, window_us: int) -> int:
-        """Return the mean rate over `window_us` until now."""
+        """Return the mean rate of the motion over `window_us` until now, in counts per second."""
         assert self.trajectory is not None
         begin_us = max(now_us - window_us, self.trajectory.first.start_us + self._paused_us)
         return (milli - self.milli(begin_us)) * (1_000_000 // window_us) // MILLI
 
     def lets_go(self, now_us: int, _ending: Ending) -> bool:
-        """Return whether a motor that has arrived stops following; see `motor.Guide`."""
+        """Return whether a motor whose motion has ended stops following this controller; see `motor.Guide`."""
         return self.done(now_us, self.milli(now_us), 0)

@@ -54,7 +54,10 @@ Pace = tuple[int, ...]
 def compute_usual_settings(
     law: MotorLaw, distance: ControlSettings, heading: ControlSettings
 ) -> tuple[Pace, Pace]:
-    """Return speeds and accelerations of a new drive base, in mm and degrees, and in counts (maybe more exact)."""
+    """Return the default speeds and accelerations of a drive base: in mm and degrees, and in counts.
+
+    Those in counts may be more exact, because those in mm and degrees are whole numbers.
+    """
     firmware = FIRMWARES[law]
     controls = distance, distance, heading, heading
     limits = distance.speed, distance.acceleration, heading.speed, heading.acceleration
@@ -74,7 +77,7 @@ def compute_usual_settings(
 
 
 def compute_new_pace(law: MotorLaw, wheel_diameter_mm: float, axle_track_mm: float) -> Pace:
-    """Return how a new drive base with large motors moves, in mm and degrees."""
+    """Return the default speeds and accelerations of a new drive base with large motors, in mm and degrees."""
     motor = compute_motor_settings(law, "large")
     settings = compute_base_settings(motor, wheel_diameter_mm, axle_track_mm)
     return compute_usual_settings(law, *settings)[0]
@@ -102,7 +105,7 @@ def _move_relative(
 
 
 class DriveBase:
-    """Moves two motors together. It is the `Guide` of both while it moves them or holds them.
+    """Moves two motors together. It is the `Guide` of both while it moves or holds them.
 
     Args:
         left, right: The motors, which have the same settings.
@@ -171,18 +174,18 @@ class DriveBase:
         return self.left.guide is self and self.right.guide is self
 
     def find_millis(self, now_us: int) -> tuple[int, int]:
-        """Return sum and difference of the motors' positions, in thousandths of a count."""
+        """Return the sum and the difference of the motors' positions, in thousandths of a count."""
         left, right = self.left.find_milli(now_us), self.right.find_milli(now_us)
         self._follow_gyro()
         return left + right, left - right - self._offset
 
     def find_rates(self, now_us: int) -> tuple[int, int]:
-        """Return sum and difference of the motors' rates, in counts per second."""
+        """Return the sum and the difference of the motors' rates, in counts per second."""
         left, right = self.left.find_counts_per_s(now_us), self.right.find_counts_per_s(now_us)
         return left + right, left - right
 
     def done(self, now_us: int) -> bool:
-        """Return whether no move is under way."""
+        """Return whether no move of the drive base is under way."""
         if self._goal is not None:
             place, begin, way = self._goal
             return abs(self.find_millis(now_us)[place] - begin) >= way
@@ -200,7 +203,7 @@ class DriveBase:
         return windowed and self._ending in (Ending.COAST, Ending.BRAKE)
 
     def lets_go(self, now_us: int, ending: Ending) -> bool:
-        """Return whether a motor that has arrived stops following; see `motor.Guide`."""
+        """Return whether a motor whose motion has ended stops following this drive base; see `motor.Guide`."""
         return self.done(now_us)
 
     @property
@@ -211,7 +214,7 @@ class DriveBase:
     # The gyro
 
     def use_gyro(self, now_us: int, uses_gyro: bool) -> None:
-        """Let a gyro tell the heading from now on, or the wheels again; the motors coast."""
+        """Take the heading from the gyro, or from the wheels again; the motors coast."""
         self.stop(now_us, None)
         self.uses_gyro = uses_gyro
         self._offset = 0
@@ -219,7 +222,7 @@ class DriveBase:
         self.heading.settings = replace(self.heading.settings, speed_window_ms=window_ms)
 
     def _follow_gyro(self) -> None:
-        """Note how far the heading by the motors differs from that of the gyro."""
+        """Update the difference between the heading by the motors and that by the gyro, if the gyro is in use."""
         if self.uses_gyro:
             counts = self._find_gyro_deg() * self.heading.settings.counts_per_unit
             self._offset = self.left.milli - self.right.milli - round(counts * MILLI)
@@ -227,7 +230,7 @@ class DriveBase:
     # Commands
 
     def set_usual(self, *usual: int) -> None:
-        """Set the usual speeds and accelerations, in mm and degrees; unchanged values stay as exact as before."""
+        """Set the default speeds and accelerations, in mm and degrees; unchanged values stay as exact as before."""
         distance = self.distance.settings
         heading = self.heading.settings
         self._pace = tuple(
@@ -240,16 +243,19 @@ class DriveBase:
         self.usual = usual
 
     def set_slowing(self, straight: int, turn: int) -> None:
-        """Set with which accelerations straight moves and turns stop, in mm and degrees per second squared."""
+        """Set the decelerations of straight moves and of turns, in mm and degrees per second squared."""
         counts = self.distance.settings.counts, self.heading.settings.counts
         self._slowing = counts[0](straight), counts[1](turn)
 
     def move(
         self, now_us: int, distance_mm: float, turn_deg: float, ending: Ending = Ending.HOLD
     ) -> None:
-        """Begin to drive a distance and to turn by an angle; if both, along an arc.
+        """Begin to drive a distance and to turn by an angle, both at the same time: along an arc.
 
         Args:
+            now_us: The present time.
+            distance_mm: The distance; 0 to turn on the spot.
+            turn_deg: The angle, clockwise; 0 to drive straight.
             ending: What the motors do after the move.
 
         Raises:
@@ -271,7 +277,7 @@ class DriveBase:
         self._take(ending)
 
     def _run_endlessly(self, now_us: int, distance_mm: float, turn_deg: float) -> None:
-        """Begin to drive a distance and to turn by an angle, and on at the same speed."""
+        """Begin to drive a distance and to turn by an angle; after that the motion goes on at the same speed."""
         self._begin(now_us)
         place = 0 if distance_mm else 1
         control = (self.distance, self.heading)[place]
@@ -293,7 +299,7 @@ class DriveBase:
         self._take(Ending.HOLD)
 
     def drive(self, now_us: int, speed_mm_s: int, turn_rate_dps: int) -> None:
-        """Drive on at a speed and a rate of turn."""
+        """Begin to drive at a speed and a rate of turn, without an end."""
         runs = self.active and all(
             motor.mode == FOREVER and not motor.blocked_ticks for motor in self.motors
         )
@@ -314,7 +320,7 @@ class DriveBase:
             self._take(Ending.HOLD)
 
     def stop(self, now_us: int, duty: int | None) -> None:
-        """Let go of the motors, and run them with a power; see `ServoMotor.run_freely`."""
+        """Stop controlling the motors, and run them with a constant power; see `ServoMotor.run_freely`."""
         for motor in self.motors:
             motor.run_freely(now_us, duty)
         self.distance.release(now_us)
@@ -330,7 +336,10 @@ class DriveBase:
         return Segment(now_us, left.milli - right.milli - self._offset, left.rate - right.rate, 0)
 
     def _begin(self, now_us: int) -> None:
-        """Make the controllers passive unless they move both motors; let a motor coast that follows this base alone."""
+        """Prepare for a new motion: make the controllers passive unless they move both motors.
+
+        If only one motor follows this drive base, it coasts.
+        """
         self._goal = None
         if not self.active:
             for motor in self.motors:
@@ -393,7 +402,7 @@ class DriveBase:
         return min(ends, default=None)
 
     def note_lag(self, now_us: int, passed_us: int, _milli: int, _rate: int) -> None:
-        """React to a motor that is not where it should be; a second call for the same time does nothing."""
+        """React to motors that lag behind their trajectory; a second call for the same time does nothing."""
         if now_us == self._behind_us:
             return
         self._behind_us, self._at_us = now_us, -1

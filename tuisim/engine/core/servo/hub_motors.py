@@ -13,7 +13,7 @@ from tuisim.engine.core.driver.plant import PlantSpec
 
 @dataclass(frozen=True, slots=True)
 class HubMotor:
-    """One kind of motor."""
+    """The constants of one kind of motor that hubs have."""
 
     speed_dps: int
     """The highest speed."""

@@ -37,17 +37,17 @@ HALVES_PER_DEG = 2 * MILLI * COUNTS_PER_DEG
 
 
 class Guide(Protocol):
-    """What a motor follows, a controller or a drive base. Times in µs, positions in half thousandths of a count."""
+    """What a motor follows: a controller or a drive base. Times are in µs, positions in half thousandths of a count."""
 
     @property
     def end_us(self) -> int | None:
-        """When the motion ends; None if it does not."""
+        """When the motion ends, in µs; None if it does not end."""
 
     def find_target(self, now_us: int, motor: ServoMotor) -> int:
-        """Return the position that the motor should have."""
+        """Return the position that the motor should have at a time, in half thousandths of a count."""
 
     def list_targets(self, times_us: range, motor: ServoMotor) -> list[int]:
-        """Return the positions that the motor should have at several times of one segment."""
+        """Return the positions that the motor should have at several times of one segment of its trajectory."""
 
     def rate(self, now_us: int, motor: ServoMotor) -> float:
         """Return the rate that the motor should have, in counts per second."""
@@ -56,14 +56,17 @@ class Guide(Protocol):
         """Return when the current segment of the motion ends; None if it has no end."""
 
     def note_lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
-        """React to a motor that has not been where it should be for `passed_us`, until now."""
+        """React to a motor that has lagged behind its trajectory for `passed_us`, until now."""
 
     def lets_go(self, now_us: int, ending: Ending) -> bool:
-        """Return whether a motor that has arrived stops following; only asked at endings other than to hold."""
+        """Return whether a motor whose motion has ended stops following this guide.
+
+        It is called only for motors that do not hold their position at the end.
+        """
 
 
 class ServoMotor:
-    """One motor with its encoder. It stands at first, and nothing controls it.
+    """One motor with its encoder, as the Pybricks firmware moves it. At first it is at rest, and nothing controls it.
 
     Args:
         tick_hz: Ticks per second.
@@ -146,19 +149,19 @@ class ServoMotor:
         return round(self.speed_dps * self.sign * COUNTS_PER_DEG)
 
     def find_milli(self, now_us: int) -> int:
-        """Return the motor's position at a time after the last tick, before anything can hold it back."""
+        """Return the motor's position at a time after the last tick, in thousandths of a count, without obstacles."""
         if self._guide is not None and self._course is not None:
             return self._guide.find_target(now_us, self) // 2
         return self.milli
 
     def find_counts_per_s(self, now_us: int) -> int:
-        """Return the motor's speed at a time after the last tick."""
+        """Return the motor's speed at a time after the last tick, in counts per second."""
         if self._guide is None:
             return round(self._free_dps * self.sign * COUNTS_PER_DEG)
         return self.counts_per_s if self._course is None else round(self._guide.rate(now_us, self))
 
     def measure_start(self, now_us: int) -> Segment:
-        """Return position and speed at which a controller takes over a motor, as the encoder shows them."""
+        """Return position and speed of the motor, as the encoder shows them, as the start of a trajectory."""
         return Segment(
             now_us,
             round(self.find_milli(now_us) / MILLI) * MILLI,
@@ -171,7 +174,7 @@ class ServoMotor:
     def set_up(
         self, now_us: int, sign: int, gear_ratio: float, *, keeps_angle: bool = False
     ) -> None:
-        """Set the motor up as new: it coasts, and its position is 0 unless `keeps_angle`."""
+        """Reset the motor, as for a new object of a program: it coasts, and its position is 0 unless `keeps_angle`."""
         self.run_freely(now_us, None)
         self.sign = sign
         if not keeps_angle:
@@ -221,9 +224,10 @@ class ServoMotor:
         self._fastest_deg = find_steady_dps(self.kind, self._actuation) * self._tick_s
 
     def run_freely(self, now_us: int, duty: int | None) -> None:
-        """Follow no guide any more, and run with a power.
+        """Stop following a guide, and run with a constant power.
 
         Args:
+            now_us: The present time.
             duty: In hundredths of a percent; 0 brakes, None coasts.
         """
         guide = self._guide
@@ -239,7 +243,10 @@ class ServoMotor:
         self.mode = FOREVER if self.duty or self._free_dps or self._jump_deg else STOPPED
 
     def set_position(self, now_us: int, milli: int) -> None:
-        """Set the number that stands for the present position; a motion ends there, and the motor holds."""
+        """Set the number that the present position is given as, in thousandths of a count.
+
+        A motion under way ends there, and the motor holds the position.
+        """
         shift = milli - self.find_milli(now_us)
         self.position_deg += shift * self.sign / (MILLI * COUNTS_PER_DEG)
         if self._course is not None:
@@ -252,7 +259,7 @@ class ServoMotor:
 
     @property
     def goal_deg(self) -> float:
-        """Position at which the motion ends."""
+        """Position at which the motion ends, in degrees; the present position if it has no end."""
         guide = self._guide
         end_us = guide.end_us if guide else None
         return (
@@ -289,19 +296,19 @@ class ServoMotor:
 
     @property
     def moving_dps(self) -> float:
-        """Current speed of the wheel, signed."""
+        """Current speed of the wheel in degrees per second, negative if it turns backwards."""
         if self._guide is None or self.mode == STOPPED:
             return self.speed_dps
         return self._guide.rate(self._tick * self._tick_us, self) * self.sign / COUNTS_PER_DEG
 
     @property
     def counting_dps(self) -> float:
-        """Current speed of the encoder."""
+        """Current speed of the encoder's count in degrees per second."""
         return self.speed_dps
 
     @property
     def aim_dps(self) -> float:
-        """Speed of the wheel at the end of the current segment, signed."""
+        """Speed of the wheel at the end of the present segment, in degrees per second; negative backwards."""
         guide = self._guide
         if guide is None:
             return self.speed_dps
@@ -311,7 +318,7 @@ class ServoMotor:
 
     @property
     def resting(self) -> bool:
-        """Whether ticks leave this motor unchanged until its next command."""
+        """Whether the motor stays unchanged until its next command."""
         return self.mode == STOPPED
 
     @property
@@ -320,7 +327,7 @@ class ServoMotor:
         return 0 if self.mode == STOPPED else self._quiet
 
     def count_quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks the motor only follows one segment; see `Motor.count_quiet_ticks`."""
+        """Return for how many ticks the motor only follows one segment of its trajectory, or is at rest."""
         self._tick, self._quiet = tick, self._count_following_ticks(tick)
         return self._quiet
 
@@ -346,11 +353,11 @@ class ServoMotor:
         return next_deg <= self._fastest_deg and fastest_dps * self._tick_s <= self._fastest_deg
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Stand for some ticks; see `Motor.glide_evenly`."""
+        """Return how the motor moves in several ticks in which it is at rest; see `Motor.glide_evenly`."""
         return EvenGlide(0.0, repeat(self.position_deg, ticks))
 
     def glide(self, ticks: int) -> Glide:
-        """Run quiet ticks; see `Motor.glide`."""
+        """Advance the motor by several ticks of one segment of its trajectory; see `Motor.glide`."""
         if self.mode == STOPPED or self._guide is None or self._course is None:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
         tick_us = self._tick_us
@@ -367,7 +374,7 @@ class ServoMotor:
         return Glide(turns, [self._convert_to_deg(half) for half in halves])
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Run one tick; see `Motor.step`."""
+        """Advance the motor by one tick, and return the rotation of the wheel in degrees; see `Motor.step`."""
         self._tick = tick
         if self.mode == STOPPED:
             return 0.0
@@ -394,7 +401,7 @@ class ServoMotor:
         return self._catch_up(halves, noise_dps)
 
     def _catch_up(self, halves: int, noise_dps: float) -> float:
-        """Run one tick towards the position that the motor should have."""
+        """Turn the motor in one tick as far as it can towards its target position; return the rotation in degrees."""
         fastest_deg, wanted_deg = self._fastest_deg, self._convert_to_deg(halves)
         turned = max(-fastest_deg, min(fastest_deg, wanted_deg - self.position_deg))
         reached = turned == wanted_deg - self.position_deg and not noise_dps
@@ -405,7 +412,7 @@ class ServoMotor:
         return turned
 
     def _end(self, now_us: int) -> None:
-        """End the motion: from now on the motor stands."""
+        """End the motion: from now on the motor stands still, and holds, brakes or coasts."""
         guide = self._guide
         holds = self._ending == Ending.HOLD
         if not holds and guide is not None and not guide.lets_go(now_us, self._ending):
@@ -420,7 +427,7 @@ class ServoMotor:
             self.duty = 0 if self._ending == Ending.BRAKE else None
 
     def _run_freely(self, now_us: int) -> float:
-        """Run one tick without a guide."""
+        """Run one tick without a guide; return the rotation in degrees."""
         axle = self.axle
         left_ns = min(self._tick_us, now_us - self._free_us) * 1000.0
         begin_deg = axle.angle_deg

@@ -64,15 +64,15 @@ class ControlSettings:
         return self.scale / _ONE
 
     def counts(self, units: int) -> int:
-        """Return a number of the program's units in counts, rounded."""
+        """Return a length or angle in the program's units as counts, rounded."""
         return _multiply(units, self.scale)
 
     def units(self, counts: int) -> int:
-        """Return a number of counts in the program's units, rounded; the firmware multiplies by a rounded inverse."""
+        """Return a number of counts in the program's units, rounded as the firmware does with a rounded inverse."""
         return _multiply(counts, (_ONE * _ONE + self.scale // 2) // self.scale)
 
     def describe(self) -> dict[str, str]:
-        """Return limits and tolerances of a motor in words, by their names."""
+        """Return the limits and tolerances of a motor as texts, by their names."""
         moves_done = f"{self.units(self.position_tolerance)} deg, below {self.units(self.speed_tolerance)} deg/s"
         return {
             "highest speed": f"{self.units(self.speed)} deg/s",
@@ -90,7 +90,7 @@ def _multiply(number: int, factor: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class MotorModel:
-    """The constants that limit a motor under control, by the data that the firmware's authors measured."""
+    """Constants of a motor that limit its speed under control, as measured by the authors of the firmware."""
 
     resistance_ohm: float
     back_emf_v_s: float
@@ -183,7 +183,7 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
 
 
 def find_steady_dps(kind: str, actuation: int) -> float:
-    """Return the speed that a power of a kind of motor leads to in the end; 0 if friction holds the motor."""
+    """Return the speed that a kind of motor reaches in the end at a power; 0 if friction keeps it at rest."""
     model = MODELS.get(kind) or _find_hub_motor(kind).plant
     ideal_dps = BATTERY_V * abs(actuation) / FULL_ACTUATION / model.back_emf_v_s * 180 / pi
     friction_v = model.resistance_ohm * model.friction_nm / model.torque_nm_per_a
@@ -192,7 +192,7 @@ def find_steady_dps(kind: str, actuation: int) -> float:
 
 
 def _build_hub_kind(kind: str) -> ServoKind:
-    """Return the settings of a hub's motor, with gains in hundredths of a percent of the power per count."""
+    """Return the settings of a hub's motor. Gains are converted to hundredths of a percent of the power per count."""
     motor = _find_hub_motor(kind)
     gains = tuple(
         round(gain * FULL_ACTUATION / motor.torque_unm / COUNTS_PER_DEG) for gain in motor.gains

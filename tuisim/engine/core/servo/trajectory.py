@@ -28,17 +28,17 @@ def divide(dividend: int, divisor: int) -> int:
 
 
 def compute_duration_us(change: int, rate: int) -> int:
-    """Return how long a change takes at a rate per second, in microseconds."""
+    """Return how long a change takes, in microseconds, at a rate per second."""
     return divide(change * 1000, rate) * MS_US
 
 
 def rate_change(acceleration: int, time_us: int) -> int:
-    """Return by how much an acceleration changes a rate in a time."""
+    """Return by how much a rate changes in a time in microseconds under an acceleration."""
     return divide(acceleration * (time_us // MS_US), 1000)
 
 
 class Segment(NamedTuple):
-    """The start of one part of a trajectory: speeding up or down, running evenly, stopping or standing."""
+    """One part of a trajectory, with constant acceleration, given by its start."""
 
     start_us: int
     milli: int
@@ -46,7 +46,7 @@ class Segment(NamedTuple):
     acceleration: int
 
     def find_milli(self, time_us: int) -> int:
-        """Return the position at a time in this segment."""
+        """Return the position at a time in this segment, in thousandths of a count."""
         passed_us = time_us - self.start_us
         rate = self.rate
         acceleration = self.acceleration
@@ -63,13 +63,13 @@ class Segment(NamedTuple):
         )
 
     def find_rate(self, time_us: int) -> int:
-        """Return the rate at a time in this segment."""
+        """Return the rate at a time in this segment, in counts per second."""
         return self.rate + (
             rate_change(self.acceleration, time_us - self.start_us) if self.acceleration else 0
         )
 
     def list_millis(self, times_us: range) -> list[int]:
-        """Return the positions at several times in this segment: those that `find_milli` returns one by one."""
+        """Return the positions at several times in this segment, as `find_milli` does for one time."""
         sign = 1 if self.rate >= 0 else -1
         way = abs(self.rate)
         steps = [time_us - self.start_us for time_us in times_us]
@@ -89,7 +89,7 @@ Measure = Callable[[int], Segment]
 
 
 class Trajectory(NamedTuple):
-    """A motion: it speeds up or down, runs evenly, and stops."""
+    """A motion in segments: it speeds up or slows down to a rate, keeps it, and stops."""
 
     first: Segment
     even: Segment
@@ -100,11 +100,11 @@ class Trajectory(NamedTuple):
 
     @property
     def end_us(self) -> int:
-        """When the motion stops."""
+        """When the motion stops, in microseconds."""
         return self.end.start_us
 
     def find_segment(self, time_us: int) -> Segment:
-        """Return the segment that a time lies in."""
+        """Return the segment of the trajectory to which a time belongs."""
         if time_us < self.even.start_us:
             return self.first
         if self.endless or time_us <= self.last.start_us:
@@ -112,7 +112,7 @@ class Trajectory(NamedTuple):
         return self.last if time_us <= self.end.start_us else self.end
 
     def find_segment_end_us(self, time_us: int) -> int | None:
-        """Return when the segment of a time ends; None if it has no end."""
+        """Return when the segment to which a time belongs ends; None if it has no end."""
         if time_us < self.even.start_us:
             return self.even.start_us
         if self.endless or time_us > self.end.start_us:
@@ -121,7 +121,7 @@ class Trajectory(NamedTuple):
 
 
 def build_rest(time_us: int, milli: int) -> Trajectory:
-    """Return the trajectory that stays at a position.
+    """Return a trajectory that stays at one position.
 
     Args:
         time_us: When it begins.
@@ -139,12 +139,12 @@ def build_angle_move(
     fastest: int,
     deceleration: int | None = None,
 ) -> Trajectory:
-    """Return the move to a position.
+    """Return the trajectory of a move to a position.
 
     Args:
-        start: Where the move begins; its acceleration does not count.
+        start: Where the move begins; its acceleration is ignored.
         target: Where the move stops, in counts.
-        rate: The rate to reach; its sign does not count.
+        rate: The rate to reach; its sign is ignored.
         acceleration: How the move speeds up.
         fastest: The highest rate.
         deceleration: How the move stops; None for the acceleration.
@@ -193,7 +193,7 @@ def build_angle_move(
 def _speed_up(
     length: int, from_rest: int, top_rate: int, acceleration: int, slowing: int
 ) -> tuple[int, int, int]:
-    """Return between which positions a move that speeds up runs evenly, and at which rate.
+    """Return where the part of a move with constant rate begins and ends, and the rate; the move speeds up before.
 
     Args:
         length: How far the move goes.
@@ -210,10 +210,10 @@ def _speed_up(
 
 
 def build_endless_move(start: Segment, rate: int, acceleration: int, fastest: int) -> Trajectory:
-    """Return the motion at a speed that does not end.
+    """Return the trajectory of a motion at a speed, without an end.
 
     Args:
-        start: Where the motion begins; its acceleration does not count.
+        start: Where the motion begins; its acceleration is ignored.
         rate: The rate to reach.
         acceleration: How the motion speeds up or down.
         fastest: The highest rate.
@@ -236,10 +236,10 @@ def build_endless_move(start: Segment, rate: int, acceleration: int, fastest: in
 def build_timed_move(
     start: Segment, time_us: int, rate: int, acceleration: int, fastest: int
 ) -> Trajectory:
-    """Return the move that takes a given time, including its ramps.
+    """Return the trajectory of a move that takes a given time, including its ramps.
 
     Args:
-        start: Where the move begins; its acceleration does not count.
+        start: Where the move begins; its acceleration is ignored.
         time_us: How long the move takes.
         rate: The rate to reach.
         acceleration: How the move speeds up and stops.
@@ -276,12 +276,12 @@ def build_timed_move(
 
 
 def scale_move(leader: Trajectory, begin: int, part: int, whole: int) -> Trajectory:
-    """Return a move with the times of another one, in proportion to its positions: `part` to `whole`.
+    """Return a trajectory with the times of another one, and its distances multiplied by `part` / `whole`.
 
     Args:
-        leader: The other one.
-        begin: Where the move begins, in thousandths of a count.
-        part, whole: The proportion of their ways.
+        leader: The other trajectory.
+        begin: Where the new one begins, in thousandths of a count.
+        part, whole: The factor for distances.
     """
 
     def scale(number: int) -> int:
