@@ -87,7 +87,7 @@ class BrickMotor:
     def run(self, speed_dps: float) -> None:
         """Run the motor at a speed until the next command."""
         if self.mode == FOREVER and not (self.slowest_ramp_dps2 or self.blocked_ticks):
-            # A control loop calls this a hundred times a second: only the speed changes.
+            # A control loop calls this a hundred times a second, and only the speed changes: `_begin` is not needed.
             self.target_dps = speed_dps
         else:
             self._begin(FOREVER, speed_dps, 1.0)
@@ -217,7 +217,7 @@ class BrickMotor:
         tick_s = self._tick_s
         limit = self._limit_dps
         steady = self.speed_dps
-        # The products of `step` and `_disturbed`, without a call per tick.
+        # The same results as by `step` and `_disturb`, without a call for each tick.
         if steady == self.target_dps:
             noisy: Sequence[float] = (
                 [round(steady + noise) for noise in noise_dps] if steady else [0] * ticks
@@ -240,7 +240,7 @@ class BrickMotor:
         if speed == target or step == 0.0:
             speeds = [speed if speed == target else target] * ticks
         else:
-            # Same sums as `ramp_speed`, without a call per tick; values beyond the target are clamped to it.
+            # The same sums as by `ramp_speed`, without a call for each tick; the target limits the values.
             change = step if speed < target else -step
             speeds = list(accumulate(repeat(change, ticks - 1), initial=speed + change))
             short = (

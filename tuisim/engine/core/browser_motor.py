@@ -174,7 +174,7 @@ class BrowserMotor:
             return ENDLESS
         if self._command == POSITION:
             return self._count_ticks_before_goal()
-        # After a stop command the state changes in the next tick.
+        # After a stop command the state changes in the next tick, so there is no quiet tick.
         return max(0, math.ceil(self.end_tick) - 1 - tick) if self._command == TIMED else 0
 
     def _count_ticks_before_goal(self) -> int:
@@ -187,7 +187,7 @@ class BrowserMotor:
                 if self._is_beyond_goal() and self.speed_dps >= 0 and self.speed_sp >= 0
                 else 0
             )
-        # Rounding adds up to half a degree a second.
+        # Rounding can add up to half a degree per second to the speed.
         fastest = (max(abs(self.speed_dps), abs(self.speed_sp)) + 0.5) * self._tick_s
         left = abs(self.goal_deg - self.position_deg)
         return 0 if self._is_beyond_goal() else max(0, int(left / (2 * fastest)) - 1)

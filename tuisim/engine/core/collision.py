@@ -251,7 +251,8 @@ class Solids:
             elif straight:
                 along, aside, before = _locate_box(body, box)
                 if aside < 0.0 and along < 0.0:
-                    # Only a corner is clear of the box: the way may lead into it wherever its centre is.
+                    # The box is only diagonally beside the body: a straight motion may meet it even if its centre is
+                    # behind.
                     on_mm = min(on_mm, gap)
                 elif aside < 0.0 and before == (straight > 0):
                     on_mm = min(on_mm, along)

@@ -166,7 +166,7 @@ def parse_condition(text: str, name: str = r".+?", value: str = r"\S+") -> Value
     subject, _, last = text.strip().rpartition(" ")
     if last == Operator.CHANGES and subject:
         return ValueCondition(subject.strip(), Operator.CHANGES)
-    # Of several operators, the first one counts that has nothing but a value after it.
+    # If a text has several operators, the first one that is followed by nothing but a value is the operator.
     match = re.fullmatch(
         rf"\s*(?P<name>{name})(?<![<>=!~])\s*(?P<sign>{_SIGNS})\s*(?P<value>{value})\s*", text
     )

@@ -95,7 +95,7 @@ def draw_echo_bias_mm(port: str, drift: DriftSpec, seed: int) -> int:
 def draw_errors(drift: DriftSpec, seed: int) -> DrawnErrors:
     """Return the random errors of wheels, gyro and light in a run; the same seed always gives the same errors."""
     ours = draw_numbers(seed, 0, "drift", 9)
-    # By Box and Muller.
+    # The Box-Muller transform makes each normally distributed number of two evenly distributed ones.
     pairs = zip(ours[0:8:2], ours[1:8:2], strict=True)
     normals = [sqrt(-2 * log(1 - far)) * cos(2 * pi * turn) for far, turn in pairs]
     left, right, spacing, gyro = (

@@ -135,7 +135,7 @@ def build_motor_columns(name: str) -> tuple[Column, ...]:
 
 
 def _apply_bit(bit: int, rows: Iterable[Sequence[float]], _: RunSpec) -> list[float]:
-    # NaN, where nothing is recorded, stays.
+    # Where nothing is recorded, the state is NaN, and so is the result.
     return [float(int(row[3]) & bit != 0) if row[3] >= 0 else row[3] for row in rows]
 
 

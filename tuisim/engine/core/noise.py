@@ -119,7 +119,7 @@ def add_noise_to_sums(
         red, green, blue = pixels[0::3], pixels[1::3], pixels[2::3]
     shift, spread = red_shift, red_spread = _compute_shift(red, level)
     first = round(sums[0] + shift + spread * normals[0])
-    # Most mats are grey: what holds for one channel holds for the others.
+    # Most mats are grey: equal channels have the same mean error, which is then computed only once.
     shift, spread = (red_shift, red_spread) if green == red else _compute_shift(green, level)
     second = round(sums[1] + shift + spread * normals[1])
     shift, spread = (red_shift, red_spread) if blue == red else _compute_shift(blue, level)
@@ -139,7 +139,7 @@ def _compute_shift(values: bytes, level: int) -> tuple[float, float]:
     variance = (count - len(clamped)) * law.even_variance
     if not clamped:
         return 0.0, sqrt(variance)
-    # Most of those that errors can clamp are black or white.
+    # Most values that errors can clamp are those of black or white: these are counted without a loop.
     dark = clamped.count(0)
     bright = clamped.count(_PIXEL_MAX)
     shift = dark * law.shift[0] + bright * law.shift[_PIXEL_MAX]
@@ -169,7 +169,7 @@ def draw_reading_noise(seed: int, tick: int, channel: str) -> tuple[float, float
         _generate_reading_block(seed, block, channel), offset * _READING_BYTES
     )
     radius, turn, other, further = numbers
-    # By Box and Muller: two numbers from one place on a disc, the third from another.
+    # The Box-Muller transform: two numbers come from one pair of evenly distributed ones, the third from another.
     far = sqrt(-2 * log((radius + 1) / _NUMBERS))
     angle = turn * _TURN
     return (

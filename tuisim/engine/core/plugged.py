@@ -107,7 +107,7 @@ def plug_parts(robot: RobotSpec, parts: Sequence[PluggedPart]) -> RobotSpec:
     for part, following in pairwise([*parts, None]):
         assert part is not None
         if part.role == LEFT:
-            # Both wheels change at once.
+            # A change of the wheels is two parts, the left and the right wheel: both are replaced together.
             robot = robot if following is None else _change_wheels(robot, part, following)
         elif part.role != RIGHT:
             robot = _plug_part(robot, part)
@@ -120,7 +120,7 @@ def _plug_part(robot: RobotSpec, part: PluggedPart) -> RobotSpec:
     motor = MotorSpec(part.port, MOTOR_KIND_OF[part.part])
     others = _leave_out(robot.extra_motors, (part.port,))
     if part.port in (robot.left_port, robot.right_port):
-        # A robot with a wheel on one side only drives nowhere.
+        # A robot with one wheel cannot drive, so the motor of the other wheel is taken off its port, too.
         robot = _put_wheels(
             robot, *(replace(wheel_motor, port=NO_PORT) for wheel_motor in robot.wheel_motors)
         )

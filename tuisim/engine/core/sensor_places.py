@@ -80,7 +80,8 @@ def _place_infrared(port: str, side: str, names: Collection[str], _body: Body) -
 
 
 def _touch(port: str, side: str, names: Collection[str], body: Body) -> SensorSpec:
-    # As wide as the robot, or half as wide: one of its corners would meet a wall before a narrow bumper does.
+    # The bumper is as wide as the robot, or half as wide on one side: with a narrow bumper, a corner of the robot
+    # would meet a wall first.
     half_mm = body.half_width_mm
     x_mm = {"left": -half_mm / 2, "right": half_mm / 2}.get(side, 0.0)
     y_mm = body.back_mm - 15.0 if side == "back" else BUMPER_MM

@@ -157,7 +157,7 @@ def _load_value(name: str, value: Value | None, data: Any, is_checked: bool) -> 
         raise TypeError(f"{name} is {data!r:.60}")
     if isinstance(data, list):
         try:
-            # The type of a list does not tell those of its items.
+            # That the data is a list says nothing about the types of its items: these are checked here.
             value.check(data)
         except WrongValue:
             if not is_checked:

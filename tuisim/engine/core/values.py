@@ -419,7 +419,7 @@ class Choice(Value):
 
     def parse_data(self, data: object) -> Any:
         for each in self._choices:
-            # True and 1.0 equal 1.
+            # In Python True and 1.0 are equal to 1, but neither is allowed here.
             if each == data and not isinstance(data, bool | float):
                 return each
         raise WrongValue(f"no such {self.what} {quote(data)}", self.allowed)
@@ -527,7 +527,7 @@ class Part(Value):
             raise self.build_error(value)
 
     def parse_data(self, data: object) -> Any:
-        # A table of a file is read key by key, by `tuisim.engine.files`.
+        # `tuisim.engine.files` reads a table of a file key by key, so no table arrives here.
         raise self.build_error(data)
 
 

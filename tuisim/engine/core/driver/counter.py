@@ -179,7 +179,7 @@ class Counter:
         depth = self._depth
         straight = self._straight
         time = times[-1]
-        # Most often the depth is the same as last time, or one step more or less.
+        # The search starts at the last depth, because most often the depth stays the same or changes by one step.
         while depth > STRIDE and time - times[STRIDE - 1 - depth] >= MIN_SPAN:
             depth -= STRIDE
         while (span := time - times[-1 - depth]) < MIN_SPAN and depth < MAX_DEPTH:

@@ -191,7 +191,7 @@ class MotorDriver:
         counter = self.counter
         begin_deg, begin_dps = axle.angle_deg, axle.speed_dps
         if time_ns - self._moved_ns == STEP_NS and axle.turn_step():
-            # The usual case of `move_axle`, in few calls.
+            # The usual case of `move_axle`, with fewer calls: this runs every 2 ms.
             self._moved_ns = time_ns
             middle = 0.25 + 0.5 * begin_dps / (begin_dps + axle.speed_dps)
             begin = (time_ns - STEP_NS) * TICKS_PER_NS
@@ -300,7 +300,7 @@ class MotorDriver:
                 duty = next_duty
                 goal_dps = next_duty * circuit.dps_per_percent
                 end_dps = goal_dps - friction_dps
-            # Whole numbers, and so exactly the product of the time.
+            # Both are whole numbers, so the sum is exact: the same as `step_ns * TICKS_PER_NS`.
             begin += STEP_TICKS
             step_ns += STEP_NS
         axle.angle_deg = angle_deg
@@ -350,7 +350,7 @@ class MotorDriver:
         if (end > target and setpoint > 0) or (end < target and setpoint < 0):
             self.speed_control.setpoint = divide(2000 * (target - position), 1 + ramp)
             self.is_lowering = True
-        # A move at a speed of 0 arrives only if it is at the target already.
+        # With a setpoint of 0 the move ends only if the motor is at the target already.
         if (position >= target or setpoint < 0) and (position <= target or setpoint > 0):
             self.end_move(time_ns, action)
 

@@ -42,7 +42,7 @@ HUB_WHITE = 1024
 
 def percent(value: int, whole: int) -> float:
     """Return a value as a percentage of `whole`, with the rounding that the course's programs expect."""
-    # Division first: the other order changes the last digit for 57 of the 256 channel values.
+    # Division comes first: the other order changes the last digit for 57 of the 256 channel values.
     return 100 * (value / whole)
 
 

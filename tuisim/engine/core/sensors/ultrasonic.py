@@ -158,7 +158,7 @@ def measure_distance_mm(
     surfaces = heard or find_surfaces(world)
     nearest = spec.max_range_mm
     for ray_deg in spec.ray_angles_deg:
-        # A ray need not be followed beyond the nearest echo found.
+        # A ray need not be followed beyond the nearest echo so far.
         nearest = _measure_ray_mm(start, facing + ray_deg, facing, surfaces, nearest)
     return round(nearest)
 

@@ -241,7 +241,7 @@ class Controller:
             if spliced is not None and trajectory.first.acceleration == start.acceleration:
                 takes_us = time_us + now_us - spliced.start_us
                 trajectory = build_timed_move(spliced, takes_us, rate, acceleration, settings.speed)
-        # The distance that a motion at a speed has lost, the next motion does not catch up either.
+        # A motion at a speed never makes up for the distance that it has lost, and the next one does not either.
         behind_milli = (
             self._behind_milli
             if self.timed and self.trajectory is not None and not self._slips
@@ -275,7 +275,7 @@ class Controller:
         ):
             return False
         even = self.trajectory.even
-        # After whole milliseconds there is no rounding that a new trajectory would begin with.
+        # Only after whole milliseconds would a new trajectory begin at the same position, without rounding.
         passed_us = now_us - even.start_us
         return (
             self.trajectory.endless
@@ -330,7 +330,7 @@ class Controller:
             + settings.kp * abs(rate) * PAUSE_MARGIN_MS // 1000
         )
         moved = self.milli(now_us) - self.milli(now_us - passed_us)
-        # A trajectory that leads back to the motion goes on: a blocked motor comes free when it reverses.
+        # The trajectory goes on if it leads back to where the motor is: a blocked motor is free when it reverses.
         leads_back = (moved if self.timed else trajectory.even.rate) * error < 0
         if power < limit or leads_back:
             self._stalled_us = 0

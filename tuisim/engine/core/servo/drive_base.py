@@ -67,7 +67,7 @@ def compute_usual_settings(
         counts = [control.counts(unit) for control, unit in zip(controls, units, strict=True)]
     else:
         exact = [limit * part / whole for _, limit, (part, whole) in rows]
-        # As in the firmware, which has whole thousandths of a motor's degree per unit.
+        # The firmware stores whole thousandths of a motor's degree per unit, so its results are rounded like this.
         units = [
             int(count / COUNTS_PER_STEP) // int(control.counts_per_unit / COUNTS_PER_STEP + 1e-3)
             for control, count in zip(controls, exact, strict=True)
@@ -392,7 +392,7 @@ class DriveBase:
     def find_segment_end_us(self, now_us: int) -> int | None:
         """Return when the current segment of either trajectory ends; None if neither does."""
         if self.uses_gyro and (self.end_us is None or now_us < self.end_us):
-            # The gyro corrects the motors at every tick.
+            # The gyro corrects the motors at every tick, so no segment lasts longer.
             return now_us + 1
         ends = [
             end

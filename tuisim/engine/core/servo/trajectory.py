@@ -50,7 +50,7 @@ class Segment(NamedTuple):
         passed_us = time_us - self.start_us
         rate = self.rate
         acceleration = self.acceleration
-        # Inlined, because each motor calls it in every tick; each quotient rounds towards zero.
+        # `divide` is inlined here, because each motor needs it in every tick: each quotient is rounded towards zero.
         milli = self.milli + (
             rate * passed_us // 1000 if rate >= 0 else -(-rate * passed_us // 1000)
         )
@@ -165,7 +165,7 @@ def build_angle_move(
     w0 = max(-fastest, min(fastest, start.rate * sign))
     if w0 > 0 and w0 * w0 // (2 * slowing) > length:
         w0 = isqrt(2 * slowing * length)
-    # Forwards from position 0; a move backwards is its mirror image.
+    # All moves are computed as moves forwards from position 0; a move backwards is mirrored at the end.
     if w0 < top_rate:
         a0 = acceleration
         from_rest = -divide(w0 * w0, 2 * acceleration)
