@@ -21,14 +21,9 @@ def test_each_reason_comes_in_turn_and_then_the_end() -> None:
     tour.begin(run, has_ended=True)
     tour.take(run, REASONS, None)
     assert tour.advance() == REASONS[0]
-    assert tour.words == (
-        "1.00 s, line 3: the robot stood at the wall · reason 1 of 2, {went-wrong} shows the next"
-    )
+    assert tour.words == ("1.00 s, line 3: the robot stood at the wall · 1 of 2, {went-wrong} next")
     assert tour.advance() == REASONS[1]
-    assert (
-        tour.words
-        == "0.50 s: the robot left the mat · reason 2 of 2, {went-wrong} returns to the end"
-    )
+    assert tour.words == "0.50 s: the robot left the mat · 2 of 2, {went-wrong} end"
     assert tour.advance() is None
     assert tour.words.startswith("This is the end of the run again")
     assert tour.advance() == REASONS[0]

@@ -617,6 +617,7 @@ class LabApp(PanelMessages):
 
     def on_panel_area_rearranged(self) -> None:
         self.mark_box()
+        self.notices.follow_panels()
         self.call_after_refresh(self.draw, force=True)
 
     def _show_program(self) -> None:

@@ -1,12 +1,11 @@
-"""Notices: one message at a time, in a row on the lower edge of the panels; a long one in parts, one after another."""
+"""Notices: one message at a time, on borders of the panels."""
 
 from __future__ import annotations
 
 import time
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable
 from math import inf
-from textwrap import wrap
 from typing import Any
 
 from textual.app import App
@@ -18,13 +17,6 @@ from tuisim.terminal.textual_internals import NOTICE_LAYER, can_show_notices, is
 
 CHARACTERS_A_SECOND = 25
 """How fast a notice is read."""
-_MIN_PART_S = 2.5
-_MORE = " …"
-"""At the end of a part that another one follows."""
-_NUMBER = "1/2 "
-"""Before each of several parts."""
-_EDGES = 3
-"""Columns of the row beside its text."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,25 +34,10 @@ class Notice:
         return self.timeout_s == inf
 
 
-def split_message(message: str, columns: int) -> list[str]:
-    """Return the parts of a message that are shown one after the other, each in a row of that many columns.
-
-    Several parts are numbered, so that the reader knows that others follow, or came before.
-    """
-    text = " ".join(message.split())
-    if len(text) <= columns:
-        return [text]
-    parts = wrap(text, max(columns - len(_NUMBER) - len(_MORE), 1))
-    return [
-        f"{number}/{len(parts)} {part}{_MORE if number < len(parts) else ''}"
-        for number, part in enumerate(parts, start=1)
-    ]
-
-
 class NoticeRow(Static):
-    """The row of a notice, on the border of the lowest panels: it covers nothing, and moves nothing.
+    """A notice on borders of panels, of which two rows meet between upper and lower panels: it covers nothing else.
 
-    A notice that stays begins anew after its last part.
+    It lies on the lowest border that goes across the whole screen. Below the panels there is one row of borders only.
 
     Args:
         notice: What it shows.
@@ -72,12 +49,10 @@ class NoticeRow(Static):
         layer: {NOTICE_LAYER};
         dock: bottom;
         width: 100%;
-        height: 1;
+        height: auto;
         margin-bottom: 1;
         padding: 0 1;
         background: $panel-lighten-1;
-        text-wrap: nowrap;
-        text-overflow: ellipsis;
         border-left: outer $success;
     }}
     NoticeRow.-warning {{ border-left: outer $warning; }}
@@ -86,26 +61,37 @@ class NoticeRow(Static):
     ALLOW_SELECT = False
 
     def __init__(self, notice: Notice, ended: Callable[[], None]) -> None:
-        super().__init__(markup=False, classes=f"-{notice.severity}")
+        text = " ".join(notice.message.split())
+        super().__init__(text, markup=False, classes=f"-{notice.severity}")
         self.notice = notice
         self._ended = ended
-        self._parts: list[str] = []
-        self._count = 0
-        """How many parts have been shown."""
-        self._part_until_s = inf
+        reading_s = len(text) / CHARACTERS_A_SECOND
+        self._read_s = time.monotonic() + reading_s
+        self._shown_s = max(reading_s, notice.timeout_s)
 
     @property
     def is_read(self) -> bool:
         """Whether the user has had the time to read all of it."""
-        more = self._count - len(self._parts)
-        return more > 0 or (more == 0 and time.monotonic() >= self._part_until_s)
+        return time.monotonic() >= self._read_s
 
     def on_mount(self) -> None:
-        self._parts = split_message(self.notice.message, self.app.size.width - _EDGES)
-        self._show_next()
+        if not self.notice.stays:
+            self.set_timer(self._shown_s, self._ended)
+        self.place()
 
     def on_resize(self) -> None:
         self.call_after_refresh(self._leave_dialog)
+
+    def place(self) -> None:
+        """Move to the lowest border between panels."""
+        widths: Counter[int] = Counter()
+        for panel in self.screen.query(".panel"):
+            widths[panel.region.y] += panel.region.width
+        lowest = max(
+            (y for y, width in widths.items() if width == self.screen.size.width), default=0
+        )
+        self.styles.dock = "top" if lowest else "bottom"
+        self.styles.margin = (lowest - 1, 0, 0, 0) if lowest else (0, 0, 1, 0)
 
     def _leave_dialog(self) -> None:
         """Move to the lower border of a dialog whose text the row would cover."""
@@ -118,21 +104,6 @@ class NoticeRow(Static):
     def on_click(self) -> None:
         """Close it."""
         self._ended()
-
-    def _show_next(self) -> None:
-        count = len(self._parts)
-        if self._count >= count and not self.notice.stays:
-            self._ended()
-            return
-        part = self._parts[self._count % count]
-        self._count += 1
-        self.update(part)
-        reading_s = max(_MIN_PART_S, len(part) / CHARACTERS_A_SECOND)
-        self._part_until_s = time.monotonic() + reading_s
-        goes_on = self._count < count or (self.notice.stays and count > 1)
-        shown_s = reading_s if goes_on else max(reading_s, self.notice.timeout_s)
-        if shown_s < inf:
-            self.set_timer(shown_s, self._show_next)
 
 
 class Notices:
@@ -163,7 +134,8 @@ class Notices:
                 if waiting_notice.severity == "error"
             )
         self._waiting.append(notice)
-        self._app.call_later(self._take_turn)
+        # The panels may still be moved for what it tells.
+        self._app.call_after_refresh(self._take_turn)
 
     def list_messages(self) -> list[str]:
         """Return the messages whose time has not passed."""
@@ -193,6 +165,11 @@ class Notices:
         self._waiting.clear()
         self._told.clear()
         self._remove_row()
+
+    def follow_panels(self) -> None:
+        """Move the notice to where the panels' borders are now."""
+        if self._row is not None and self._row.is_attached:
+            self._app.call_after_refresh(self._row.place)
 
     def follow_screen(self) -> None:
         """If the screen with the notice was closed, show the notice on the topmost screen."""

@@ -78,6 +78,6 @@ class ReasonTour:
         count = len(self.reasons)
         if self._at is None:
             return "This is the end of the run again; {went-wrong} goes to the first reason"
-        goes = "shows the next" if self._at + 1 < count else "returns to the end"
-        number = f"reason {self._at + 1} of {count}, {{went-wrong}} {goes}" if count > 1 else ""
+        goes = "next" if self._at + 1 < count else "end"
+        number = f"{self._at + 1} of {count}, {{went-wrong}} {goes}" if count > 1 else ""
         return " · ".join(filter(None, (self.reasons[self._at].words, number)))

@@ -162,7 +162,7 @@ class TerminalApp(BufferedApp):
         timeout: float | None = None,
         markup: bool = False,
     ) -> None:
-        """Show a notice to the user, in a row on the lower edge of the panels; its text is no markup.
+        """Show a notice to the user, on borders of the panels; its text is no markup.
 
         Args:
             message: The text.

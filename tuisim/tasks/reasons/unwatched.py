@@ -82,7 +82,7 @@ def _measure_turns(run: StoredRun, turn: WheelTurn) -> MistakenTurn | None:
     needed = f"{needed_deg / 360:.2f}" if counted == "rotations" else f"{needed_deg:.0f}"
     text = (
         f"this line turned the robot by {robot_deg:.0f}°: {turn.method} counts {counted} of the "
-        f"wheels; {needed} turn the robot by {turn.angle_deg:.0f}° (tuisim guide motion-and-drift)"
+        f"wheels; {needed} turn the robot by {turn.angle_deg:.0f}°"
     )
     return MistakenTurn(first, turn.first_line, text)
 
