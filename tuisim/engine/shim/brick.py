@@ -58,7 +58,7 @@ AUTO = "auto"
 
 @dataclass(frozen=True, slots=True)
 class PortKind:
-    """What all input ports, or all output ports, have in common."""
+    """The driver, the modes and the empty status that all input ports, or all output ports, have in common."""
 
     driver_name: str
     modes: tuple[str, ...]
@@ -86,7 +86,7 @@ OUTPUT = PortKind("ev3-output-port", (AUTO, "tacho-motor", "dc-motor", "led", "r
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """What the driver of a port needs to know of the device that is connected to it."""
+    """The device that is connected to a port: its driver, and the port mode that it needs."""
 
     driver_name: str
     mode: str
@@ -105,7 +105,7 @@ def find_connections(robot: RobotSpec) -> dict[str, Connection]:
 
 
 class LegoPort:
-    """One port, by its short name such as `in1`, and what is connected to it."""
+    """One port of the brick, by its short name such as `in1`, and the device that is connected to it."""
 
     def __init__(self, session: DeviceSession, port: str) -> None:
         self._session = session
@@ -118,7 +118,7 @@ class LegoPort:
         return find_connections(self._session.sim.spec.robot).get(self._port)
 
     def device(self) -> SimDevice:
-        """Return the device that the library reads and writes."""
+        """Return the port as a device of `/sys/class/lego-port`."""
         return SimDevice(
             self._session,
             {
@@ -164,12 +164,12 @@ class LegoPort:
 
 
 def all_ports(session: DeviceSession) -> list[SimDevice]:
-    """Return the brick's ports, inputs first."""
+    """Return all ports of the brick as devices, inputs first."""
     return [LegoPort(session, port).device() for port in (*INPUT_PORTS, *OUTPUT_PORTS)]
 
 
 def ports_hint(session: DeviceSession, class_name: str) -> str:
-    """Return a hint for a motor or sensor that was not found: the robot's devices; empty for other classes."""
+    """Return a hint for a motor or sensor that was not found: which devices the robot has; empty for other classes."""
     if class_name not in (MOTOR_CLASS, SENSOR_CLASS):
         return ""
     robot = session.sim.spec.robot
@@ -203,14 +203,14 @@ class BuiltBrick:
     """All sensors: an ultrasonic sensor hears the other ones."""
 
     def connect_motor(self, motor: MotorSpec) -> None:
-        """Connect a motor of the robot."""
+        """Add the device of a motor that the robot has on a port."""
         port = motor.port
         simulated = self.motors[port] = self.session.sim.motors_by_port[port]
         tacho = self.tachos[port] = tacho_of(self.session, simulated, port, motor.kind)
         self._add(MOTOR_CLASS, "motor", port, tacho.device())
 
     def connect_sensor(self, spec: SensorSpec) -> None:
-        """Connect a sensor of the robot."""
+        """Add the device of a sensor that the robot has on a port."""
         sensor = self.sensors[spec.port] = DEVICES[type(spec)](self.session, spec, self._heard)
         self._heard.append(sensor)
         path = self._add(SENSOR_CLASS, "sensor", spec.port, sensor.device())
@@ -218,7 +218,7 @@ class BuiltBrick:
             self.colors[path] = sensor
 
     def _add(self, class_name: str, name: str, port: str, device: SimDevice) -> str:
-        """Add a device under the next number that was never used, as the kernel does, and return its path."""
+        """Add a device under the next number that its class never used, as the kernel does, and return its path."""
         path = self.paths[port] = self.files.add_numbered(class_name, name, device)
         return path
 
@@ -233,7 +233,7 @@ class BuiltBrick:
             self._heard.remove(sensor)
 
     def take_wheels(self) -> None:
-        """Let the session read the registers of the motors that are now the wheels."""
+        """Set `wheel_registers` of the session to the registers of the motors that are now the wheels."""
         session = self.session
         wheels = zip(
             session.sim.spec.robot.wheel_motors, (session.sim.left, session.sim.right), strict=True
@@ -247,11 +247,11 @@ class BuiltBrick:
 
 
 def build_brick(session: DeviceSession) -> BuiltBrick:
-    """Build the brick and connect the robot's motors and sensors."""
+    """Return the brick of the run's robot, with its motors and sensors connected."""
     robot = session.sim.spec.robot
     built = BuiltBrick(session, DeviceFiles(CLASSES), Lights(session), Battery(session))
     brick = built.files
-    # Sorted by port, so that a class without an address finds the first port.
+    # Devices are numbered by port, so that an object without an address finds the one on the first port.
     for motor in sorted(robot.motors, key=lambda found: found.port):
         if motor.port != NO_PORT:
             built.connect_motor(motor)
@@ -268,7 +268,7 @@ def build_brick(session: DeviceSession) -> BuiltBrick:
 
 
 def board(session: DeviceSession) -> SimDevice:
-    """Return the device whose attributes name the kind of brick; reading them takes no time."""
+    """Return the device of the brick's board, whose attributes name the kind of brick; reading them takes no time."""
     told = dict(BOARD_INFO)
     told["uevent"] = "\n".join(
         f"BOARD_INFO_{name.upper()}={value}" for name, value in BOARD_INFO.items()
@@ -282,7 +282,7 @@ def board(session: DeviceSession) -> SimDevice:
 
 
 def tacho_of(session: DeviceSession, motor: Motor, port: str, kind: str) -> Tacho:
-    """Return the driver for the class of a simulated motor.
+    """Return the simulated driver that belongs to the class of a motor.
 
     Args:
         session: The run.

@@ -49,17 +49,17 @@ class InputEvent:
     """1 for a press, 0 for a release."""
 
     def timestamp(self) -> float:
-        """Return the simulated time in seconds."""
+        """Return the simulated time of the event in seconds."""
         return self.sec + self.usec / 1e6
 
 
 def changes(before: frozenset[str], now: frozenset[str], at_ns: int) -> list[InputEvent]:
-    """Return the events between two looks at the buttons.
+    """Return the button events between two times at which the buttons were read.
 
     Args:
-        before: The buttons that were pressed at the first look.
-        now: The buttons that were pressed at the second look.
-        at_ns: The time of the events.
+        before: The buttons that were pressed at the first time.
+        now: The buttons that were pressed at the second time.
+        at_ns: The time that the events get.
     """
     at, within = divmod(at_ns, NS_PER_S)
     return [
@@ -82,11 +82,11 @@ class ButtonsFile(DeviceFile):
         self._session = session
 
     def begin(self, opened: OpenFile) -> None:
-        """Remember the pressed buttons: events are what changes from here on."""
+        """Remember which buttons are pressed when the file is opened; only later changes become events."""
         opened.seen = self._session.pressed
 
     def read(self, opened: OpenFile, size: int) -> bytes:
-        """Read as many events as fit; blocks until there is one."""
+        """Return as many events as fit into `size` bytes; blocks until there is one."""
         if size < EVENT.size:
             raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
         self._session.command()
@@ -107,7 +107,7 @@ class ButtonsFile(DeviceFile):
             self._session.spend(POLL_NS)
 
     def ready(self, opened: OpenFile) -> int:
-        """Return the flags that `poll` reports: readable if there are events."""
+        """Return the flags that `poll` reports: POLLIN if there are unread events, else 0."""
         now = self._session.pressed
         before = opened.seen
         if now is not before:
@@ -121,7 +121,7 @@ class ButtonsFile(DeviceFile):
         return select.POLLIN if opened.data else 0
 
     def ioctl(self, request: int) -> bytes:
-        """Return the pressed keys or the name of the device."""
+        """Return the answer to a request: the pressed keys, one bit for each, or the name of the device."""
         size = request >> 16 & 0x3FFF
         match request & 0xFFFF:
             case 0x4518:
@@ -135,7 +135,7 @@ class ButtonsFile(DeviceFile):
 
 
 def read_pressed(session: DeviceSession) -> list[str]:
-    """Return the names of the pressed buttons. Charges the cost of a read."""
+    """Return the names of the brick's pressed buttons, and charge the cost of a read."""
     session.command()
     if not session.free:
         cost_ns = session.sim.spec.profile.attribute_read_ns
@@ -144,7 +144,7 @@ def read_pressed(session: DeviceSession) -> list[str]:
 
 
 def patch_button_module(session: DeviceSession, module: types.ModuleType) -> None:
-    """Patch `ev3dev2.button` after its import: waiting by polling every `POLL_NS`."""
+    """Patch `ev3dev2.button` after its import: its waits poll the buttons every `POLL_NS` of simulated time."""
     button: Any = module
     button.ButtonEVIO._wait = _polling_wait(session)
 

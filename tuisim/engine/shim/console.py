@@ -24,7 +24,7 @@ _PARTS = re.compile(r"\x1b\[\??([-\d;]*)([A-Za-z])|([^\x1b])|\x1b", re.DOTALL)
 
 
 class TextGrid:
-    """The subset of the Linux console that the library uses, with a fixed number of characters per row."""
+    """A Linux console with a fixed number of characters per row and the control codes that the library uses."""
 
     def __init__(self, columns: int, rows: int) -> None:
         self.columns, self.rows = columns, rows
@@ -34,7 +34,7 @@ class TextGrid:
         self._inverse = False
 
     def resize(self, columns: int, rows: int) -> None:
-        """Change the size; content that still fits is kept."""
+        """Change the number of columns and rows; characters that still fit stay."""
         self.columns, self.rows = columns, rows
         wide = [(row + [BLANK] * columns)[:columns] for row in self._cells[:rows]]
         self._cells = wide + [[BLANK] * columns for _ in range(rows - len(wide))]
@@ -56,7 +56,7 @@ class TextGrid:
                 self._put(letter)
 
     def screen(self) -> TextScreen:
-        """Return the visible text."""
+        """Return the visible rows of text, with the spans in reverse video."""
         spans = []
         for number, row in enumerate(self._cells):
             start = None
@@ -74,7 +74,7 @@ class TextGrid:
         first = numbers[0]
         match code:
             case "H":
-                # Positions below 1 count as 1.
+                # Rows and columns are numbered from 1; `_move` takes those below 1 as 1.
                 column = numbers[1] if len(numbers) > 1 else 1
                 self._move(column - 1, first - 1)
             case "J" if first == 2:
@@ -140,7 +140,7 @@ def font_size(name: str) -> tuple[int, int] | None:
 
 
 class Terminal:
-    """Prints the library's text on the screen and runs the screen commands."""
+    """Writes text to the brick's screen, and sets its font."""
 
     def __init__(self, session: DeviceSession, screen: Screen) -> None:
         self._session = session
@@ -148,15 +148,15 @@ class Terminal:
         self._grid = TextGrid(DISPLAY_WIDTH // FONT_WIDTH, DISPLAY_HEIGHT // FONT_HEIGHT)
 
     def print(self, text: str, end: str = "\n") -> None:
-        """Write on the screen; replaces the library's `print`."""
-        # Counted even if it costs nothing, so that no loop of it runs forever.
+        """Write text to the brick's screen; replaces the `print` of the library's module."""
+        # A print counts as a command even if it takes no time, so that no loop of prints runs forever.
         self._session.command()
         self._session.charge(self._session.sim.spec.profile.attribute_read_ns)
         self._grid.write(text + end)
         self._show()
 
     def set_font(self, name: str) -> None:
-        """Set the font, and with it the screen size.
+        """Set the font of the screen, which also changes its number of rows and columns.
 
         Raises:
             OSError: there is no such font.

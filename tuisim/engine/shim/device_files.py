@@ -22,7 +22,10 @@ NumberWriter = Callable[[int], None]
 
 
 class _Writers(dict[str, Writer]):
-    """Functions that write attributes, by name; another name raises EACCES if it can be read, else ENOENT."""
+    """Functions that write attributes of a device, by name.
+
+    A missing name raises EACCES if the attribute can be read, else ENOENT.
+    """
 
     def __init__(self, writers: Mapping[str, Writer], readable: Collection[str]) -> None:
         super().__init__(writers)
@@ -33,7 +36,10 @@ class _Writers(dict[str, Writer]):
 
 
 class _NumberWriters(dict[str, NumberWriter]):
-    """Functions that write whole numbers to attributes, by name; without one, the number is written as text."""
+    """Functions that write whole numbers to attributes of a device, by name.
+
+    For a missing name, the function for text gets the number as text.
+    """
 
     def __init__(
         self, number_writers: Mapping[str, NumberWriter], writers: Mapping[str, Writer]
@@ -47,16 +53,16 @@ class _NumberWriters(dict[str, NumberWriter]):
 
 
 class SimDevice:
-    """One device whose attributes are functions.
+    """One device of the brick, whose attributes are read and written by functions.
 
     Args:
-        session: Charged for each read.
+        session: The run, in which each read takes time.
         readers: Functions that return the current value, by attribute.
         writers: Functions that accept the written text, by attribute.
         costs: Cost of a read in ns, by attribute, if it differs from the default.
         number_writers: Functions that accept a written integer, by attribute.
-        notifying: Attributes whose change ends a `poll` on their files, with functions that return what differs after
-            it.
+        notifying: Attributes whose changes end a `poll` of their files. Each has a function that returns another value
+            after a change.
         temporary: Attributes whose files exist only while their readers raise no ENOENT.
         codes: What is recorded of a read, by attribute; see `DeviceSession.note_reading`.
     """
@@ -99,7 +105,7 @@ class SimDevice:
         """Value, cost in ns, and code of each attribute; -1 if it is not recorded."""
 
     def _charge(self, write: Callable[[Any], None]) -> Callable[[Any], None]:
-        """Return a function that first charges the time of a write, then calls `write`."""
+        """Return a function that first lets the time of a write pass, then calls `write`."""
         session = self.session
         cost_ns = self.session.sim.spec.profile.attribute_write_ns
 
@@ -125,7 +131,7 @@ class SimDevice:
 
     @waits_for(Wait.READING)
     def read(self, name: str) -> object:
-        """Return an attribute's value. Charges its cost.
+        """Return an attribute's value, and let the time of the read pass.
 
         Raises:
             OSError: ENOENT if the device has no such attribute, EACCES if it is write-only.
@@ -143,7 +149,7 @@ class SimDevice:
         return reader()
 
     def write(self, name: str, text: str) -> None:
-        """Set an attribute.
+        """Write text to an attribute of the device.
 
         Raises:
             OSError: ENOENT or EACCES as for `read`, EINVAL if the driver rejects the value.
@@ -164,7 +170,7 @@ CLASSES_FOLDER = "/sys/class"
 
 
 class DeviceFiles:
-    """All devices, by path, such as `/sys/class/tacho-motor/motor0`.
+    """All devices of the brick, by path, such as `/sys/class/tacho-motor/motor0`.
 
     Args:
         classes: Names of the classes of devices; a class may be without a device.
@@ -176,7 +182,7 @@ class DeviceFiles:
         self._next_numbers: dict[str, int] = {}
 
     def add(self, class_name: str, name: str, device: SimDevice) -> None:
-        """Add a device."""
+        """Add a device under its class and its name."""
         self.by_path[f"{CLASSES_FOLDER}/{class_name}/{name}"] = device
 
     def add_numbered(self, class_name: str, name: str, device: SimDevice) -> str:
@@ -195,17 +201,17 @@ class DeviceFiles:
 
 
 def plain(number: float) -> float:
-    """Return a whole number as int, so that it is shown without a decimal point."""
+    """Return a number as int if it is whole, so that it is shown without a decimal point."""
     return int(number) if float(number).is_integer() else number
 
 
 def refuse(text: str) -> OSError:
-    """Return the error of a driver that rejects a value."""
+    """Return the error of a driver that rejects a written value."""
     return OSError(errno.EINVAL, f"invalid value {text!r}")
 
 
 def free_of_charge(session: DeviceSession, function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return `function` with no charge for what the library reads and writes inside it."""
+    """Return a wrapper of `function` in which the library's reads and writes take no simulated time."""
 
     @wraps(function)
     def wrapper(*args: Any, **kwargs: Any) -> Any:

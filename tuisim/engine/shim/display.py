@@ -63,7 +63,7 @@ class DisplayBuffer(mmap.mmap):
     """
 
     def __new__(cls, _session: DeviceSession, _screen: Screen) -> DisplayBuffer:
-        """Allocate anonymous memory instead of mapping a file."""
+        """Allocate memory without a file, instead of mapping one."""
         return super().__new__(cls, NO_FILE, LINE_BYTES * DISPLAY_HEIGHT)
 
     def __init__(self, session: DeviceSession, screen: Screen) -> None:
@@ -74,26 +74,26 @@ class DisplayBuffer(mmap.mmap):
         super().__setitem__(slice(None), bytes([WHITE]) * len(self))
 
     def __setitem__(self, key: Any, value: Any) -> None:
-        """Write bytes and display them."""
+        """Write bytes to a place in the memory, and display them."""
         super().__setitem__(key, value)
         self._update()
 
     def write(self, data: Any) -> int:
-        """Write bytes at the position and display them."""
+        """Write bytes at the present position of the memory, and display them."""
         size = super().write(data)
         self._update()
         return size
 
     def flush(self, *_part: int) -> None:
-        """Display what was written in other ways, such as through a `memoryview`."""
+        """Display bytes that were written in other ways, such as through a `memoryview`."""
         self._update()
 
     def close(self) -> None:
         """Do nothing: a program's other mappings of the display are this same object, which may still be in use."""
 
     def _update(self) -> None:
-        """Display the memory. Charges the time of an update on the brick."""
-        # Counted even if it costs nothing, so that no loop of it runs forever.
+        """Display the contents of the memory, and let the time of such an update on the brick pass."""
+        # An update counts as a command even if it takes no time, so that no loop of updates runs forever.
         self.session.command()
         self.session.charge(self.session.sim.spec.profile.display_update_ns)
         pixels = self[:]
@@ -103,7 +103,7 @@ class DisplayBuffer(mmap.mmap):
 
 
 class DisplayFile(DeviceFile):
-    """The device file of the display's memory."""
+    """The device file of the display's memory, `/dev/fb0`."""
 
     def __init__(self, session: DeviceSession, screen: Screen) -> None:
         super().__init__(DISPLAY_PATH, stat.S_IFCHR | 0o660)
@@ -115,14 +115,14 @@ class DisplayFile(DeviceFile):
         return DisplayBuffer(self._session, self._screen)
 
     def read(self, opened: OpenFile, size: int) -> bytes:
-        """Read pixels."""
+        """Return pixels from the present position on."""
         end = len(self._memory) if size < 0 else opened.at + size
         part = self._memory[opened.at : end]
         opened.at += len(part)
         return part
 
     def write(self, opened: OpenFile, data: bytes) -> int:
-        """Write pixels, and display them."""
+        """Write pixels, display them, and return the number of written bytes."""
         room = len(self._memory) - opened.at
         if data and room <= 0:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -132,7 +132,7 @@ class DisplayFile(DeviceFile):
         return len(part)
 
     def ioctl(self, request: int) -> bytes:
-        """Return what the kernel tells about the display."""
+        """Return the kernel's information about the display: its size and the format of its pixels."""
         match request:
             case 0x4600:
                 return VARIABLE_INFO
@@ -145,16 +145,16 @@ class DisplayFile(DeviceFile):
         )
 
     def mapping(self, length: int) -> Any:
-        """Return the memory."""
+        """Return the memory of the display."""
         if length > len(self._memory):
             raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
         return self._memory
 
 
 def picture_of(pixels: bytes) -> bytes:
-    """Return the image in the display's memory, one bit per pixel, in the format of `engine.runs.brick_state`.
+    """Return the image in the display's memory with one bit per pixel, in the format of `engine.runs.brick_state`.
 
-    Of the four bytes per pixel the display shows the green one.
+    Of the four bytes per pixel, the display shows the green one.
     """
     from PIL import Image
 
@@ -167,7 +167,7 @@ def dark_pixels(grey: Picture) -> bytes:
 
 
 def draw_with_the_bricks_font(screen_class: Any) -> None:
-    """Let objects of a class draw text without a named font in the default font of the brick's Pillow.
+    """Patch a class so that its objects draw text without a named font in the default font of the brick's Pillow.
 
     Args:
         screen_class: A class of the library; its objects have an `ImageDraw` in `draw`.

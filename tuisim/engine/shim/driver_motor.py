@@ -37,7 +37,7 @@ STATE_TEXTS = tuple(map(" ".join, STATES))
 
 
 class DriverTacho(Tacho):
-    """One motor as the kernel's driver exposes it."""
+    """One motor on a port, with the attributes that the kernel's driver gives it."""
 
     _motor: SimulatedMotor
 
@@ -50,7 +50,7 @@ class DriverTacho(Tacho):
         self._look = lambda: self._now().noticed_ns
 
     def device(self) -> SimDevice:
-        """Return the device that the library reads and writes."""
+        """Return the motor as a device of `/sys/class/tacho-motor`."""
         readers: dict[str, Reader] = {
             "position": lambda: self._now().position * self._sign,
             "speed": lambda: self._now().speed_dps * self._sign,
@@ -70,7 +70,7 @@ class DriverTacho(Tacho):
         return self._device(readers, {}, numbers)
 
     def _now(self) -> SimulatedMotor:
-        """Return the motor after simulating it up to the present time."""
+        """Return the simulated motor, advanced to the present time."""
         motor = self._motor
         if not motor.is_at_rest:
             motor.run_until(self._session.now)

@@ -70,7 +70,7 @@ _CAPITAL = 0.7
 
 @dataclass(frozen=True, slots=True)
 class Face:
-    """The properties of a font, which its name contains."""
+    """The properties of a font that its name contains."""
 
     size_px: int
     bold: bool
@@ -92,7 +92,7 @@ FACES: Mapping[str, Face] = {
 
 @cache
 def plain_font() -> ImageFont:
-    """Return the default font of the brick's Pillow, for any version of Pillow."""
+    """Return the default font of the brick's Pillow, in whatever version of Pillow is installed."""
     from PIL import ImageFont
 
     # Newer versions default to a smooth font, whose grey edges look ragged on a black and white display.
@@ -102,7 +102,7 @@ def plain_font() -> ImageFont:
 
 
 def quiet_pillow(_module: types.ModuleType) -> None:
-    """Hide Pillow's warnings of what later versions remove: the Pillow of the brick stays as it is."""
+    """Hide Pillow's deprecation warnings: the brick keeps its version of Pillow."""
     warnings.filterwarnings("ignore", r".* will be removed in Pillow ", DeprecationWarning)
 
 
@@ -142,7 +142,7 @@ def sized(size_px: int, bold: bool, monospace: bool) -> ImageFont:
 
 @cache
 def drawn(face: Face) -> ImageFont:
-    """Return a font for a face, drawn from the font that comes with Pillow."""
+    """Return a bitmap font for a face, drawn from the font that comes with Pillow."""
     from PIL import ImageFont
     from PIL.FontFile import FontFile
 
@@ -153,9 +153,9 @@ def drawn(face: Face) -> ImageFont:
         picture, left_px, width_px = _letter(large, letter, face)
         box = picture.getbbox() or (0, 0, 1, 1)
         ink = picture.crop(box)
-        # Pillow cuts off what is to the left of the pen: move such letters to the right.
+        # Pillow cuts off what is to the left of the pen, so letters that begin there are moved to the right.
         x = max(0, min(box[0] + left_px, width_px - ink.width))
-        # Coordinates are relative to the pen on the baseline, y down.
+        # Pillow's coordinates are relative to the pen on the baseline; y points down.
         place = (x, box[1] - face.size_px, x + ink.width, box[3] - face.size_px)
         file.glyph[ord(letter)] = ((width_px, 0), place, (0, 0, *ink.size), ink)
     file.compile()
@@ -204,7 +204,7 @@ def _letter(large: FreeTypeFont, letter: str, face: Face) -> tuple[Picture, int,
         plain = _plain_letter(letter, times * _FINE)
         image.paste(plain, (margin_px * _FINE, base - round(_PLAIN_BASE_PX * times * _FINE)))
     if face.slanted:
-        # About half the height of a capital, so that the slant overhangs little on either side.
+        # The middle of a capital's height stays where it is, so that the slant overhangs little on either side.
         still = base * (1 - _CAPITAL / 2)
         image = image.transform(
             image.size, Image.Transform.AFFINE, (1, _SLANT, -_SLANT * still, 0, 1, 0)
@@ -224,7 +224,7 @@ def _letter(large: FreeTypeFont, letter: str, face: Face) -> tuple[Picture, int,
 
 
 def _plain_letter(letter: str, times: float) -> Picture:
-    """Return a letter of the plain font, enlarged, for accented letters, which the other font lacks."""
+    """Return an enlarged letter of the plain font, which has the accented letters that the other font lacks."""
     from PIL import Image, ImageDraw
 
     image = Image.new("L", _PLAIN_CELL_PX)

@@ -34,7 +34,7 @@ CACHES = {"/tmp/current_platform": "ev3\n"}
 
 
 class FinishingFinder:
-    """Calls a function on a module right after its import.
+    """Module finder that calls a function on certain modules right after their import.
 
     Args:
         finishers: Functions by module name.
@@ -55,7 +55,7 @@ class FinishingFinder:
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: types.ModuleType | None = None
     ) -> importlib.machinery.ModuleSpec | None:
-        """Find the module as usual and wrap its loader."""
+        """Return the spec of a module, with a loader that calls the module's function; None for other modules."""
         finish = self._finishers.get(fullname)
         if finish is None:
             return None
@@ -78,7 +78,7 @@ def finish_imports(
     is_own: Callable[[str], bool],
     around: Mapping[str, Around] = MappingProxyType({}),
 ) -> None:
-    """Call a function on each module right after its import, or at once if it is imported already.
+    """Call a function on certain modules right after their import, or now if they are imported already.
 
     Args:
         finishers, is_own, around: As for `FinishingFinder`.
@@ -96,7 +96,7 @@ def install(
     replace: Replace,
     is_own: Callable[[str], bool],
 ) -> None:
-    """Let the program import its library, and make the brick's files visible to it.
+    """Make the library and the brick's files available to the program.
 
     Args:
         session: Clock and simulation.
@@ -129,7 +129,7 @@ def install(
         "asyncio.base_events": finish_asyncio,
         **more_finishers,
     }
-    # Imported on demand: a program uses one library.
+    # Imported on demand: a program uses only one of the two libraries.
     if session.sim.spec.profile.motor_law.library == Library.PYBRICKS:
         from tuisim.engine.shim.pybricks import modules as pybricks
 

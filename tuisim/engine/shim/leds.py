@@ -31,13 +31,13 @@ STOP_POLL_NS = MS
 
 
 def led_name(name: str) -> str:
-    """Return the kernel's name, such as `led0:red:brick-status`, of an LED of `LED_NAMES`."""
+    """Return the kernel's name of an LED of `LED_NAMES`, such as `led0:red:brick-status`."""
     side, color = name.split()
     return f"led{('left', 'right').index(side)}:{color}:brick-status"
 
 
 class Lights:
-    """All LEDs, and the record of their changes."""
+    """All LEDs of the brick; records each change of their brightness."""
 
     def __init__(self, session: DeviceSession) -> None:
         self.session = session
@@ -62,7 +62,7 @@ class Lights:
 
 
 class Light:
-    """One LED; a green one is on when the program starts."""
+    """One LED of the brick; a green one is on when the program starts."""
 
     def __init__(self, lights: Lights, green: bool) -> None:
         self._lights = lights
@@ -74,7 +74,7 @@ class Light:
         """Number of the current blinking; threads of earlier ones end."""
 
     def device(self) -> SimDevice:
-        """Return the device that the library reads and writes."""
+        """Return the LED as a device of `/sys/class/leds`."""
         return SimDevice(
             self._lights.session,
             {
@@ -111,7 +111,7 @@ class Light:
                 self._shine(value)
             return
         if not value:
-            # Brightness 0 also turns the trigger off.
+            # As in the kernel, brightness 0 also turns the trigger off.
             self._trigger = "none"
         self._shine(value)
 
@@ -154,7 +154,8 @@ class Light:
             self._shine(self._blink_brightness if on_ms else 0)
 
     def _keep_blinking(self, blink: int) -> None:
-        # A lock that is never released: waiting on it does not count as a program line that spends time.
+        # The thread sleeps by waiting for a lock that is never released: unlike a sleep, this does not count as a line
+        # of the program that takes time.
         alarm = _thread.allocate_lock()
         alarm.acquire()
         lit = True
@@ -165,7 +166,7 @@ class Light:
 
 
 def patch_led_module(session: DeviceSession, module: types.ModuleType) -> None:
-    """Patch the threads of `ev3dev2.led` after its import, and how it waits for their end."""
+    """Patch `ev3dev2.led` after its import: its animations run, and are waited for, in simulated time."""
     led: Any = module
     numbers = count(1)
     running: dict[int, int] = {}
@@ -185,7 +186,7 @@ def patch_led_module(session: DeviceSession, module: types.ModuleType) -> None:
         return number
 
     def animate_stop(self: Any) -> None:
-        """End the animation and block until it has ended."""
+        """End the animation of the LEDs, and block until its thread has ended."""
         number = self.animate_thread_id
         # A flashing animation calls this from its own thread to turn the LEDs off: it must not wait for itself.
         if number is None or running.get(number) == _thread.get_ident():
@@ -193,7 +194,7 @@ def patch_led_module(session: DeviceSession, module: types.ModuleType) -> None:
         self.animate_thread_stop = True
         while number in running:
             session.spend(STOP_POLL_NS)
-        # The animation resets these at its end, but not if an error ended it.
+        # The animation resets these attributes at its end, but not if an error has ended it.
         self.animate_thread_id, self.animate_thread_stop = None, False
 
     rebind(led.Leds, _thread=types.SimpleNamespace(start_new_thread=start_new_thread))

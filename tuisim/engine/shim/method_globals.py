@@ -12,7 +12,7 @@ from typing import Any
 
 
 def rebind(changed: type[Any], **names: object) -> None:
-    """Let all methods and properties of a class see other values under global names.
+    """Change the values that the methods and properties of a class see under some global names.
 
     Args:
         changed: The class.

@@ -61,7 +61,7 @@ KINDS = {
 
 
 class Tacho(ABC):
-    """One motor on an output port, such as `outB`; its kind is one of `KINDS`."""
+    """The driver of one motor on an output port, such as `outB`; the motor's kind is one of `KINDS`."""
 
     def __init__(
         self, session: DeviceSession, motor: Motor, port: str, kind: str = "large"
@@ -78,16 +78,16 @@ class Tacho(ABC):
 
     @abstractmethod
     def registers(self) -> MotorRegisters:
-        """Return what the program has written to the motor, and its speed."""
+        """Return the motor's attributes that the program has written, and its speed."""
 
     def _tell(self, call: Call, *values: float) -> None:
-        """Pass a call with its values to the simulated motor, at the present time."""
+        """Give a command with its values to the simulated motor, at the present time."""
         sim = self._session.sim
         obey(sim, self._session.now, sim.find_number(self._motor), call, *values)
 
     @abstractmethod
     def device(self) -> SimDevice:
-        """Return the device that the library reads and writes."""
+        """Return the motor as a device of `/sys/class/tacho-motor`."""
 
     def _device(
         self,
@@ -95,7 +95,7 @@ class Tacho(ABC):
         writers: dict[str, Writer],
         numbers: dict[str, NumberWriter],
     ) -> SimDevice:
-        """Return a device with these attributes and those that all motors have.
+        """Return a device with the given attributes and those that all motors have.
 
         Args:
             readers: Functions that return the value of an attribute, by name.
@@ -129,7 +129,7 @@ class Tacho(ABC):
         )
 
     def _limits(self, name: str) -> tuple[int, int]:
-        """Return the lowest and the highest value of a number that a program writes."""
+        """Return the lowest and the highest number that a program may write to an attribute."""
         max_speed = self._kind.max_speed_dps
         return {
             "speed_sp": (-max_speed, max_speed),
@@ -158,7 +158,7 @@ class Tacho(ABC):
 
 
 class TachoMotor(Tacho):
-    """One motor as the kernel driver exposes it."""
+    """The driver of one motor under the rules of the course: set points take effect with the next command."""
 
     _motor: BrickMotor
 
@@ -196,7 +196,7 @@ class TachoMotor(Tacho):
         """Whether a ramp set point limits changes of speed."""
 
     def device(self) -> SimDevice:
-        """Return the device that the library reads and writes."""
+        """Return the motor as a device of `/sys/class/tacho-motor`."""
         readers: dict[str, Reader] = {
             name: partial(self._numbers.__getitem__, name) for name in self._numbers
         }
@@ -210,7 +210,7 @@ class TachoMotor(Tacho):
         return self._device(readers, {}, {**numbers, "position": self._set_position})
 
     def registers(self) -> MotorRegisters:
-        """Return what the program has written to the motor, and its speed."""
+        """Return the motor's attributes that the program has written, and its speed."""
         speed, position, time_ms = (
             self._numbers[name] for name in ("speed_sp", "position_sp", "time_sp")
         )
@@ -241,7 +241,7 @@ class TachoMotor(Tacho):
         return round(100 * self._speed() / self._kind.max_speed_dps)
 
     def state(self) -> str:
-        """Return the state flags, separated by spaces, in the driver's order."""
+        """Return the motor's states, separated by spaces, in the driver's order."""
         motor = self._motor
         if motor.mode == STOPPED:
             return "holding" if self._holding else ""
@@ -270,7 +270,7 @@ class TachoMotor(Tacho):
         self._session.command()
         self._direct = text == "run-direct"
         speed = self._numbers["speed_sp"] * self._sign
-        # The stop action at the start of a move applies at its end.
+        # At the end of a move, the stop action applies that was set at its start.
         self._holding = self._stop_action == "hold"
         if text == "run-forever":
             self._tell(RUN, float(speed))
@@ -293,7 +293,7 @@ class TachoMotor(Tacho):
         self._begun()
 
     def _begun(self) -> None:
-        """Handle rare cases after the start of a move: a ramp, unless it is by duty cycle, and a target speed of 0."""
+        """Handle rare cases after the start of a move: ramps, which `run-direct` ignores, and a target speed of 0."""
         if self._ramps and not self._direct:
             self._ramp()
         motor = self._motor
@@ -304,7 +304,7 @@ class TachoMotor(Tacho):
             )
 
     def _stop(self) -> None:
-        """Stop, decelerating first if a ramp is set."""
+        """Stop the motor; if a ramp is set, decelerate first."""
         self._last_goal = None
         motor, sim, down = self._motor, self._session.sim, self._ramp_dps2("ramp_down_sp")
         if not down or not motor.moving_dps:
@@ -340,12 +340,12 @@ class TachoMotor(Tacho):
         self._tell(RUN_TO, goal_deg, speed_dps, float(goal_deg < self._motor.position_deg))
 
     def _ramp_dps2(self, name: str) -> float:
-        """Return the acceleration in °/s² that a ramp set point allows, 0 for no ramp."""
+        """Return the acceleration in °/s² that a ramp attribute allows; 0 without a ramp."""
         ramp_ms = self._numbers[name]
         return self._kind.max_speed_dps / ramp_ms * 1000 if ramp_ms else 0.0
 
     def _ramp(self) -> None:
-        """Limit the acceleration of the motor as the ramp set points say."""
+        """Limit acceleration and deceleration of the current move by the motor's ramp attributes."""
         motor = self._motor
         faster = abs(motor.target_dps) > abs(motor.speed_dps)
         slowest_dps2 = self._ramp_dps2("ramp_up_sp" if faster else "ramp_down_sp")
@@ -377,7 +377,7 @@ WITHOUT_EFFECT = (
 
 
 class BrowserTacho(Tacho):
-    """One motor of the browser simulator: set points take effect at once, commands bypass the driver."""
+    """The driver of one motor of the browser simulator, in which written set points take effect immediately."""
 
     _motor: BrowserMotor
 
@@ -390,7 +390,7 @@ class BrowserTacho(Tacho):
         self._time_sp_s = 0.0
 
     def device(self) -> SimDevice:
-        """Return the device that the library reads and writes."""
+        """Return the motor as a device of `/sys/class/tacho-motor`."""
         motor = self._motor
         readers: dict[str, Reader] = {
             "position": lambda: plain(motor.position_deg),
@@ -399,7 +399,7 @@ class BrowserTacho(Tacho):
             "state": lambda: "running" if motor.mode else "",
             "speed_sp": lambda: int(motor.speed_sp),
             "position_sp": lambda: self._position_sp,
-            # As in the browser simulator.
+            # The browser simulator has this fault, too: it shows the speed here.
             "time_sp": lambda: int(motor.speed_sp),
         }
         readers |= {name: partial(self._numbers.__getitem__, name) for name in WITHOUT_EFFECT}
@@ -414,7 +414,7 @@ class BrowserTacho(Tacho):
         return self._device(readers, {"time_sp": self._set_time}, numbers)
 
     def registers(self) -> MotorRegisters:
-        """Return what the program has written to the motor, and its speed."""
+        """Return the motor's attributes that the program has written, and its speed."""
         motor = self._motor
         return MotorRegisters(
             self._last_command,
@@ -432,7 +432,8 @@ class BrowserTacho(Tacho):
                 self._tell(RUN, motor.speed_sp)
             case "run-timed":
                 sim = self._session.sim
-                # Counted from the last completed tick: the fraction of a tick since then is ignored.
+                # The time counts from the last complete tick: the browser simulator ignores the fraction of a tick
+                # since then.
                 end_tick = sim.tick + self._time_sp_s * sim.spec.profile.tick_hz
                 self._tell(RUN_UNTIL, motor.speed_sp, end_tick)
             case "run-to-rel-pos":
@@ -450,7 +451,7 @@ class BrowserTacho(Tacho):
         self._tell(RUN_TO, goal_deg, self._motor.speed_sp, float(self._position_sp < 0))
 
     def _set_position_sp(self, value: int) -> None:
-        # Its sign takes effect at once, also during and after a move.
+        # The sign of the position takes effect immediately, even during and after a move.
         self._position_sp = value
         self._tell(Call.SET_BACKWARDS, float(value < 0))
 
@@ -466,12 +467,12 @@ class BrowserTacho(Tacho):
 
 
 class ServoTacho(Tacho):
-    """One motor that the Pybricks firmware moves: its driver only shows the state, and takes no commands."""
+    """The driver of one motor that the Pybricks firmware moves: it shows the motor's state, and refuses commands."""
 
     _motor: ServoMotor
 
     def device(self) -> SimDevice:
-        """Return the device with the state of the motor."""
+        """Return the motor as a device of `/sys/class/tacho-motor`."""
         motor = self._motor
         readers: dict[str, Reader] = {
             "position": lambda: round(motor.position_deg),
@@ -482,7 +483,7 @@ class ServoTacho(Tacho):
         return self._device(readers, {}, {})
 
     def registers(self) -> MotorRegisters:
-        """Return the state of the motor."""
+        """Return the motor's state in the form of its attributes."""
         motor = self._motor
         command = "run-direct" if motor.mode else ""
         return MotorRegisters(

@@ -46,13 +46,13 @@ _PORT = re.compile(r"(?:ev3-ports:)?(out[A-D]|in[1-4])")
 
 
 def find_port(address: object) -> str:
-    """Return the port, such as `in1`, of an address in a program; empty if it names none."""
+    """Return the port in an address that a program gives, such as `in1`; empty if it has none."""
     match = _PORT.fullmatch(address) if isinstance(address, str) else None
     return match[1] if match else ""
 
 
 class Plugs:
-    """Plugs missing parts into the brick of a run while its program looks for them.
+    """Plugs missing parts into the robot of a run when the program looks for them.
 
     Args:
         built: The brick.
@@ -67,7 +67,7 @@ class Plugs:
         """The ports of motors that a program wants as wheels after a wheel has turned, which is too late."""
 
     def add_device(self, class_name: str, wanted: Mapping[str, Any]) -> bool:
-        """Plug in the device that a library searches for; return whether it is there now.
+        """Plug in the device that a library searches for; return whether the robot has it now.
 
         Args:
             class_name: Kernel name of the class that was searched.
@@ -90,18 +90,21 @@ class Plugs:
         return bool(port) and self.add(known[0], port)
 
     def _choose_port(self, part: str) -> str:
-        """Return a port for a part if the program names none: a free one or one to give way; empty for neither."""
+        """Return a port for a part whose port the program does not name; empty if there is none.
+
+        A free port comes first, then one whose part the program does not use.
+        """
         ports = OUTPUT_PORTS if part in MOTOR_PARTS else INPUT_PORTS
         free = [port for port in ports if not self.find_path(port)]
         return next((port for port in (*free, *ports) if self._can_give_way(port)), "")
 
     def take_hold(self, path: str) -> None:
-        """Note that the program uses the device at a path, so that no other takes its place."""
+        """Remember that the program uses the device at a path, so that no other part replaces it."""
         if (device := self._built.files.by_path.get(path)) is not None:
             device.is_opened = True
 
     def refuse_value(self, path: str, number: int) -> NotSimulated | None:
-        """Return the error for reading a value of the sensor at a path that the sensor has in no mode, else None."""
+        """Return the error for reading a value that the sensor at a path has in no mode; None if it has it."""
         found = (
             sensor for port, sensor in self._built.sensors.items() if self.find_path(port) == path
         )
@@ -112,7 +115,7 @@ class Plugs:
         return self._built.paths.get(port, "")
 
     def add(self, part: str, port: str) -> bool:
-        """Plug in a part, and return whether it is there now.
+        """Plug in a part; return whether the robot has it now.
 
         Args:
             part: A class of `engine.core.plugged`.
@@ -131,13 +134,14 @@ class Plugs:
             return False
         parts = [self._session.describe_part(port, part, LATE if port in self._late else "")]
         if port in wheels:
-            # The robot loses this wheel: the motor of the other one stays, as a motor that is no wheel.
+            # The robot loses this wheel, so the motor of the other wheel no longer drives the robot: it stays as a free
+            # motor.
             parts += self._keep_wheels((port,))
         self._plug(parts)
         return True
 
     def make_wheels(self, left: str, right: str, part: str) -> None:
-        """Plug in two motors as the wheels; if a wheel has turned already, as motors that are no wheels.
+        """Plug in two motors as the robot's wheels; if a wheel has turned already, as motors without wheels.
 
         Args:
             left, right: Their ports.
@@ -149,7 +153,7 @@ class Plugs:
             return
         robot = session.sim.spec.robot
         wheels = (robot.left_port, robot.right_port)
-        # Of two pairs that the text shows, it has chosen one.
+        # The program's text shows two pairs of motors, and one of them has been chosen as the wheels already.
         if ports == wheels or {*ports, *wheels} <= {*session.shown_ports}:
             return
         if not all(self._is_there(part, port) or self._can_give_way(port) for port in ports):
@@ -164,14 +168,17 @@ class Plugs:
             self._late |= {*ports}
 
     def _can_change_wheels(self, ports: Sequence[str]) -> bool:
-        """Return whether motors on ports can become the wheels: none that would get another number has turned."""
+        """Return whether motors on these ports can become the wheels.
+
+        They cannot if a wheel, or another motor whose number would change, has turned already.
+        """
         sim = self._session.sim
         others = [motor.port for motor in sim.spec.robot.extra_motors]
         first = min((others.index(port) for port in ports if port in others), default=len(others))
         return not sim.has_driven and not any(map(sim.has_turned, range(first, len(others))))
 
     def _is_there(self, part: str, port: str) -> bool:
-        """Return whether a motor of a class is on a port."""
+        """Return whether the robot has a motor of this class on a port."""
         kind = MOTOR_KIND_OF[part]
         return any(
             (motor.port, motor.kind) == (port, kind)
@@ -179,7 +186,7 @@ class Plugs:
         )
 
     def _can_give_way(self, port: str) -> bool:
-        """Return whether nothing is on a port, or a part of the default robot that the program does not use."""
+        """Return whether a port is free, or has a part of the default robot that the program does not use."""
         path = self._built.paths.get(port)
         if path is None:
             return True
@@ -187,10 +194,10 @@ class Plugs:
         return port not in shown and not self._built.files.by_path[path].is_opened
 
     def _keep_wheels(self, without: Sequence[str]) -> list[PluggedPart]:
-        """Return the wheels' motors that the program uses, but for some ports, as parts that are no wheels.
+        """Return the wheels' motors that the program uses, as parts without wheels.
 
         Args:
-            without: These ports.
+            without: Ports whose motors are left out.
         """
         return [
             self._session.describe_part(motor.port, PART_OF_KIND[motor.kind])
@@ -199,7 +206,7 @@ class Plugs:
         ]
 
     def _plug(self, parts: Sequence[PluggedPart]) -> None:
-        """Change the parts of the robot, and connect and disconnect devices of the brick accordingly."""
+        """Change the parts of the simulated robot, and add and remove devices of the brick accordingly."""
         built = self._built
         sim = self._session.sim
         before = sim.spec.robot

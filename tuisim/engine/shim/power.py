@@ -29,7 +29,7 @@ S_PER_H = 3600
 
 
 class Battery:
-    """The battery of one run."""
+    """The battery of the brick in one run."""
 
     def __init__(self, session: DeviceSession) -> None:
         self._session = session
@@ -40,7 +40,7 @@ class Battery:
         """Ampere seconds drawn in the records summed up to now."""
 
     def device(self) -> SimDevice:
-        """Return the device that the library reads and writes."""
+        """Return the battery as a device of `/sys/class/power_supply`."""
         return SimDevice(
             self._session,
             {

@@ -40,7 +40,7 @@ FORMS = {"s8": "b", "s16": "h"}
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """One mode of a sensor."""
+    """One mode of a sensor: how it measures, the time that this takes, and the format of its values."""
 
     measure: Callable[[], tuple[int, ...]]
     cost_ns: int
@@ -55,10 +55,10 @@ def _no_commands(_text: str = "") -> NoReturn:
 
 
 class LegoSensor:
-    """A sensor on an input port.
+    """The driver of a sensor on an input port.
 
-    Reading `value0` takes a new measurement and costs its time; `value1` and the following ones
-    read directly after it belong to the same measurement and cost nothing.
+    Reading `value0` takes a new measurement and the time for it. `value1` and the following ones, read directly after
+    it, belong to the same measurement and take no time.
     """
 
     def __init__(
@@ -85,11 +85,11 @@ class LegoSensor:
         self._switch_ns = mode_switch_ns if switch_ns is None else switch_ns
 
     def writers(self) -> dict[str, Writer]:
-        """Return the functions that accept text written to each attribute."""
+        """Return the functions that accept text written to the sensor's attributes, by attribute."""
         return {"mode": self.set_mode, "command": _no_commands}
 
     def device(self) -> SimDevice:
-        """Return the device that the library reads and writes."""
+        """Return the sensor as a device of `/sys/class/lego-sensor`."""
         session = self._session
         readers: dict[str, Callable[[], object]] = {
             "address": lambda: f"ev3-ports:{self._port}",
@@ -103,7 +103,7 @@ class LegoSensor:
             "bin_data_format": lambda: self.modes[self.mode].form,
             "bin_data": self._binary,
         }
-        # Values charge by themselves: only the first of a measurement costs time.
+        # These attributes take their time when they are read: only the first value of a measurement takes any.
         costs = {"bin_data": 0}
         for n in range(8):
             readers[f"value{n}"] = partial(self._value, n)
@@ -111,20 +111,20 @@ class LegoSensor:
         return SimDevice(session, readers, self.writers(), costs)
 
     def set_mode(self, text: str) -> None:
-        """Switch to a mode. Charges the time of the change if it is another one."""
+        """Switch the sensor to a mode; if it is another mode, let the time of the change pass."""
         if text not in self.modes:
             raise foreign_mode(text, self._port, self.driver_name) or refuse(text)
         if text != self.mode:
             self.switch(text)
 
     def switch(self, mode: str) -> None:
-        """Switch to a mode, even from itself. Charges the time of the change."""
+        """Switch the sensor to a mode, even if it is in this mode, and let the time of the change pass."""
         self.mode = mode
         if self._switch_ns:
             self._session.charge(self._switch_ns)
 
     def measure(self, mode: str) -> tuple[int, ...]:
-        """Take one measurement in a mode. Charges its cost."""
+        """Return the values of one measurement in a mode, and let its time pass."""
         chosen = self.modes[mode]
         session = self._session
         if not session.free:
@@ -134,7 +134,7 @@ class LegoSensor:
         return chosen.measure()
 
     def measure_switched(self, mode: str) -> tuple[int, ...]:
-        """Return the first measurement after a change of mode, free of charge: the change has charged its time."""
+        """Return the values of the first measurement after a change of mode, whose time includes this measurement."""
         session = self._session
         if not session.free:
             session.note_reading(self._codes[mode])
@@ -156,7 +156,7 @@ class LegoSensor:
     def refuse_value(self, number: int) -> NotSimulated | None:
         """Return the error for reading `value{number}` if the sensor has that value in no mode, else None.
 
-        A program that reads it is for a sensor that is not simulated.
+        A program that reads such a value was written for a sensor that is not simulated.
         """
         count = max(len(mode.measure()) for mode in self.modes.values())
         if number < count:
@@ -168,7 +168,7 @@ class LegoSensor:
 
 
 class ColorDevice(LegoSensor):
-    """A colour sensor, with the additional readings of the course's overlay."""
+    """The driver of a colour sensor, with the additional readings of the course's overlay."""
 
     def __init__(self, session: DeviceSession, spec: ColorSensorSpec) -> None:
         profile = session.sim.spec.profile
@@ -214,7 +214,7 @@ class ColorDevice(LegoSensor):
         }
 
     def channels(self) -> tuple[int, int, int]:
-        """Return red, green and blue as integers, free of charge; they are measured once per tick."""
+        """Return red, green and blue as integers, without time passing; they are measured once per tick."""
         sim = self._session.sim
         if sim.tick != self._seen_tick or sim.actions != self._seen_actions:
             self._seen_tick, self._seen_actions = sim.tick, sim.actions
@@ -241,7 +241,7 @@ class ColorDevice(LegoSensor):
         )
 
     def read(self, mode: str) -> tuple[int, int, int]:
-        """Switch to a mode and return red, green and blue as integers. Charges the cost of a reading."""
+        """Switch to a mode, return red, green and blue as integers, and let the time of a reading pass."""
         self.set_mode(mode)
         session = self._session
         if not session.free:
@@ -249,7 +249,7 @@ class ColorDevice(LegoSensor):
         return self.channels()
 
     def switch(self, mode: str) -> None:
-        """Switch to a mode. Its first message still has the values from when the sensor last left this mode."""
+        """Switch to a mode, which at first still returns the values from when the sensor was last in it."""
         if self._stale_ns and not self._session.free:
             self._left_values[self.mode] = self.modes[self.mode].measure()
             self._old_until_ns = self._session.now + self._stale_ns
@@ -260,7 +260,7 @@ class ColorDevice(LegoSensor):
 def ultrasonic_sensor(
     session: DeviceSession, spec: UltrasonicSpec, others: Sequence[LegoSensor]
 ) -> LegoSensor:
-    """Return an ultrasonic sensor.
+    """Return the driver of an ultrasonic sensor.
 
     Args:
         session: The run.
@@ -303,7 +303,7 @@ def ultrasonic_sensor(
 
 
 class GyroDevice(LegoSensor):
-    """A gyro; a calibration resets its angle to 0; a change of mode does so if the profile says so."""
+    """The driver of a gyro. A calibration resets its angle to 0; so does a change of mode if the profile says so."""
 
     def __init__(self, session: DeviceSession, spec: GyroSpec) -> None:
         sim = session.sim
@@ -321,7 +321,7 @@ class GyroDevice(LegoSensor):
             "GYRO-FAS": Mode(lambda: (rate(),), read, form="s16"),
             "GYRO-G&A": Mode(lambda: (angle(), rate()), read, form="s16"),
             "GYRO-CAL": Mode(lambda: (0, 0, 0, 0), read, form="s16"),
-            # The robot stays level.
+            # The robot always stands level, so its tilt is 0.
             "TILT-ANG": Mode(lambda: (0,), read, 0, "deg", "s16"),
             "TILT-RATE": Mode(lambda: (0,), read, 0, "d/s", "s16"),
         }
@@ -329,7 +329,7 @@ class GyroDevice(LegoSensor):
         self.restarts = sim.spec.profile.gyro_restarts and not spec.keeps_angle
 
     def writers(self) -> dict[str, Writer]:
-        """Return the functions of every sensor, and one for the attribute that resets the angle."""
+        """Return the functions for text written to attributes: those of every sensor, and one to reset the angle."""
         return super().writers() | {"direct": lambda _text: self._reset()}
 
     def switch(self, mode: str) -> None:
@@ -344,7 +344,7 @@ class GyroDevice(LegoSensor):
 
 
 def touch_sensor(session: DeviceSession, spec: TouchSpec) -> LegoSensor:
-    """Return a touch sensor."""
+    """Return the driver of a touch sensor."""
     sim = session.sim
 
     def pressed() -> tuple[int]:
@@ -355,7 +355,7 @@ def touch_sensor(session: DeviceSession, spec: TouchSpec) -> LegoSensor:
 
 
 def infrared_sensor(session: DeviceSession, spec: InfraredSpec) -> LegoSensor:
-    """Return an infrared sensor."""
+    """Return the driver of an infrared sensor."""
     sim = session.sim
     world = sim.spec.world
     read = sim.spec.profile.ultrasonic_read_ns

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class DeviceSession(Protocol):
-    """The program's clock and the simulation behind it."""
+    """The program's simulated clock and its simulation, as the simulated devices use them."""
 
     sim: Simulation
     now: int
@@ -41,7 +41,7 @@ class DeviceSession(Protocol):
         """The mat in its current state."""
 
     def spend(self, duration_ns: int, code: int = -1) -> None:
-        """Let simulated time pass, even where calls are free.
+        """Let simulated time pass, even while calls are free of charge.
 
         Args:
             duration_ns: How long.
@@ -51,40 +51,44 @@ class DeviceSession(Protocol):
     def note_reading(self, code: int) -> None:
         """Record that the program has read a value: `code` is one of `engine.runs.readings.READING_CODES`.
 
-        Not to be called where calls are free: there the library reads, not the program.
+        It must not be called while calls are free of charge: then the library reads, not the program.
         """
 
     def charge(self, cost_ns: int) -> None:
-        """Let the time of a call pass, unless calls are free."""
+        """Let the simulated time of a call pass, unless calls are free of charge."""
 
     def command(self) -> None:
-        """Count a call without a cost, so that no loop of such calls can run forever without time passing."""
+        """Count a call that takes no time.
+
+        Many such calls at one time together take a little, so that no loop of them runs forever.
+        """
 
     def wait_for_motor(self, timeout_ns: int, again: bool = False) -> None:
         """Block until a motor ends a move or the timeout is over.
 
         Args:
             timeout_ns: The timeout.
-            again: Whether the caller does nothing afterwards but wait again.
+            again: Whether the caller would only wait again after the timeout, so that a longer wait has the same
+                effect.
         """
 
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
-        """Record a sound and block for `wait_ns`. The other arguments are as in `engine.protocol.Spoke`."""
+        """Record a sound, and block for `wait_ns`; the other arguments are as in `engine.protocol.Spoke`."""
 
     def messages(self) -> list[Any]:
-        """Return all answers of the host's responder; waits for pending ones, without simulated time passing."""
+        """Return all answers of the notebook's responder; waits for pending answers without simulated time."""
 
     def show(self, row: str, stream: Stream) -> None:
         """Record what the brick shows; `row` has the format of `engine.runs.brick_state`."""
 
     def tell_plugged(self, parts: Sequence[PluggedPart]) -> None:
-        """Tell the host which parts have been plugged in."""
+        """Tell the process of the app which parts have been plugged in."""
 
     def describe_part(self, port: str, part: str, role: str = "") -> PluggedPart:
-        """Return a part that is plugged in now; arguments as of `PluggedPart`."""
+        """Return a description of a part that is plugged in now; arguments as of `PluggedPart`."""
 
     def is_tried(self, error: type[Exception]) -> bool:
-        """Return whether the program would catch an error that is raised now: then it only tries what there is."""
+        """Return whether the program would catch an error raised now, so that it only tests which devices there are."""
 
     def spawn_daemon(self, work: Callable[[], None]) -> None:
-        """Run `work` in the background while the program continues."""
+        """Run `work` in a background thread of the program."""

@@ -25,7 +25,7 @@ _TERMINATED = -15
 
 
 class PlayedSound:
-    """Stands for the process that plays a sound while the program continues."""
+    """The process that plays a sound while the program continues, with the methods of `Popen`."""
 
     stdin = stdout = stderr = None
     pid = NO_PID
@@ -37,7 +37,7 @@ class PlayedSound:
         self._until = session.now + length_ns
 
     def poll(self) -> int | None:
-        """Return the exit status; None while it plays."""
+        """Return the exit status; None while the sound plays."""
         self._session.command()
         if self.returncode is None and self._session.now >= self._until:
             self.returncode = 0
@@ -82,7 +82,7 @@ class PlayedSound:
 
 
 class Mixer:
-    """The volume, as `amixer` sets and reports it."""
+    """The volumes of the brick, as `amixer` sets and reports them."""
 
     def __init__(self) -> None:
         self._volumes: dict[str, int] = {}
@@ -120,7 +120,7 @@ class Mixer:
 
 
 class Loudspeaker:
-    """Passes sounds to the session, which records them."""
+    """Passes sounds to the session, which records them and lets their time pass."""
 
     def __init__(self, session: DeviceSession) -> None:
         self._session = session
@@ -132,7 +132,7 @@ class Loudspeaker:
         self._session.speak(heard.text, wait_ns, heard.tones_row, heard.file)
 
     def rest(self, seconds: float) -> None:
-        """Pause silently; replaces the library's `sleep`.
+        """Pause silently for some seconds; replaces the `sleep` of the library's module.
 
         Raises:
             ValueError: `seconds` is negative, with the message of `sleep`.
@@ -144,7 +144,7 @@ class Loudspeaker:
 
 
 def patch_sound_module(session: DeviceSession, module: types.ModuleType, mixer: Mixer) -> None:
-    """Patch `ev3dev2.sound` after its import."""
+    """Patch `ev3dev2.sound` after its import, so that its sounds are recorded and take simulated time."""
     sound: Any = module
     speaker = Loudspeaker(session)
     rebind(sound.Sound, sleep=speaker.rest)
@@ -183,12 +183,12 @@ def _patch_playing(session: DeviceSession, sound: Any, speaker: Loudspeaker) -> 
 
 
 def _patch_songs(sound_class: Any, speaker: Loudspeaker) -> None:
-    """Let the library play a song as one sound; it still parses the notes itself."""
+    """Patch the library to play a song as one sound; it still parses the notes itself."""
     read_song = sound_class.play_song
 
     @wraps(read_song)
     def play_song(self: Any, song: Any, *args: Any, **kwargs: Any) -> Any:
-        # All notes first: computing one later could let other threads play in between.
+        # All notes are read first: reading one later could let other threads play in between.
         notes = list(song)
         speaker.song = []
         try:
@@ -197,7 +197,7 @@ def _patch_songs(sound_class: Any, speaker: Loudspeaker) -> None:
             tones = speaker.song
             speaker.song = None
             if tones:
-                # Played also if a later note is invalid: the library plays the notes before it.
+                # The notes before an invalid one are played, as the library does.
                 heard = song_of(tones)
                 speaker.play(heard, heard.length_ns)
 
@@ -205,7 +205,7 @@ def _patch_songs(sound_class: Any, speaker: Loudspeaker) -> None:
 
 
 def _mend(sound_class: Any, mixer: Mixer) -> None:
-    """Fix two faults of the library for the programs of courses: the volume can be read, and any text can be spoken."""
+    """Fix two faults of the library for the programs of courses: reading the volume, and speaking any text."""
     say = sound_class.speak
 
     @wraps(sound_class.get_volume)

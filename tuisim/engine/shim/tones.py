@@ -43,13 +43,13 @@ class Tone:
 
     @property
     def total_ms(self) -> float:
-        """Duration including the pause."""
+        """Duration of the tone in ms, including the pause after it."""
         return self.length_ms + self.pause_ms
 
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """One sound as it is heard."""
+    """One sound as a user hears it: a text, tones or a file, with its duration."""
 
     text: str
     """Description; in brackets unless it is speech."""
@@ -63,7 +63,7 @@ class Heard:
 
     @property
     def tones_row(self) -> str:
-        """The tones in the format of `engine.protocol.Spoke`."""
+        """The tones as a text in the format of `engine.protocol.Spoke`."""
         rows = [
             [plain(tone.frequency_hz), plain(tone.length_ms), plain(tone.pause_ms)]
             for tone in self.tones
@@ -72,10 +72,10 @@ class Heard:
 
 
 def heard_of(command: str) -> Heard:
-    """Return the sound of a shell command: `espeak`, `aplay`, or else `beep`.
+    """Return the sound of a shell command: of `espeak`, of `aplay`, or else of `beep`.
 
     Raises:
-        ValueError: a quote in it is not closed.
+        ValueError: a quote in the command is not closed.
     """
     program, *words = shlex.split(command.removesuffix(_TO_SPEAKER))
     match os.path.basename(program):
@@ -150,11 +150,11 @@ def _repeated(note: dict[str, float]) -> list[Tone]:
 
 
 def beep_heard(words: Sequence[str]) -> Heard:
-    """Return the sound of `beep` with these arguments."""
+    """Return the sound of the command `beep` with these arguments."""
     try:
         tones = parse_beep(words)
     except ValueError as error:
-        # The real program prints its usage to a stream that nobody reads, and makes no sound.
+        # The real `beep` prints its usage to a stream that nobody reads, and makes no sound.
         return Heard(
             f"[beep refuses {' '.join(words)}: {error}]", 0, (Tone(0.0, 0.0),), refused=True
         )
@@ -174,7 +174,12 @@ def tones_heard(tones: Sequence[Tone]) -> Heard:
 
 
 def file_heard(path: str, folder: str = "") -> Heard:
-    """Return the sound of a sound file; the folder of a relative path is by default the program's working directory."""
+    """Return the sound of a sound file.
+
+    Args:
+        path: The path of the file.
+        folder: The folder of a relative path; by default the program's working directory.
+    """
     import wave
 
     place = os.path.join(folder, path)
@@ -182,7 +187,7 @@ def file_heard(path: str, folder: str = "") -> Heard:
         with wave.open(place, "rb") as file:
             seconds = file.getnframes() / file.getframerate()
     except (wave.Error, EOFError, OSError, ZeroDivisionError) as error:
-        # No error on a brick either: nobody sees the message of the real player.
+        # A brick shows no error either: nobody sees the message of the real player.
         return Heard(
             f"[cannot play {path}: {str(error) or 'it is cut off'}]",
             0,
@@ -196,7 +201,7 @@ def file_heard(path: str, folder: str = "") -> Heard:
 
 
 def speech_heard(text: str, words_a_minute: str = "") -> Heard:
-    """Return the sound of a spoken text; the default of `espeak` applies if `words_a_minute` is not a number."""
+    """Return the sound of a spoken text; if `words_a_minute` is not a number, the default speed of `espeak` applies."""
     try:
         speed = min(max(int(words_a_minute), SLOWEST_WPM), FASTEST_WPM)
     except ValueError:
@@ -210,7 +215,7 @@ def _speech(text: str, words: list[str]) -> Heard:
     try:
         options = dict(getopt.gnu_getopt(words, "a:s:v:p:g:k:l:b:f:w:z", ["stdout"])[0])
     except getopt.GetoptError:
-        # Without its options, the text is spoken all the same.
+        # With wrong options the text is spoken all the same, with the default options.
         options = {}
     return speech_heard(text, options.get("-s", ""))
 

@@ -11,7 +11,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Wait(Enum):
-    """What the program waits for while it is inside a call."""
+    """What a program waits for inside a call of Python or of the library."""
 
     SLEEP = auto()
     FILES = auto()
@@ -33,7 +33,7 @@ _MARKED: dict[CodeType, Wait] = {}
 
 
 def waits_for(what: Wait) -> Callable[[Function], Function]:
-    """Return a decorator that marks what calls of a function wait for, and returns the function unchanged."""
+    """Return a decorator that marks a function as one in whose calls a program waits; the function stays unchanged."""
 
     def mark(function: Function) -> Function:
         _MARKED[function.__code__] = what

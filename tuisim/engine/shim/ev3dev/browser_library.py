@@ -36,7 +36,7 @@ def speak_as_browser(session: DeviceSession, motor: Any, brick: DeviceFiles) -> 
 
     def __init__(self: Any, *args: Any, **named: Any) -> None:  # noqa: N807
         make(self, *args, **named)
-        # As in the browser simulator: an integer quotient, without a fraction.
+        # The browser simulator computes an integer quotient here, without its fraction.
         self.max_rps = float(self.max_speed // self.count_per_rot)
         self.max_rpm, self.max_dps = self.max_rps * 60, self.max_rps * 360
         self.max_dpm = self.max_rpm * 360
@@ -66,7 +66,7 @@ def _wait(session: DeviceSession, library: str) -> Callable[..., bool]:
         return session.now / MS / 1000
 
     def sleep_until_motor_ends() -> None:
-        """Sleep until the first poll after a motor ends, or until the next poll if other threads may interfere."""
+        """Sleep until the first poll after a motor ends a move; with other threads, only until the next poll."""
         begun = session.now
         session.wait_for_motor(look_ns, again=True)
         if rest_ns := (begun - session.now) % look_ns:
@@ -154,7 +154,7 @@ def _block(motor: Any, one: Any) -> None:
 
 def _patch_sets(motor: Any) -> None:
     def __init__(self: Any, motor_specs: Mapping[str, Any], desc: str | None = None) -> None:  # noqa: N807
-        # The order of the motors is the order in which their ends are waited for.
+        # The library waits for the motors one after another, in this order.
         self.motors = OrderedDict(
             (port, motor_class(port)) for port, motor_class in motor_specs.items()
         )

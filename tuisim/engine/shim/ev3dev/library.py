@@ -23,19 +23,19 @@ from tuisim.engine.shim.waits import Wait, waits_for
 
 
 class Patience:
-    """Remembers what the library waits for when it calls `poll`, as the call itself does not show it."""
+    """Remembers what the library waits for while it calls `poll`: the call itself does not say it."""
 
     def __init__(self) -> None:
         self.until_motors_stop = 0
         """Above 0 while the library polls only to check again whether a motor moves."""
 
     def patient(self, function: Callable[..., bool]) -> Callable[..., bool]:
-        """Return `wait_until_not_moving` with a note for its polls that it waits only for motors to stop."""
+        """Return a wrapper of `wait_until_not_moving` that marks its polls as waits for motors to stop."""
 
         @wraps(function)
         def wait_until_not_moving(motor: Any, timeout: float | None = None) -> bool:
             if timeout is not None:
-                # With a timeout the library also checks the time after each poll.
+                # With a timeout the library also checks the time after each poll, so the polls must stay short.
                 return function(motor, timeout)
             self.until_motors_stop += 1
             try:
@@ -47,7 +47,7 @@ class Patience:
 
 
 class MotorPoll:
-    """Replaces `select.poll` in the library: waits for a motor in simulated time."""
+    """Replaces `select.poll` in the library: waits in simulated time until a motor ends a move."""
 
     def __init__(self, session: DeviceSession, patience: Patience) -> None:
         self._session = session
@@ -58,10 +58,10 @@ class MotorPoll:
 
     @waits_for(Wait.MOTOR)
     def poll(self, timeout_ms: float | None = None) -> list[Any]:
-        """Block until a motor ends a move or the timeout is over."""
+        """Block until a motor ends a move or the timeout is over; return an empty list."""
         timeout_ns = int((1000 if timeout_ms is None else timeout_ms) * MS)
         sim = self._session.sim
-        # A running motor with target speed 0 never ends its move: repeated polling lets it count as stalled.
+        # A running motor with target speed 0 never ends its move: only repeated polls show that it is stalled.
         target_zero = any(motor.mode and not motor.aim_dps for motor in sim.motors)
         patient = self._patience.until_motors_stop > 0 and not (target_zero or sim.notices)
         self._session.wait_for_motor(timeout_ns, again=patient)
@@ -71,7 +71,7 @@ class MotorPoll:
 def connect(
     session: DeviceSession, brick: DeviceFiles, plugs: Plugs, hint: Callable[[str], str]
 ) -> None:
-    """Patch `ev3dev2` before any of its submodules is imported.
+    """Patch `ev3dev2` before any of its submodules is imported, so that it uses the simulated devices.
 
     Args:
         session: The run.
@@ -188,7 +188,10 @@ def _patch_device(device_class: Any, brick: DeviceFiles) -> None:
 
 
 def _charge_memory(device_class: Any, session: DeviceSession) -> None:
-    """Charge the time of the library's own code for attributes that it has stored, if the profile has such a time."""
+    """Let reads of attributes that the library has stored take the time of its own code.
+
+    Nothing changes if the profile has no such time.
+    """
     cost_ns = session.sim.spec.profile.cached_read_ns
     if not cost_ns:
         return
@@ -206,7 +209,7 @@ def _charge_memory(device_class: Any, session: DeviceSession) -> None:
 
 
 def _set_directly(motor_class: Any, brick: DeviceFiles) -> None:
-    """Replace the setters of speed and command, which control loops call most, by shorter ones."""
+    """Replace the setters of speed and command by faster ones, because control loops call these most."""
     devices = brick.by_path
 
     def set_speed(self: Any, value: Any) -> None:
@@ -231,7 +234,7 @@ def _set_directly(motor_class: Any, brick: DeviceFiles) -> None:
 def patch_motor_module(
     session: DeviceSession, module: types.ModuleType, brick: DeviceFiles, plugs: Plugs
 ) -> None:
-    """Patch `ev3dev2.motor` after its import."""
+    """Patch `ev3dev2.motor` after its import, so that its waits and its setters use simulated time and devices."""
     motor: Any = module
     _set_directly(motor.Motor, brick)
     patience = Patience()
@@ -247,7 +250,7 @@ def patch_motor_module(
 
 
 def _patch_tank(motor: Any, plugs: Plugs) -> None:
-    """Let the motors of a `MoveTank` become the robot's wheels if they have to be plugged in."""
+    """Patch `MoveTank` so that its motors become the robot's wheels if they have to be plugged in."""
     make = motor.MoveTank.__init__
     signature = inspect.signature(make)
 
@@ -266,7 +269,7 @@ def _patch_tank(motor: Any, plugs: Plugs) -> None:
 
 
 def refuse_values(sensor: Any, plugs: Plugs) -> None:
-    """Let `value` of a class of sensors raise NotSimulated for a number that the sensor has in no mode."""
+    """Patch `value` of a class of sensors: for a number that the sensor has in no mode, it raises NotSimulated."""
     read = sensor.value
 
     @wraps(read)
@@ -284,7 +287,7 @@ def refuse_values(sensor: Any, plugs: Plugs) -> None:
 def patch_sensor_module(
     session: DeviceSession, module: types.ModuleType, brick: DeviceFiles, plugs: Plugs
 ) -> None:
-    """Patch `ev3dev2.sensor` after its import: its own checks of the mode cost nothing."""
+    """Patch `ev3dev2.sensor` after its import: the library's own checks of the mode take no time."""
     devices = brick.by_path
     sensor: Any = module
 

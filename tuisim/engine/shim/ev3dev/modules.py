@@ -46,7 +46,7 @@ _MORE_PORTS = range(5, 13)
 
 
 class _Unsimulated:
-    """A part of the simulator Gears that is not simulated: programs can create it, as they all do, but not use it."""
+    """A part of the simulator Gears that is not simulated: programs can create an object of it, but not use it."""
 
     def __init__(self, *_given: object, **_named: object) -> None: ...
 
@@ -61,7 +61,7 @@ class _Unsimulated:
 
 
 def virtual_module(session: DeviceSession) -> types.ModuleType:
-    """Return the module of Gears with a pen and the true place of the robot."""
+    """Return the module of the simulator Gears that has a pen and the true place of the robot."""
     module = types.ModuleType(
         NAME, "Parts of the simulator Gears: a pen, and the true place of the robot."
     )
@@ -76,7 +76,7 @@ def virtual_module(session: DeviceSession) -> types.ModuleType:
 
         @property
         def position(self) -> list[float]:
-            """x, y and altitude in cm."""
+            """The robot's x, y and altitude in cm."""
             session.charge(cost_ns)
             return [sim.pose.x_mm / 10, sim.pose.y_mm / 10, 0.0]
 
@@ -91,12 +91,12 @@ def virtual_module(session: DeviceSession) -> types.ModuleType:
             self.address = address
 
         def down(self) -> None:
-            """Draw from now on."""
+            """Lower the pen, which draws from now on."""
             session.charge(cost_ns)
             obey(sim, session.now, 0, Call.MOVE_PEN, 1.0)
 
         def up(self) -> None:
-            """Draw no longer."""
+            """Lift the pen, which then draws no more."""
             session.charge(cost_ns)
             obey(sim, session.now, 0, Call.MOVE_PEN, 0.0)
 
@@ -124,7 +124,7 @@ AROUND: Mapping[str, Callable[[], AbstractContextManager[None]]] = dict.fromkeys
 def finishers(
     session: DeviceSession, built: BuiltBrick, plugs: Plugs, terminal: Terminal, mixer: Mixer
 ) -> dict[str, Callable[[types.ModuleType], None]]:
-    """Return the functions to call on modules after their import, by the module's name."""
+    """Return the functions that patch modules of the library after their import, by the module's name."""
     brick = built.files
     colors = built.colors
     is_brick = not session.sim.spec.profile.mend_library
@@ -150,7 +150,7 @@ def finishers(
 
 
 def install(session: DeviceSession, built: BuiltBrick, plugs: Plugs) -> None:
-    """Let a program import the libraries."""
+    """Make the libraries for ev3dev importable by the program, with the simulated devices behind them."""
     sys.meta_path.insert(0, refuse_other((PYBRICKS,), Library.EV3DEV2))
     sys.meta_path.append(MissingLibrary())
     sys.meta_path.append(HardwareFinder(Library.EV3DEV2))
@@ -162,21 +162,27 @@ def install(session: DeviceSession, built: BuiltBrick, plugs: Plugs) -> None:
     sys.modules.update(evdev_modules(session))
 
 
-# | in ColorSensor | value |
-# | --- | --- |
-# | reflected_light_intensity | int(red), 0 … 255, if the profile says so (the library: 0 … 100) |
-# | reflected_light_intensity_pc | 100 · int(red) / 255 |
-# | full_reflected_light_intensity | 100 · (int(red) + int(green) + int(blue)) / 765 |
-# | red, green, blue | channels as integers, 0 … 255, if the profile says so (the library: 0 … 1020, 300 on white) |
-
-
 def patch_lego_module(
     session: DeviceSession,
     module: types.ModuleType,
     brick: DeviceFiles,
     colors: dict[str, ColorDevice],
 ) -> None:
-    """Add the course's properties to `ev3dev2.sensor.lego`; the colour sensors are given by device path."""
+    """Add the course's properties to the classes of `ev3dev2.sensor.lego`.
+
+    The properties of `ColorSensor` are:
+
+    - `reflected_light_intensity`: int(red), 0 … 255, if the profile says so (in the library: 0 … 100)
+    - `reflected_light_intensity_pc`: 100 · int(red) / 255
+    - `full_reflected_light_intensity`: 100 · (int(red) + int(green) + int(blue)) / 765
+    - `red`, `green`, `blue`: integers, 0 … 255, if the profile says so (in the library: 0 … 1020, 300 on white)
+
+    Args:
+        session: The run.
+        module: The module.
+        brick: The devices.
+        colors: The colour sensors, by the path of their device.
+    """
     lego: Any = module
     color_sensor = lego.ColorSensor
 
@@ -203,7 +209,7 @@ def patch_lego_module(
 
 
 def glue_module(session: DeviceSession) -> types.ModuleType:
-    """Return the module `ev3dev2_glue` that course programs import."""
+    """Return the module `ev3dev2_glue`, which programs of the course import."""
     glue = types.ModuleType("ev3dev2_glue", "Simulated time and messages, as the course has them.")
 
     def get_clock() -> float:
@@ -218,7 +224,7 @@ def glue_module(session: DeviceSession) -> types.ModuleType:
     def pyState() -> dict[str, list[Any]]:
         """Return all answers of a notebook's responder, oldest first; empty without a responder.
 
-        The responder has answered every printed line by then. No simulated time passes.
+        The call waits, without simulated time, until the responder has answered every printed line.
         """
         return {"messages": session.messages()}
 

@@ -24,13 +24,13 @@ INSTALL = "pip install 'tuisim[ev3dev]'"
 
 
 class MissingLibrary:
-    """Says how to install `ev3dev` when a program imports it; the last finder, so an installed one comes first."""
+    """Module finder whose error says how to install `ev3dev`; it is the last, so an installed library comes first."""
 
     def find_spec(self, fullname: str, *_: object) -> importlib.machinery.ModuleSpec | None:
-        """Return None for other modules than the library.
+        """Return None for other modules than `ev3dev`.
 
         Raises:
-            ModuleNotFoundError: it is the library.
+            ModuleNotFoundError: the module is `ev3dev`.
         """
         if fullname == NAME:
             raise ModuleNotFoundError(f"No module named {NAME!r}: {INSTALL} installs it", name=NAME)
@@ -39,13 +39,16 @@ class MissingLibrary:
 
 @contextmanager
 def surroundings() -> Iterator[None]:
-    """Give the library, while its modules are imported, what later versions of Python and setuptools no longer have."""
+    """Provide `pkg_resources`, and hide syntax warnings, while modules of the library are imported.
+
+    Later versions of Python and setuptools would fail or warn at the import.
+    """
     missing = "pkg_resources" not in sys.modules
     if missing:
         sys.modules["pkg_resources"] = _resources()
     try:
         with warnings.catch_warnings():
-            # Its patterns are no raw strings, of which later versions of Python warn.
+            # The library's regular expressions are not raw strings: later versions of Python warn about these.
             warnings.simplefilter("ignore")
             yield
     finally:
@@ -54,7 +57,7 @@ def surroundings() -> Iterator[None]:
 
 
 def _resources() -> types.ModuleType:
-    """Return a module with what the library uses of `pkg_resources`, which later versions of setuptools lack."""
+    """Return a replacement of `pkg_resources` with the two functions that the library uses."""
     module = types.ModuleType("pkg_resources")
 
     def folder(package: str) -> str:
@@ -90,7 +93,7 @@ def finish_core(
             try:
                 return access(self, *args)
             except Exception as error:
-                # The library raises this very class for a device that is not connected.
+                # The library raises plain `Exception` for a device that is not connected.
                 class_name = getattr(self, "SYSTEM_CLASS_NAME", "")
                 if not self.connected and (
                     refused := refused_device(self, class_name, type(error))
@@ -112,7 +115,7 @@ def finish_core(
 
 
 def _look_up(look_up: Callable[..., None], plugs: Plugs) -> Callable[..., None]:
-    """Return the library's constructor of a device, changed so that it plugs in a missing one."""
+    """Return the library's constructor of a device, changed so that it plugs in a missing device."""
 
     @wraps(look_up)
     def __init__(self: Any, class_name: str, *args: Any, **kwargs: Any) -> None:  # noqa: N807
@@ -125,7 +128,7 @@ def _look_up(look_up: Callable[..., None], plugs: Plugs) -> Callable[..., None]:
 
 
 def _run_by_duty_cycle(motor: Any) -> None:
-    """Let `run_forever` turn a motor by its duty cycle if no speed was ever written, as the kernel of 2015 did.
+    """Patch `run_forever`: if no speed was ever set, it runs by the duty cycle, as under the kernel of 2015.
 
     Args:
         motor: The class of motors.

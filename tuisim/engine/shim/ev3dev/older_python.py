@@ -42,7 +42,7 @@ FINISHERS: Mapping[str, Callable[[types.ModuleType], None]] = {
 
 
 class _MicroPython(MicroPythonFinder):
-    """Finds MicroPython's forms of Python's modules, such as `utime`.
+    """Module finder for MicroPython's forms of Python's modules, such as `utime`.
 
     Args:
         session: The program's clock.
@@ -60,7 +60,7 @@ class _MicroPython(MicroPythonFinder):
 
 
 def install(session: DeviceSession) -> None:
-    """Let a program use what the brick's Python has besides modules of `FINISHERS`, without warnings of a later one."""
+    """Give a program the names and modules that only the brick's older Python has, and hide warnings about them."""
     vars(time)["clock"] = time.perf_counter
     warnings.filterwarnings("ignore", category=DeprecationWarning)
     sys.meta_path.append(_MicroPython(session))

@@ -77,7 +77,7 @@ NAMES: Mapping[str, str] = {
 
 
 def numbered(names: str) -> Iterator[tuple[str, int]]:
-    """Yield names with their numbers: `NAME=5` gives its own, other names count on from the one before."""
+    """Yield the names in a text with their numbers: that of `NAME=5`, or else one more than the number before."""
     number = -1
     for word in names.split():
         name, _, given = word.partition("=")
@@ -86,7 +86,7 @@ def numbered(names: str) -> Iterator[tuple[str, int]]:
 
 
 def codes_module(name: str) -> types.ModuleType:
-    """Return the module that has the number of each name, and for each group a table of names by number."""
+    """Return the module with the number of each name of a code, and a table of names by number for each group."""
     module = types.ModuleType(name, "Types and codes of input events.")
     codes: dict[str, int] = {}
     tables: dict[str, dict[int, str | list[str]]] = {}
@@ -96,7 +96,7 @@ def codes_module(name: str) -> types.ModuleType:
             full = codes[f"{group}_{word}"] = number
             known = table.get(full)
             told = f"{group}_{word}"
-            # Of a number with several names, evdev lists all.
+            # If a number has several names, evdev gives a list of them.
             table[full] = (
                 told if known is None else [*([known] if isinstance(known, str) else known), told]
             )
@@ -116,21 +116,21 @@ ONLY_BUTTONS = (
 
 @dataclass(frozen=True, slots=True)
 class SynEvent:
-    """An event that separates others; base of the classes of events that `categorize` returns."""
+    """An event that separates others; base class of the events that `categorize` returns."""
 
     event: InputEvent
 
 
 class RelEvent(SynEvent):
-    """A movement, such as of a mouse."""
+    """A relative movement, such as that of a mouse."""
 
 
 class AbsEvent(SynEvent):
-    """A position, such as of a stick."""
+    """An absolute position, such as that of a joystick."""
 
 
 class KeyEvent(SynEvent):
-    """A press or release."""
+    """A press or release of a key."""
 
     key_up, key_down, key_hold = 0, 1, 2
 
@@ -146,7 +146,7 @@ class KeyEvent(SynEvent):
 
     @property
     def keycode(self) -> str | list[str]:
-        """The names of the key."""
+        """The name of the key; a list if the key has several names."""
         names: str | list[str] = _CODES.keys.get(self.event.code, "?")
         return names
 
@@ -161,7 +161,7 @@ _KINDS = {
 
 
 def categorize(event: InputEvent) -> SynEvent | InputEvent:
-    """Return an event as an object of the class for its type; itself if its type has no class."""
+    """Return an event as an object of the class for its type; the event itself if its type has no class."""
     kind = _KINDS.get(event.type)
     return event if kind is None else kind(event)
 
@@ -195,18 +195,18 @@ class InputDevice:
         return {EV_KEY: codes}
 
     def active_keys(self) -> list[int]:
-        """Return the key codes of the pressed buttons. Charges the cost of a read."""
+        """Return the key codes of the pressed buttons, and let the time of a read pass."""
         return [KEY_CODES[name] for name in read_pressed(self._session)]
 
     def _changes(self) -> list[InputEvent]:
-        """Return the events since the last call."""
+        """Return the button events since the last call."""
         now = self._session.pressed
         before = self._seen
         self._seen = now
         return changes(before, now, self._session.now)
 
     def read_one(self) -> InputEvent | None:
-        """Return the next event; None if there is none. Charges the cost of a read.
+        """Return the next event, or None if there is none, and let the time of a read pass.
 
         A button that was pressed and released since the last read is not noticed.
         """
@@ -215,7 +215,7 @@ class InputDevice:
         return self._events.pop(0) if self._events else None
 
     def read(self) -> Iterator[InputEvent]:
-        """Return the events since the last read. Charges the cost of a read.
+        """Return the events since the last read, and let the time of a read pass.
 
         Raises:
             BlockingIOError: there are none.
@@ -229,7 +229,7 @@ class InputDevice:
 
     @waits_for(Wait.BUTTON_EVENT)
     def read_loop(self) -> Iterator[InputEvent]:
-        """Yield events forever, blocking between them; buttons that are already pressed yield none."""
+        """Yield events forever, and block until each one comes; buttons that are already pressed yield none."""
         self._seen = self._session.pressed
         while True:
             self._session.note_reading(READING_CODE)
@@ -248,7 +248,7 @@ class InputDevice:
             await asyncio.sleep(POLL_NS / NS_PER_S)
 
     def fileno(self) -> NoReturn:
-        """Refuse to be waited for as a file.
+        """Refuse to give a descriptor, with which a program could wait for events.
 
         Raises:
             NotSimulated: always.
@@ -275,7 +275,7 @@ class InputDevice:
 
 
 class UInput:
-    """Refuses to make an input device.
+    """Refuses to create an input device.
 
     Raises:
         NotSimulated: always.
@@ -286,7 +286,7 @@ class UInput:
 
 
 class _Looked:
-    """Remembers whether the program has asked for a list of input devices."""
+    """Remembers whether the program has listed the input devices."""
 
     def __init__(self) -> None:
         self.for_devices = False
@@ -296,7 +296,10 @@ _looked = _Looked()
 
 
 def point_at_gamepads(error: BaseException) -> None:
-    """Note on an error that only the buttons exist, if the program has listed devices, perhaps for a gamepad."""
+    """Add a note to an error that only the brick's buttons exist, if the program has listed devices.
+
+    Such a program probably looks for a gamepad.
+    """
     if _looked.for_devices and isinstance(
         error, NameError | LookupError | AttributeError | StopIteration | TypeError
     ):
@@ -314,7 +317,7 @@ def evdev_modules(session: DeviceSession) -> dict[str, types.ModuleType]:
 
     def list_devices(input_device_dir: str = "/dev/input") -> list[str]:
         """Return the paths of the input devices."""
-        # A call from `ev3dev2.button` looks for the buttons, not for a gamepad.
+        # A call from `ev3dev2.button` looks for the buttons: only other calls can be a search for a gamepad.
         if sys._getframe(1).f_globals.get("__name__") != "ev3dev2.button":
             _looked.for_devices = True
             session.note_reading(READING_CODES[GAMEPAD_PORT, "list"])

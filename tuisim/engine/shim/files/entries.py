@@ -26,7 +26,7 @@ ALWAYS_READY = select.POLLIN | select.POLLOUT
 
 @dataclass(slots=True)
 class OpenFile:
-    """One device file that the program has opened."""
+    """One device file that the program has opened, with its descriptor and position."""
 
     path: str
     file: DeviceFile
@@ -50,7 +50,7 @@ class Folder:
 
 
 class DeviceFile:
-    """A file of the tree.
+    """A file of the brick that the program can open, such as an attribute of a device.
 
     Args:
         path: Its path.
@@ -64,10 +64,10 @@ class DeviceFile:
         self.size = size
 
     def begin(self, opened: OpenFile) -> None:
-        """Prepare for reading and writing; called when the program opens the file."""
+        """Prepare the file for reading and writing; called when the program opens it."""
 
     def read(self, opened: OpenFile, size: int) -> bytes:
-        """Read up to `size` bytes, all for a negative size.
+        """Return up to `size` bytes of the file, all bytes for a negative size.
 
         Raises:
             OSError: the driver's error.
@@ -105,10 +105,10 @@ class DeviceFile:
 
 
 class AttributeFile(DeviceFile):
-    """An attribute of a device.
+    """A file of `/sys/class` that has the value of one attribute of a device.
 
-    A read at the start of the file reads the value and charges its cost; further reads return the rest of the same
-    text.
+    A read at the start of the file reads the value, and takes the time of a read; further reads return the rest of the
+    same text.
 
     Args:
         path: Its path.
@@ -125,12 +125,12 @@ class AttributeFile(DeviceFile):
         self._name = name
 
     def begin(self, opened: OpenFile) -> None:
-        """Note that the program uses the device, unless the attribute only identifies it."""
+        """Remember that the program uses the device, unless the attribute only identifies it."""
         if self._name not in IDENTITY:
             self._device.is_opened = True
 
     def read(self, opened: OpenFile, size: int) -> bytes:
-        """Read the value as text with an end of line; a value of bytes as it is."""
+        """Return the value as text with an end of line; a value of bytes is returned unchanged."""
         if not opened.at:
             try:
                 value = self._device.read(self._name)
@@ -143,7 +143,7 @@ class AttributeFile(DeviceFile):
         return part
 
     def write(self, opened: OpenFile, data: bytes) -> int:
-        """Set the attribute at once."""
+        """Set the attribute immediately, without a buffer; return the number of bytes."""
         if data:
             try:
                 self._device.write(self._name, data.decode("latin-1").removesuffix("\n"))
@@ -164,20 +164,20 @@ class AttributeFile(DeviceFile):
         return ALWAYS_READY
 
     def _state(self) -> object:
-        """Return a value that differs after a change; None if the attribute does not report changes."""
+        """Return a value that differs after each change; None if the attribute does not report changes."""
         look = self._device.notifying.get(self._name)
         return None if look is None else (self._device.commands, look())
 
 
 class TextFile(DeviceFile):
-    """A file whose text never changes; reading it costs nothing."""
+    """A file whose text never changes; reading it takes no simulated time."""
 
     def __init__(self, path: str, text: str) -> None:
         self._data = text.encode()
         super().__init__(path, stat.S_IFREG | READ_MODE, len(self._data))
 
     def read(self, opened: OpenFile, size: int) -> bytes:
-        """Read text."""
+        """Return up to `size` bytes of the text."""
         part = self._data[opened.at :] if size < 0 else self._data[opened.at : opened.at + size]
         opened.at += len(part)
         return part
@@ -189,7 +189,7 @@ def refuse_ioctl(path: str, request: int, hint: str) -> NotSimulated:
 
 
 def _as_the_kernel(error: OSError, path: str) -> OSError:
-    """Return a driver's error with the kernel's text for its number; what else the driver says becomes a note."""
+    """Return a driver's error with the kernel's text for its number, and the driver's own text as a note."""
     number = error.errno or errno.EIO
     told = OSError(number, os.strerror(number))
     if len(error.args) > 1 and str(error.args[1]) not in path:

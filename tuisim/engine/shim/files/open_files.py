@@ -20,13 +20,13 @@ _real_file = io.FileIO
 
 
 class OpenFiles:
-    """The device files that the program has open, by descriptor."""
+    """The device files that the program has opened, by descriptor."""
 
     def __init__(self) -> None:
         self.by_fd: dict[int, OpenFile] = {}
 
     def opened(self, file: Any) -> OpenFile | None:
-        """Return the opened device file behind a descriptor or a file object; None if it is no device file."""
+        """Return the device file behind a descriptor or a file object; None if it is not a device file."""
         if not self.by_fd:
             return None
         if not isinstance(file, int):
@@ -37,7 +37,7 @@ class OpenFiles:
         return self.by_fd.get(file)
 
     def open(self, path: str, entry: DeviceFile | Folder, flags: int) -> OpenFile:
-        """Open a device file.
+        """Open a device file, and return it with a new descriptor.
 
         Args:
             path: As the program names it.
@@ -45,7 +45,7 @@ class OpenFiles:
             flags: As of `os.open`.
 
         Raises:
-            OSError: it is a folder, or its permissions or the flags forbid it.
+            OSError: the entry is a folder, or its permissions or the flags forbid opening it.
         """
         if isinstance(entry, Folder):
             raise _error(errno.EISDIR, path)
@@ -65,26 +65,26 @@ class OpenFiles:
         return opened
 
     def forget(self, fd: int) -> None:
-        """Forget a descriptor that the program has closed."""
+        """Remove a descriptor that the program has closed."""
         self.by_fd.pop(fd, None)
 
 
 def read(opened: OpenFile, size: int) -> bytes:
-    """Read from a device file, as `os.read`."""
+    """Return bytes of a device file, as `os.read` does."""
     if not opened.readable:
         raise _error(errno.EBADF)
     return opened.file.read(opened, size)
 
 
 def write(opened: OpenFile, data: Any) -> int:
-    """Write to a device file, as `os.write`."""
+    """Write bytes to a device file, and return their number, as `os.write` does."""
     if not opened.writable:
         raise _error(errno.EBADF)
     return opened.file.write(opened, bytes(data))
 
 
 def seek(opened: OpenFile, position: int, whence: int) -> int:
-    """Move the position of a device file, as `os.lseek`."""
+    """Move the position of a device file, and return it, as `os.lseek` does."""
     base = {os.SEEK_SET: 0, os.SEEK_CUR: opened.at, os.SEEK_END: opened.file.size}.get(whence)
     if base is None or base + position < 0:
         raise _error(errno.EINVAL)
@@ -112,12 +112,12 @@ class DeviceIO(_real_file):
         vars(self)["name"] = name
 
     def seekable(self) -> bool:
-        """Return whether the file has positions."""
+        """Return whether the file has a position that can be moved."""
         self._checkClosed()
         return True
 
     def seek(self, position: int, whence: int = 0, /) -> int:
-        """Move the position."""
+        """Move the position of the file, and return it."""
         self._checkClosed()
         return seek(self._opened, position, whence)
 
@@ -132,7 +132,7 @@ class DeviceIO(_real_file):
         return self._opened.at if size is None else size
 
     def read(self, size: int | None = -1, /) -> Any:
-        """Read bytes; None if there are none and reading must not block."""
+        """Return bytes of the file; None if there are none and reading must not block."""
         self._checkClosed()
         if not self.readable():
             raise io.UnsupportedOperation("File not open for reading")
@@ -142,11 +142,11 @@ class DeviceIO(_real_file):
             return None
 
     def readall(self) -> Any:
-        """Read all bytes."""
+        """Return all bytes of the file from its position on."""
         return self.read()
 
     def readinto(self, buffer: Any, /) -> Any:
-        """Read into a buffer."""
+        """Read bytes into a buffer, and return their number; None if there are none and reading must not block."""
         view = memoryview(buffer).cast("B")
         data = self.read(len(view))
         if data is None:
@@ -155,7 +155,7 @@ class DeviceIO(_real_file):
         return len(data)
 
     def write(self, data: Any, /) -> int:
-        """Write bytes; they reach the device at once."""
+        """Write bytes to the device immediately, and return their number."""
         self._checkClosed()
         if not self.writable():
             raise io.UnsupportedOperation("File not open for writing")
@@ -170,7 +170,7 @@ class DeviceIO(_real_file):
 
 @cache
 def _in_turn(kind: Any) -> Any:
-    """Return a buffered class whose calls take turns in simulated time.
+    """Return a subclass of a buffered file class that lets only one thread of the program in at a time.
 
     The class's own lock knows nothing of the program's simulated threads: a thread that waits for it would wait for
     ever if the thread inside lets time pass in the driver.
@@ -187,7 +187,7 @@ def _in_turn(kind: Any) -> Any:
         return call
 
     def __init__(self: Any, *given: Any) -> None:  # noqa: N807
-        # Not earlier: its locks are the simulated ones only when threads are patched.
+        # Imported late: only after threads are patched, its locks wait in simulated time.
         from threading import RLock
 
         self._turn = RLock()
@@ -222,7 +222,7 @@ def file_object(
     errors: str | None,
     newline: str | None,
 ) -> Any:
-    """Return the object that `open` returns for a device file; it decodes and buffers as for any file."""
+    """Return the object that `open` returns for a device file, which decodes and buffers as for any other file."""
     if "b" in mode and buffering == 0:
         return raw
     if buffering == 0:

@@ -43,7 +43,7 @@ _REFUSED = ("dup2", "readv", "writev", "preadv", "pwritev", "splice")
 
 
 class DeviceEntry:
-    """One entry of a folder of the tree, as `os.scandir` yields them."""
+    """One entry of a folder of the brick, as `os.scandir` yields it."""
 
     def __init__(self, tree: DeviceTree, folder: str, name: str, as_bytes: bool) -> None:
         path = os.path.join(folder, name)
@@ -58,34 +58,34 @@ class DeviceEntry:
         return f"<DirEntry {self.name!r}>"
 
     def inode(self) -> int:
-        """Return the number that `os.stat` reports."""
+        """Return the number of the entry that `os.stat` reports."""
         assert self._found is not None
         return _inode(self._found)
 
     def is_dir(self, *, follow_symlinks: bool = True) -> bool:
-        """Return whether it is a folder."""
+        """Return whether the entry is a folder."""
         return isinstance(self._found, Folder)
 
     def is_file(self, *, follow_symlinks: bool = True) -> bool:
-        """Return whether it is a regular file."""
+        """Return whether the entry is a regular file."""
         return isinstance(self._found, DeviceFile) and stat.S_ISREG(self._found.mode)
 
     def is_symlink(self) -> bool:
-        """Return False: the links of a brick are folders here."""
+        """Return False: the symbolic links of a real brick are folders here."""
         return False
 
     def is_junction(self) -> bool:
-        """Return False."""
+        """Return False: junctions exist only on Windows."""
         return False
 
     def stat(self, *, follow_symlinks: bool = True) -> os.stat_result:
-        """Return the result of `os.stat`."""
+        """Return the result of `os.stat` for the entry."""
         assert self._found is not None
         return _status(self._found)
 
 
 class Entries:
-    """The iterator that `os.scandir` returns."""
+    """The iterator over a folder of the brick that `os.scandir` returns."""
 
     def __init__(self, entries: Iterator[DeviceEntry]) -> None:
         self._entries = entries
@@ -202,7 +202,7 @@ class FilePatches:
         return self._raw(file, mode, closefd)
 
     def _raw(self, file: Any, mode: str, closefd: bool) -> DeviceIO | None:
-        """Return the opened device file; None if it is no device file, or Python's own function has to refuse it."""
+        """Return the opened device file; None for another file, or if Python's own function has to raise an error."""
         kinds = [kind for kind in mode if kind in _FLAGS]
         if len(kinds) != 1 or set(mode) - {*_FLAGS, "b", "+"}:
             return None
@@ -288,7 +288,7 @@ class FilePatches:
         replace(os, "ftruncate", ftruncate)
 
     def _refuse_others(self) -> None:
-        """Refuse the functions of `os` that are not replaced if they get the descriptor of a device file."""
+        """Patch the remaining functions of `os`, so that they refuse the descriptor of a device file."""
         by_fd = self._files.by_fd
 
         def guarded(name: str, real: Callable[..., Any]) -> Callable[..., Any]:
@@ -377,7 +377,7 @@ class FilePatches:
         self._replace(os, "scandir", scandir)
 
     def finish_glob(self, module: Any) -> None:
-        """Patch `glob` after its import: in later versions of Python its classes keep the original `os.scandir`."""
+        """Patch `glob` after its import: in later versions of Python, its classes keep the original `os.scandir`."""
         for held in list(vars(module).values()):
             if isinstance(held, type) and "scandir" in vars(held):
                 held.scandir = staticmethod(os.scandir)  # type: ignore[attr-defined]
@@ -408,7 +408,7 @@ class FilePatches:
 
 @contextmanager
 def _moved_to(opened: OpenFile, offset: int) -> Iterator[OpenFile]:
-    """Set the position of a file in the block, and restore it afterwards."""
+    """Return a context in which the position of a file is `offset`; at its end, the old position is restored."""
     before = opened.at
     opened.at = offset
     try:
@@ -418,7 +418,7 @@ def _moved_to(opened: OpenFile, offset: int) -> Iterator[OpenFile]:
 
 
 def _or_refuse(tree: DeviceTree, path: Any, flags: int) -> Folder | DeviceFile | None:
-    """Return the result of `tree.find`; refuse to create a file in a folder of the tree.
+    """Return the entry at a path of the brick; None for a path of this computer.
 
     Raises:
         FileNotFoundError: there is no such file.
@@ -436,7 +436,7 @@ def _or_refuse(tree: DeviceTree, path: Any, flags: int) -> Folder | DeviceFile |
 
 
 def _parent(tree: DeviceTree, path: Any) -> Folder | DeviceFile | None:
-    """Return the entry for the folder of a path; None if it is this computer's or missing."""
+    """Return the brick's entry for the folder of a path; None if the folder is this computer's or missing."""
     try:
         return tree.find(os.path.dirname(os.path.normpath(os.fsdecode(path))))
     except FileNotFoundError:
@@ -444,7 +444,7 @@ def _parent(tree: DeviceTree, path: Any) -> Folder | DeviceFile | None:
 
 
 def _names(tree: DeviceTree, path: Any) -> tuple[str, ...] | None:
-    """Return the names in a folder of the tree; None for a folder of this computer."""
+    """Return the names in a folder of the brick; None for a folder of this computer."""
     if path is None or (path.__class__ is str and not path.startswith(MAYBE_OURS)):
         return None
     entry = tree.find(path)
@@ -454,7 +454,9 @@ def _names(tree: DeviceTree, path: Any) -> tuple[str, ...] | None:
 
 
 def _branching(real: type, choose: Callable[..., Any]) -> type:
-    """Return a class in place of one of Python's: a call returns what `choose` returns, or a real object for None.
+    """Return a class that replaces one of Python's.
+
+    A call of it returns what `choose` returns, or a real object if that is None.
 
     Programs can test for it and derive from it as from the real class.
     """
@@ -466,7 +468,7 @@ def _branching(real: type, choose: Callable[..., Any]) -> type:
             try:
                 found = choose(*given, **named)
             except TypeError:
-                # Wrong arguments: the real class raises the error.
+                # The arguments are wrong: the real class raises the right error.
                 found = None
             return real(*given, **named) if found is None else found
 

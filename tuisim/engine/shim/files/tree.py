@@ -20,11 +20,11 @@ Entry = Folder | DeviceFile
 
 
 class DeviceTree:
-    """All device files of a brick.
+    """The tree of all device files of a brick.
 
     Args:
         brick: The devices.
-        files: The files that are no attributes of devices.
+        files: The files that are not attributes of devices.
     """
 
     def __init__(self, brick: DeviceFiles, files: Iterable[DeviceFile]) -> None:
@@ -80,7 +80,7 @@ class DeviceTree:
         return Folder(path, tuple(names)) if names or path in paths else None
 
     def _missing(self, path: str) -> FileNotFoundError:
-        """Return the error for a missing file, with a note on which files are in its folder."""
+        """Return the error for a missing file, with a note that lists the files of its folder."""
         error = FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
         folder = path
         while (found := self._folder(folder)) is None:
@@ -90,7 +90,7 @@ class DeviceTree:
 
 
 def _text_of(path: Any) -> str | None:
-    """Return a path in bytes or an object with a path as text; None for anything else, such as a descriptor."""
+    """Return a path as text; None for anything that is not a path, such as a descriptor."""
     if isinstance(path, bytes | os.PathLike):
         return os.fsdecode(path)
     return None

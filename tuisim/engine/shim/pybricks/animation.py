@@ -37,7 +37,8 @@ class Animation:
     def _keep_on(
         self, number: int, show: Callable[[Any], None], frames: Sequence[tuple[Any, int]]
     ) -> None:
-        # A lock that is never released: waiting on it does not count as a program line that spends time.
+        # The thread sleeps by waiting for a lock that is never released: unlike a sleep, this does not count as a line
+        # of the program that takes time.
         alarm = _thread.allocate_lock()
         alarm.acquire()
         while number == self._number:

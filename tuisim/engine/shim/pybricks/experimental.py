@@ -13,7 +13,7 @@ def run_parallel(*functions: Callable[[], Any]) -> dict[Callable[[], Any], Any]:
         TypeError: there are fewer than two functions, or an argument is no function.
         RuntimeError: an error has ended one of them; the others go on until the program ends.
     """
-    # Imported here and not earlier: its functions must be patched first.
+    # Imported here because the functions of the module must be patched before.
     import threading
 
     if len(functions) < 2 or not all(map(callable, functions)):

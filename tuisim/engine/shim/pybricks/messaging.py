@@ -148,7 +148,7 @@ class MailboxHandlerMixIn(Connected):
 
     def wait_for_mailbox_update(self, mbox: str) -> None:
         """Block until bytes arrive in a mailbox."""
-        # Imported here and not earlier: its functions must be patched first.
+        # Imported here because the functions of the module must be patched before.
         import _thread
 
         lock = _thread.allocate_lock()

@@ -268,7 +268,7 @@ class _Implementation(types.SimpleNamespace):
 
 
 SYSTEM: Mapping[str, Any] = {
-    # Attributes that MicroPython lacks stay, as Python's import needs them.
+    # Attributes that MicroPython does not have stay, because Python's import system needs them.
     "implementation": _Implementation(
         **{**vars(sys.implementation), "name": "pybricks-micropython", "version": (1, 11, 0)}
     ),

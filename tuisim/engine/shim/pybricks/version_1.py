@@ -85,7 +85,7 @@ class Display(_OfBrick):
         source = Image(file_name)
         place = location_or_alignment
         if isinstance(place, Align):
-            # The numbers of the alignments are those of a number pad.
+            # The alignments are numbered like the keys of a number pad, from the bottom row up.
             row, column = divmod(place.value - 1, 3)
             place = (
                 (screen.width - source.width) * column // 2,

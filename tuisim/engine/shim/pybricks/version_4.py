@@ -49,7 +49,7 @@ class Stop(NamedEnum):
 class Motor(motor.Motor):
     """A large or medium motor."""
 
-    # A smart ending is like a plain one, as a simulated motor is always where it should be.
+    # A smart ending has the same effect as a plain one, because a simulated motor is always where it should be.
     ENDINGS: ClassVar[Mapping[Any, Ending]] = {
         **motor.Motor.ENDINGS,
         **{stop: Ending[stop.name.removesuffix("_SMART")] for stop in Stop},

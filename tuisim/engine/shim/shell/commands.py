@@ -40,7 +40,7 @@ SHELL_HINT = "join programs by ; or &&, use open for files and subprocess.Popen 
 
 @dataclass(slots=True)
 class Call:
-    """One program with its arguments in a line of the shell."""
+    """One command in a line of the shell: a program with its arguments."""
 
     words: list[str]
     """The program and its arguments."""
@@ -56,13 +56,13 @@ class Call:
 
 
 def own_output(data: bytes) -> None:
-    """Write to the program's real standard output, even if the program has replaced the stream."""
+    """Write to the real standard output of the program, even if the program has replaced `sys.stdout`."""
     assert sys.__stdout__ is not None
     sys.__stdout__.write(data.decode("utf-8", "replace"))
 
 
 def own_errors(data: bytes) -> None:
-    """Write to the program's real standard error, even if the program has replaced the stream."""
+    """Write to the real standard error of the program, even if the program has replaced `sys.stderr`."""
     assert sys.__stderr__ is not None
     sys.__stderr__.write(data.decode("utf-8", "replace"))
 
@@ -80,12 +80,12 @@ class Streams:
 
 
 def refuse(what: str, hint: str) -> Exception:
-    """Return the error for a thing that is not simulated; Python's modules take it for a missing program."""
+    """Return the error for something that is not simulated; Python's modules treat it as that of a missing program."""
     return refused_as(OSError, f"{what} is not part of the simulated brick", hint)
 
 
 def parse_line(text: str) -> list[Call]:
-    """Return the calls in a line of the shell.
+    """Return the commands in a line of the shell.
 
     Raises:
         NotSimulated: a part of the line is not simulated.
@@ -119,7 +119,7 @@ _RUNNERS = ("python", "python3", "micropython", "pybricks-micropython", "brickru
 
 
 def _name_instead(call: Call) -> str:
-    """Return what a program can use instead of a command that the brick here does not have."""
+    """Return a hint on what a program can use instead of a command that is not simulated."""
     files = [word for word in call.words[1:] if word.endswith(".py")]
     if call.name in _RUNNERS and files:
         return f"run it as a part of this program: exec(open({files[-1]!r}).read())"
@@ -127,7 +127,7 @@ def _name_instead(call: Call) -> str:
 
 
 class Shell:
-    """Runs the programs of the brick."""
+    """Runs the simulated commands of the brick's shell."""
 
     def __init__(self, session: DeviceSession, terminal: Terminal, mixer: Mixer) -> None:
         self.session = session
@@ -135,7 +135,7 @@ class Shell:
         self.mixer = mixer
 
     def start(self, calls: Sequence[Call], streams: Streams) -> Steps:
-        """Start the calls of a line.
+        """Start the commands of a line, and return the steps in which they run.
 
         Raises:
             NotSimulated: the brick does not have one of the programs.
@@ -185,7 +185,7 @@ def _write_output(data: bytes, file: str, streams: Streams) -> None:
 
 
 class Running:
-    """Commands that run in the background.
+    """Commands of the shell that run in the background.
 
     Args:
         several: Whether more sounds may follow the first one, so that progress must not depend on calls of `poll`.
@@ -203,7 +203,7 @@ class Running:
             session.spawn_daemon(self._finish)
 
     def go_on(self) -> None:
-        """Run the steps of the commands that are due at the present time."""
+        """Run those steps of the commands that are due at the present time."""
         while self.status is None and not self._busy and self._session.now >= self._due:
             self._busy = True
             try:

@@ -35,17 +35,17 @@ EXIT_SHIFT = 8
 
 
 class OutPipe(io.RawIOBase):
-    """Output of a process; reading blocks until the process ends."""
+    """The pipe for the output of a process; reading blocks until the process ends."""
 
     def __init__(self, process: Process) -> None:
         self.process, self._data = process, bytearray()
 
     def take(self, data: bytes) -> None:
-        """Append output of the process."""
+        """Append output of the process to the pipe."""
         self._data += data
 
     def readable(self) -> bool:
-        """Return True."""
+        """Return True: the program reads from this end."""
         return True
 
     def readinto(self, buffer: Any) -> int:
@@ -59,16 +59,16 @@ class OutPipe(io.RawIOBase):
         return size
 
     def take_speech(self) -> Heard | None:
-        """Return what `espeak --stdout` has written to this pipe, for a player; None the second time."""
+        """Return the speech that `espeak --stdout` has written to this pipe; None after the first call."""
         speech = self.process.streams.speech
         self.process.streams.speech = None
         return speech
 
 
 class Process:
-    """Replaces `subprocess.Popen`, with the same arguments and methods.
+    """Replaces `subprocess.Popen`, with the same arguments and methods, for commands of the brick.
 
-    The class of a run is a subclass, with `system` set.
+    In each run the program gets a subclass in which `system` is set.
     """
 
     system: System
@@ -128,7 +128,7 @@ class Process:
         system.processes[self.pid] = self
 
     def _open_output(self, target: Any, own: Sink) -> tuple[Sink, IO[Any] | None]:
-        """Return a function that takes output, and the pipe from which the program reads that, if any.
+        """Return a function that takes output, and the pipe from which the program reads the output, if any.
 
         Args:
             target: As of `stdout` in `subprocess.Popen`.
@@ -143,7 +143,7 @@ class Process:
         return outlet.take, pipe
 
     def __class_getitem__(cls, item: Any) -> types.GenericAlias:
-        """Support annotations like the real class."""
+        """Support annotations such as `Popen[bytes]`, as the real class does."""
         return types.GenericAlias(cls, item)
 
     def __repr__(self) -> str:
@@ -226,11 +226,11 @@ class System:
         group_of = os.getpgid
 
         def getpgid(pid: int) -> int:
-            # Each process has its own group.
+            # Each simulated process is the only one in its group.
             return pid if pid in self.processes else group_of(pid)
 
         def system(command: Any) -> int:
-            # Returns the kernel's wait status.
+            # Like `os.system`, this returns the wait status of the kernel.
             self.session.command()
             steps = self.shell.start(parse_line(os.fsdecode(command)), Streams())
             running = Running(self.session, steps)
@@ -252,7 +252,7 @@ class System:
         return send
 
     def finish_subprocess(self, module: types.ModuleType) -> None:
-        """Patch `subprocess` after its import: everything in it builds on `Popen`."""
+        """Patch `Popen` of `subprocess` after its import; everything else in the module uses it."""
         self.module = module
         vars(module)["Popen"] = type(
             "Popen", (Process,), {"system": self, "__module__": "subprocess"}
@@ -273,7 +273,7 @@ def finish_asyncio(module: types.ModuleType) -> None:
 
 
 def _calls(args: Any, in_shell: bool) -> list[Call]:
-    """Return the calls that the arguments of a process stand for: of a line if `in_shell`, else of one program."""
+    """Return the commands in the arguments of a process: those of a shell line if `in_shell`, else one program."""
     words = [
         os.fsdecode(word)
         for word in ([args] if isinstance(args, str | bytes | os.PathLike) else args)

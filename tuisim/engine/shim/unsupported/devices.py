@@ -121,7 +121,7 @@ FOREIGN_MODES: Mapping[str, str] = {
 
 
 def of_driver(name: str) -> Hardware | None:
-    """Return the kind of hardware of a driver that is not simulated; None if it is simulated.
+    """Return the hardware that a driver is for, if that is not simulated; None for a simulated driver.
 
     As in the library, part of the name of a simulated driver is enough.
     """
@@ -148,12 +148,12 @@ def _told(where: str, kind: Hardware, name: str) -> tuple[str, str]:
 
 
 def foreign_mode(mode: str, port: str, plugged: str) -> NotSimulated | None:
-    """Return the error for a mode of a sensor that is not simulated; None if the mode belongs to none.
+    """Return the error for a mode that only a sensor has which is not simulated; None for any other mode.
 
     Args:
         mode: The mode, which the sensor on the port does not have.
         port: The port.
-        plugged: The sensor on it.
+        plugged: The driver of the sensor on it.
     """
     driver = FOREIGN_MODES.get(mode, "")
     kind = of_driver(driver)
@@ -165,13 +165,13 @@ def foreign_mode(mode: str, port: str, plugged: str) -> NotSimulated | None:
 
 
 def refused_device(device: Any, class_name: str, missing: type[Exception]) -> Exception | None:
-    """Return the error for a device that was not found and is not simulated; None if another robot could have it.
+    """Return the error for a missing device that is not simulated; None if another simulated robot could have it.
 
     Args:
         device: Object of the library; its `kwargs` are the values that the device must have.
         class_name: Kernel name of the class that was searched.
-        missing: The library's error for a device that is not connected. The returned error is one, too, as a program
-            may try which devices there are.
+        missing: The library's error for a device that is not connected. The returned error is also of this class,
+            because a program may catch it to find out which devices there are.
     """
     wanted: Mapping[str, object] = device.kwargs
     refusal = _refused(class_name, _texts(wanted.get("driver_name")), _texts(wanted.get("address")))
@@ -206,7 +206,7 @@ def _texts(value: object) -> list[str]:
 
 
 def _named(kind: type) -> str:
-    """Return the full name of a class of the library, or of that from which a program's class is derived."""
+    """Return the full name of a class of the library; for a program's own class, that of its base class."""
     for one in kind.__mro__:
         if one.__module__.partition(".")[0] in ("ev3dev", "ev3dev2"):
             return f"{one.__module__}.{one.__qualname__}"
@@ -214,7 +214,7 @@ def _named(kind: type) -> str:
 
 
 def other_sensors_note(device: Any, class_name: str) -> str:
-    """Return a note for the error about a missing sensor for which no driver was named; empty for other devices."""
+    """Return a note for the error about a missing sensor whose driver was not named; empty for other devices."""
     if class_name != "lego-sensor" or "driver_name" in device.kwargs:
         return ""
     return "If it is none of the sensors of ev3dev2.sensor.lego, it is not simulated."

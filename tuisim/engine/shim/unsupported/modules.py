@@ -24,7 +24,7 @@ from tuisim.engine.core.profile import Library
 
 @dataclass(frozen=True, slots=True)
 class Instead:
-    """What a library calls the parts that a program can use instead of hardware that is not simulated."""
+    """Names of parts in one library that a program can use instead of hardware that is not simulated."""
 
     library: str
     sensors: str
@@ -69,7 +69,7 @@ class Hardware:
     """What `from … import *` gives."""
 
     def told_to(self, library: Library) -> Hardware:
-        """Return this hardware with the names of a library in its advice."""
+        """Return this hardware with advice that uses the names of one library."""
         return replace(self, instead=self.instead.format_map(asdict(INSTEAD[library])))
 
 
@@ -168,19 +168,19 @@ _ERRORS = ("Error", "Exception", "Timeout")
 
 
 def _told(name: str, hardware: Hardware) -> tuple[str, str]:
-    """Return message and hint of the error for the use of a module, or of a name in it."""
+    """Return the message and the hint of the error for using a module for hardware, or a name in it."""
     return f"{name}: {hardware.title} is not simulated", hardware.instead
 
 
 def refused_as(kind: type[Exception], message: str, hint: str) -> Exception:
-    """Return NotSimulated that is also an error of another kind, so that a program which only tries can catch it."""
+    """Return an error that is both NotSimulated and of another class, so that programs can catch it as either."""
     both: Any = type("NotSimulated", (NotSimulated, kind), {"__module__": NotSimulated.__module__})
     error: Exception = both(message, hint)
     return error
 
 
 class _Part(type):
-    """A name in a module for hardware: a class from which a program can derive; any other use raises NotSimulated."""
+    """Metaclass of names in a module for hardware: programs can derive classes; other uses raise NotSimulated."""
 
     full_name: str
     hardware: Hardware
@@ -206,7 +206,7 @@ class _Part(type):
 
 
 def refused_part(path: str, name: str, hardware: Hardware) -> Any:
-    """Return an object for a name in a module for hardware: it can be imported but not used."""
+    """Return an object for a name in a module for hardware, which a program can import but not use."""
     words = {"full_name": f"{path}.{name}", "hardware": hardware, "__module__": path}
     return type(name, (OSError,), words) if name.endswith(_ERRORS) else _Part(name, (), words)
 
@@ -221,7 +221,7 @@ def _kept_part(place: Any, path: str, name: str, hardware: Hardware) -> Any:
 
 
 class HardwareModule(types.ModuleType):
-    """A module for hardware, or a module in it, that can be imported but not used.
+    """A module for hardware, or a submodule of it, which a program can import but not use.
 
     Args:
         name: Its full name.
@@ -237,27 +237,27 @@ class HardwareModule(types.ModuleType):
 
 
 class RefusedImports:
-    """Refuses to import modules; it is the first finder.
+    """Module finder that refuses to import some modules; it is the first finder.
 
     Args:
-        reasons: What the error says about each module, and its hint.
+        reasons: For each module the message of the error, and its hint.
     """
 
     def __init__(self, reasons: Mapping[str, tuple[str, str]]) -> None:
         self._reasons = reasons
 
     def find_spec(self, fullname: str, *_: object) -> None:
-        """Return None for other modules.
+        """Return None for modules that are not refused.
 
         Raises:
-            NotSimulated: it is one of them; the error is also an ImportError.
+            NotSimulated: the module is refused; the error is also an ImportError.
         """
         if fullname in self._reasons:
             raise refused_as(ImportError, *self._reasons[fullname])
 
 
 def refuse_other(names: Sequence[str], library: Library) -> RefusedImports:
-    """Return the finder that refuses the packages of a library which does not belong to the profile of this run.
+    """Return a module finder that refuses the packages of a library which does not fit the profile of this run.
 
     Args:
         names: The packages.
@@ -270,7 +270,7 @@ def refuse_other(names: Sequence[str], library: Library) -> RefusedImports:
 
 
 class HardwareFinder:
-    """Finds the modules for hardware; the last finder, so that a file of the program or a package comes first.
+    """Module finder for modules for hardware; it is the last, so that files of the program and packages come first.
 
     Args:
         library: The library of the program.
@@ -280,7 +280,7 @@ class HardwareFinder:
         self._library = library
 
     def find_spec(self, fullname: str, *_: object) -> ModuleSpec | None:
-        """Return how to load a module for hardware; None for other modules."""
+        """Return the spec of a module for hardware; None for other modules."""
         top = fullname.partition(".")[0]
         if top == fullname:
             known = top in ON_THE_BRICK or top in ELSEWHERE
@@ -292,7 +292,7 @@ class HardwareFinder:
         )
 
     def create_module(self, spec: ModuleSpec) -> types.ModuleType:
-        """Return the module.
+        """Return the module for hardware that a spec describes.
 
         Raises:
             NotSimulated: it is for another computer, such as another board; the error is also an ImportError.
@@ -321,9 +321,10 @@ BLUETOOTH: Mapping[str, Any] = {
 
 
 def refuse_bluetooth(module: types.ModuleType, library: Library) -> None:
-    """Refuse sockets for Bluetooth; called after the import of `socket`.
+    """Patch `socket` after its import, so that it refuses sockets for Bluetooth.
 
     Args:
+        module: The module `socket`.
         library: The library of the program.
     """
     names: Any = vars(module)
@@ -346,8 +347,8 @@ _TERMINALS = ("termios", "_curses")
 
 
 def point_at_keys(error: BaseException, library: Library) -> None:
-    """Note on an error of a program that needs a terminal, to read single keys, what it can do instead."""
-    # Not by the name of the error's class: a program's own class may refuse to tell it.
+    """Add a note to the error of a program that reads single keys from a terminal: what it can do instead."""
+    # The classes are compared, not their names: a program's own class may raise an error when its name is read.
     kinds = [vars(sys.modules[name]).get("error") for name in _TERMINALS if name in sys.modules]
     if type(error) in kinds:
         instead = _KEYBOARD.told_to(library).instead
@@ -355,7 +356,7 @@ def point_at_keys(error: BaseException, library: Library) -> None:
 
 
 def point_at_package(error: BaseException, folder: str) -> None:
-    """Add a note to the error about a missing module: from where to get the module.
+    """Add a note to the error about a missing module: where to get the module.
 
     Args:
         error: Any error of the program.

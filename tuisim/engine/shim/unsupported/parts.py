@@ -56,7 +56,7 @@ _IN_CONTEXT = (
 
 
 def refuse_contexts(module: Any) -> None:
-    """Refuse the process API of `multiprocessing`; called after the import of its contexts."""
+    """Patch the contexts of `multiprocessing` after their import, so that they refuse to start processes."""
     base = module.BaseContext
     genuine = {name: getattr(base, name) for name in _IN_CONTEXT}
     module.ThreadContext = type("ThreadContext", (base,), {**genuine, "_name": "fork"})
@@ -65,7 +65,7 @@ def refuse_contexts(module: Any) -> None:
 
 
 def keep_thread_pool(module: types.ModuleType) -> None:
-    """Let `ThreadPool` work although processes are refused; called after the import of `multiprocessing.pool`."""
+    """Patch `multiprocessing.pool` after its import, so that `ThreadPool` works although processes are refused."""
     contexts: Any = sys.modules["multiprocessing.context"]
     pool, context = module.Pool, contexts.ThreadContext()
 
@@ -78,12 +78,12 @@ def keep_thread_pool(module: types.ModuleType) -> None:
 
 
 def refuse_process(module: types.ModuleType) -> None:
-    """Refuse processes; called after the import of `multiprocessing.process`."""
+    """Patch `multiprocessing.process` after its import, so that it refuses to start processes."""
     module.BaseProcess.__init__ = _refusal("multiprocessing.Process", _hint("Process"))
 
 
 def refuse_process_pool(module: types.ModuleType) -> None:
-    """Refuse the process pool; called after the import of `concurrent.futures.process`."""
+    """Patch `concurrent.futures.process` after its import, so that it refuses its process pool."""
     name = "ProcessPoolExecutor"
     getattr(module, name).__init__ = _refusal(
         f"concurrent.futures.{name}", f"{_THREADS}, or ThreadPoolExecutor"
