@@ -93,7 +93,7 @@ def message_of(app: LabApp) -> str:
     return "".join(str(one.content) for one in app.screen.query("#message").results(Static))
 
 
-def screen_text(app: LabApp) -> str:
+def screen_text(app: App[Any]) -> str:
     """What is on the screen, as lines of text."""
     return "\n".join(
         "".join(s.text for s in strip) for strip in app.screen._compositor.render_strips()

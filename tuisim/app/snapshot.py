@@ -116,11 +116,14 @@ class Snapshot:
             (now.right_position_deg, now.right_speed_dps),
             *(self.turns or [(0.0, 0.0)] * len(self.spec.robot.extra_motors)),
         )
-        scales = (self.scales.get(motor.port, 1.0) for motor in self.spec.robot.motors)
         return [
             (scale * position_deg, scale * dps)
-            for scale, (position_deg, dps) in zip(scales, turns, strict=False)
+            for scale, (position_deg, dps) in zip(self.list_scales(), turns, strict=False)
         ]
+
+    def list_scales(self) -> list[float]:
+        """Return how many degrees the program counts for one of each motor, the wheel motors first."""
+        return [self.scales.get(motor.port, 1.0) for motor in self.spec.robot.motors]
 
     @cached_property
     def colors(self) -> Mapping[str, ColorReading]:

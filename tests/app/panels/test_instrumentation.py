@@ -319,6 +319,9 @@ def test_what_drivers_know_has_lines_of_its_own_if_they_fit() -> None:
     assert shown[0] == "LeftMotor   tacho    1234   -304 °/s"
     assert shown[1] == "asked     0 °/s  duty  -96 %  holding   "
     assert shown[3] == "asked -1050 °/s  duty  100 %  overloaded"
+    rows = text(replace(HELD, scales={"outC": -1.0}), 40, 20)
+    assert rows[2] == "RightMotor  tacho      57  -1050 °/s"
+    assert rows[3].startswith("asked  1050 °/s  duty -100 %")
     assert len(shown) == 14
     assert text(HELD, 48, 11)[0].endswith("-304 °/s  holding   ")
     assert text(HELD, 46, 3)[0].startswith("L  1234 holding ")

@@ -183,6 +183,32 @@ def test_a_motor_counts_as_its_program_last_set_it_up(stored: StoredRun) -> None
     assert index.find_scales(9) == {"outB": 1.0, "outC": 0.25}
 
 
+POLARITY = """\
+import time
+from ev3dev2.motor import LargeMotor, OUTPUT_C
+right = LargeMotor(OUTPUT_C)
+right.polarity = "inversed"
+right.on_for_degrees(30, 90)
+right.reset()
+time.sleep(1)
+"""
+
+
+@pytest.mark.parametrize("profile", ["robolab", "ev3"])
+def test_a_motor_counts_with_the_polarity_of_its_program_until_it_is_reset(
+    run: Run, profile: str
+) -> None:
+    stored = run(POLARITY, profile=profile, prelude="none").run
+    index = CommandIndex(stored)
+    index.read_all()
+    asked = [(event.time_s, event.asked) for event in map(index.event, index.find_events())]
+    (begin_s, _), (end_s, end) = [event for event in asked if "polarity" in event[1]]
+    assert end == "set polarity normal"
+    hz = stored.spec.profile.tick_hz
+    assert index.find_scales(round(begin_s * hz) + 1) == {"outC": -1.0}
+    assert index.find_scales(round(end_s * hz) + 1) == {"outC": 1.0}
+
+
 def test_events_are_bounded(stored: StoredRun, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(command_events, "_MAX_EVENTS", 3)
     write_commands(stored, *((number * 1000 * MS, 0, Call.RUN, (1.0,)) for number in range(9)))

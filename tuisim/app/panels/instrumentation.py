@@ -99,7 +99,10 @@ def _build_sensor_lines(now: Snapshot, width: int) -> list[Line]:
 
 def _build_tall_lines(now: Snapshot, width: int, height: int) -> list[Line]:
     """Return all lines, those of motors with the values of their drivers; none without such values, or without room."""
-    drivers = [build_driver_line(values, width) for values in now.instant.motors]
+    drivers = [
+        build_driver_line(values, scale, width)
+        for values, scale in zip(now.instant.motors, now.list_scales(), strict=False)
+    ]
     if not drivers:
         return []
     wheels = build_wheel_lines(now, width)

@@ -240,11 +240,17 @@ def build_extra_motor_lines(now: Snapshot, width: int) -> list[Line]:
     ]
 
 
-def build_driver_line(values: MotorValues, width: int) -> Line:
-    """Return the line with the values of a motor's driver: the speed asked for, the duty and the state."""
+def build_driver_line(values: MotorValues, scale: float, width: int) -> Line:
+    """Return the line with the values of a motor's driver: the speed asked for, the duty and the state.
+
+    Args:
+        values: The values.
+        scale: How many degrees the program counts for one of the motor.
+        width: Cells of the line.
+    """
     asked_dps, _, duty_pc, state = values
-    asked_text = f"{asked_dps:5d}"
-    duty = f"{duty_pc:4d}"
+    asked_text = f"{round(asked_dps * scale):5d}"
+    duty = f"{round(duty_pc * scale):4d}"
     word = _describe_motor_state(state)
     return fit_line(
         width,
@@ -284,7 +290,7 @@ def _build_wheel_line(now: Snapshot, name: str, short: str, width: int) -> Line:
     number = "LR".index(short)
     position_deg, dps = now.list_turns()[number]
     if now.instant.motors:
-        dps = now.instant.motors[number][1]
+        dps = now.instant.motors[number][1] * now.list_scales()[number]
     speed = ("stalled", WARNING) if now.stalled[number] else format_value(f"{round(dps):d}")
     return _build_motor_line(name, short, round(position_deg), speed, width)
 

@@ -144,8 +144,7 @@ class CommandIndex:
         times = np.maximum.accumulate(np.maximum(rows["time_ns"], self._newest_ns))
         self._newest_ns = int(times[-1])
         codes = self._read_codes(rows)
-        set_ups = rows["call"] == Call.SET_UP
-        self._take_scales(times[set_ups], codes[set_ups], rows["values"][set_ups])
+        self._take_scales(rows, times, codes)
         mains = rows["values"][np.arange(len(rows)), _find_mains()[rows["call"]]]
         order = np.argsort(codes, kind="stable")
         order = order[np.isin(rows["call"][order], [*CALL_WORDS])]
@@ -165,10 +164,14 @@ class CommandIndex:
         for event in zip(*lists, strict=True):
             self._add(*event)
 
-    def _take_scales(self, times: Array, codes: Array, values: Array) -> None:
-        for time_ns, code, (sign, gear_ratio, *_) in zip(
-            times.tolist(), codes.tolist(), values.tolist(), strict=True
-        ):
+    def _take_scales(self, rows: Array, times: Array, codes: Array) -> None:
+        import numpy as np
+
+        scales = np.isin(rows["call"], (Call.SET_UP, Call.SET_POLARITY))
+        columns = (column[scales].tolist() for column in (times, codes, rows["values"]))
+        for time_ns, code, (sign, gear_ratio, *_) in zip(*columns, strict=True):
+            if code >> 8 & 0xFF == Call.SET_POLARITY:
+                sign, gear_ratio = 1 - 2 * sign, 1.0
             motors = self._robots[code >> 16].motors
             part = code & 0xFF
             if part >= len(motors) or abs(sign) != 1 or not 0 < gear_ratio < math.inf:

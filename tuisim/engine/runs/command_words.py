@@ -113,6 +113,7 @@ CALL_WORDS: Mapping[Call, CallWords] = {
         "set direction {0}", (Quantity(names=("forwards", "backwards")),)
     ),
     Call.SET_ROLL: CallWords("set roll {0}", (_PLAIN,)),
+    Call.SET_POLARITY: CallWords("set polarity {0}", (Quantity(names=("normal", "inversed")),)),
     **_name_driver_calls(),
     Call.SET_DUTY: CallWords("set duty {0}", (_PERCENT,), aim=Aim.SPEED),
     Call.RENUMBER: CallWords("set position {0}", (_DEG,)),

@@ -14,7 +14,7 @@ from tuisim.engine.core.driver.motor import STATES, SetPoints
 from tuisim.engine.core.driver.simulated import SimulatedMotor
 from tuisim.engine.protocol import MotorRegisters
 from tuisim.engine.shim.device_files import NumberWriter, Reader, SimDevice, refuse
-from tuisim.engine.shim.motor import MAX_SET_POINT, Tacho
+from tuisim.engine.shim.motor import MAX_SET_POINT, SignedTacho
 from tuisim.engine.shim.session import DeviceSession
 
 SET_POINTS = (
@@ -36,7 +36,7 @@ RESET_DRIVER = Call.RESET_DRIVER
 STATE_TEXTS = tuple(map(" ".join, STATES))
 
 
-class DriverTacho(Tacho):
+class DriverTacho(SignedTacho):
     """One motor on a port, with the attributes that the kernel's driver gives it."""
 
     _motor: SimulatedMotor
@@ -45,7 +45,6 @@ class DriverTacho(Tacho):
         self, session: DeviceSession, motor: SimulatedMotor, port: str, kind: str = "large"
     ) -> None:
         super().__init__(session, motor, port, kind)
-        self._sign = 1
         self._set_points = [*FIRST_SET_POINTS]
         self._look = lambda: self._now().noticed_ns
 
@@ -119,10 +118,6 @@ class DriverTacho(Tacho):
         super()._set_stop_action(text)
         self._set_points[STOP_ACTION] = STOP_NUMBERS[text]
 
-    def _set_polarity(self, text: str) -> None:
-        super()._set_polarity(text)
-        self._sign = -1 if text == "inversed" else 1
-
     def _command(self, text: str) -> None:
         call = COMMANDS.get(text)
         if call is None:
@@ -132,5 +127,4 @@ class DriverTacho(Tacho):
         if call is RESET_DRIVER:
             self._set_points[:] = FIRST_SET_POINTS
             self._stop_action = "coast"
-            self._polarity = "normal"
-            self._sign = 1
+            self._set_polarity("normal")

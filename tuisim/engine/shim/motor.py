@@ -157,7 +157,20 @@ class Tacho(ABC):
         self._polarity = text
 
 
-class TachoMotor(Tacho):
+class SignedTacho(Tacho):
+    """A motor of inversed polarity has the opposite sign in all that a program reads and writes."""
+
+    _sign = 1
+
+    def _set_polarity(self, text: str) -> None:
+        super()._set_polarity(text)
+        sign = -1 if text == "inversed" else 1
+        if sign != self._sign:
+            self._sign = sign
+            self._tell(Call.SET_POLARITY, float(sign < 0))
+
+
+class TachoMotor(SignedTacho):
     """The driver of one motor under the rules of the course: set points take effect with the next command."""
 
     _motor: BrickMotor
@@ -188,8 +201,7 @@ class TachoMotor(Tacho):
             "hold_pid/Kd": 0,
         }
         self._stop_action = "coast"
-        self._polarity = "normal"
-        self._sign = 1
+        self._set_polarity("normal")
         self._last_goal: float | None = None
         self._holding = False
         self._ramps = False
@@ -259,10 +271,6 @@ class TachoMotor(Tacho):
     def _set_position(self, value: int) -> None:
         self._tell(SET_COUNT, float(value * self._sign))
         self._last_goal = None
-
-    def _set_polarity(self, text: str) -> None:
-        super()._set_polarity(text)
-        self._sign = -1 if text == "inversed" else 1
 
     def _command(self, text: str) -> None:
         if text not in COMMANDS:

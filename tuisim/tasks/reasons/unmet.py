@@ -481,14 +481,11 @@ class _Search:
         return _Series(device, column, unit, ticks, values)
 
     def _find_wheel(self, ports: list[str]) -> str:
-        """Return `left` or `right` if the only port is that of the wheel's motor; otherwise, or with gears, empty.
-
-        How a program of ev3dev2 counts a motor that is mounted the other way round is not known.
-        """
+        """Return `left` or `right` if the only port is that of the wheel's motor; otherwise, or with gears, empty."""
         robot = self._run.spec.robot
         wheels = {
-            robot.left_port: "" if robot.left_reversed and self._has_codes else "left",
-            robot.right_port: "" if robot.right_reversed and self._has_codes else "right",
+            robot.left_port: "left",
+            robot.right_port: "right",
         }
         return wheels.get(ports[0], "") if len(ports) == 1 and robot.gear_ratio == 1 else ""
 

@@ -31,6 +31,7 @@ class Call(IntEnum):
     SET_SPEED = 16
     SET_BACKWARDS = 17
     SET_ROLL = 18
+    SET_POLARITY = 19
     # A motor with the kernel's driver: in the order of `driver.motor.Command`.
     RUN_FOREVER = 20
     RUN_TO_ABS_POS = 21

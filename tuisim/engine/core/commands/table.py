@@ -76,6 +76,10 @@ def set_roll(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
     motor.roll_sign = values[0]
 
 
+def set_polarity(_motor: Any, _time_ns: int, _values: Values) -> None:
+    """Note how the program counts, from now on: as the motor does (0), or with the opposite sign (1)."""
+
+
 Range = tuple[float, float]
 
 ALL_LAWS = frozenset(MotorLaw)
@@ -150,6 +154,9 @@ CALLS: Mapping[Call, CallSpec] = {
     Call.SET_SPEED: CallSpec(set_speed, (_ANY,), frozenset({MotorLaw.NBEV3DEVSIM})),
     Call.SET_BACKWARDS: CallSpec(set_backwards, (_FLAG,), frozenset({MotorLaw.NBEV3DEVSIM})),
     Call.SET_ROLL: CallSpec(set_roll, ((-1.0, 1.0),), frozenset({MotorLaw.NBEV3DEVSIM})),
+    Call.SET_POLARITY: CallSpec(
+        set_polarity, (_FLAG,), frozenset({MotorLaw.BRICK, MotorLaw.EV3DEV})
+    ),
     **{
         call: CallSpec(
             driver.build_effect(command), _SET_POINTS, frozenset({MotorLaw.EV3DEV}), speed_place=0
