@@ -11,16 +11,16 @@ from tuisim.engine.shim.pybricks.brick import whole
 
 
 class Animation:
-    """Shows frames one after another in the background until it is stopped or other frames are shown."""
+    """Shows frames one after another in a background thread, until it is stopped or shows other frames."""
 
     _number = 0
 
     def stop(self) -> None:
-        """End the animation; the frame that is shown stays."""
+        """End the animation; the last frame stays visible."""
         self._number += 1
 
     def play(self, show: Callable[[Any], None], frames: Sequence[tuple[Any, int]]) -> None:
-        """Show frames again and again.
+        """Show frames one after another, again and again, in the background.
 
         Args:
             show: Shows a frame.

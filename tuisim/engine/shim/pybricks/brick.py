@@ -39,7 +39,7 @@ Waiting = Generator[int, None, Result]
 
 
 class Awaited(Generic[Result]):
-    """The object that a call returns in a task, to be awaited, where it would block elsewhere."""
+    """The awaitable object that a blocking call returns while a task runs."""
 
     def __init__(self, waiting: Waiting[Result]) -> None:
         self._waiting = waiting
@@ -50,7 +50,7 @@ class Awaited(Generic[Result]):
 
 @dataclass(slots=True)
 class Brick:
-    """The brick of one run, as the classes of the library use it."""
+    """The brick of one run, as the simulated classes of Pybricks use it."""
 
     session: DeviceSession
     built: BuiltBrick
@@ -69,7 +69,7 @@ class Brick:
     """Whether the program runs a task of version 4, in which nothing blocks."""
 
     def find_motor(self, port: str) -> ServoMotor | None:
-        """Return the motor on a port such as `outA`, after plugging one in if possible; None if there is none."""
+        """Return the motor on a port such as `outA`, which is plugged in if missing; None if there can be none."""
         if port not in self.built.motors:
             hub = self.session.sim.spec.robot.hub
             self.plugs.add(PART_OF_KIND[HUBS[hub].motor if hub else "large"], port)
@@ -78,7 +78,7 @@ class Brick:
         return motor if isinstance(motor, ServoMotor) else None
 
     def find_sensor(self, port: str, kind: str) -> LegoSensor | None:
-        """Return the sensor on a port, after plugging one in if possible; None if there is none.
+        """Return the sensor on a port, which is plugged in if it is missing; None if there can be none.
 
         Args:
             port: The port, such as `in1`.
@@ -98,7 +98,7 @@ class Brick:
         return self.session.now // 1000
 
     def read(self, mode: str = "", *ports: str) -> int:
-        """Let the time of a reading pass, and return the simulated time in microseconds.
+        """Let the time of a reading pass, record the reading, and return the simulated time in microseconds.
 
         Args:
             mode, ports: What is recorded of the reading, as in `engine.runs.readings.READING_CODES`.
@@ -112,11 +112,11 @@ class Brick:
         return session.now // 1000
 
     def tell(self, part: int, call: Call, *values: float | None) -> None:
-        """Pass a call with its values to a simulated motor or drive base, at the present time.
+        """Give a command with its values to a simulated motor or drive base, at the present time.
 
         Args:
             part: Its number.
-            call: What to do.
+            call: The kind of command.
             values: NaN is passed for None, which stands for a value that the program does not give; numbers beyond
                 `LARGEST` are cut off.
         """
@@ -126,7 +126,7 @@ class Brick:
         obey(self.session.sim, self.session.now, part, call, *numbers)
 
     def command(self) -> int:
-        """Count a command, which takes no time, and return the simulated time."""
+        """Count a command, which takes no time, and return the simulated time in microseconds."""
         self.session.command()
         return self.session.now // 1000
 
@@ -136,11 +136,11 @@ class Brick:
         end_us: Callable[[], int | None],
         stop: Callable[[], object] = lambda: None,
     ) -> Waiting[None]:
-        """Wait until a move is done.
+        """Wait until a move is done: yield the times in microseconds at which to look again.
 
         Args:
-            done: Whether the move is done at a time in microseconds.
-            end_us: When the trajectory of the move ends.
+            done: Returns whether the move is done at a time in microseconds.
+            end_us: Returns when the trajectory of the move ends; None if it has no end.
             stop: Ends the move if the task that awaits it is closed.
         """
         begin = now = self.now_us
@@ -156,7 +156,7 @@ class Brick:
             now = self.now_us
 
     def finish(self, waiting: Waiting[Result]) -> Result:
-        """Block until a wait is over and return its result; in a task of version 4, return an object to await."""
+        """Block until a wait is over, and return its result; while a task runs, return an object to await."""
         awaited: Any = Awaited(waiting)
         return awaited if self.in_task else self.block(waiting)
 
@@ -173,16 +173,16 @@ class Brick:
             self.session.wait_for_motor((until_us - self.now_us) * 1000)
 
     def require_no_task(self) -> None:
-        """Check that no task runs.
+        """Check that the program runs no task.
 
         Raises:
-            RuntimeError: one runs.
+            RuntimeError: it runs one.
         """
         if self.in_task:
             raise RuntimeError("This can only be called before multitasking starts.")
 
     def say_stalled(self, what: str, call: str) -> None:
-        """Tell the user once that a call waits because something blocks a motor.
+        """Print a message, once for each blocked part, that a call waits because something blocks a motor.
 
         Args:
             what: What is blocked, with its verb, such as `the wheels are`.
@@ -193,14 +193,14 @@ class Brick:
         self.say_once(what, told)
 
     def say_once(self, subject: str, text: str) -> None:
-        """Print a message to the user in the program's error output, unless one on this subject was printed before."""
+        """Print a message to the program's error output, unless one on this subject was printed before."""
         if subject not in self.said:
             self.said.add(subject)
             print(f"tuisim: {text}", file=sys.__stderr__)
 
 
 class Connected:
-    """Base of the library's classes whose objects are parts of the brick."""
+    """Base class of the simulated classes of Pybricks whose objects are parts of the brick."""
 
     brick: ClassVar[Brick]
 
@@ -208,16 +208,16 @@ class Connected:
     """The port to which the device is connected."""
 
     def _take_port(self, port: Any, names: Sequence[str]) -> str:
-        """Note the port to which the device is connected, and return its name in the robot.
+        """Store the port to which the device is connected, and return the port's name in the robot.
 
         Args:
-            port: The port.
-            names: Those of the robot for such devices.
+            port: The port that the program gives.
+            names: The names of the robot's ports for such devices.
 
         Raises:
             RuntimeError: a task runs.
-            TypeError: it is no port.
-            ValueError: it is not among these.
+            TypeError: `port` is not a port.
+            ValueError: its name is not in `names`.
         """
         self.brick.require_no_task()
         name = find_port(port)
@@ -255,7 +255,7 @@ FirmwareError: Any = type("OSError", (OSError,), {"__module__": "builtins"})
 
 
 def not_permitted() -> Any:
-    """Return the firmware's error for a command that must not be given now."""
+    """Return the firmware's error for a command to a motor that a drive base or a move is using."""
     return FirmwareError(
         errno.EPERM,
         "EPERM:\n\nThis operation is not permitted now: the motor is in use by a drive base, or a move is under way."
@@ -264,7 +264,7 @@ def not_permitted() -> Any:
 
 
 def build_busy_error() -> Any:
-    """Return the firmware's error for motors that another drive base uses."""
+    """Return the firmware's error for creating a drive base with motors that another drive base uses."""
     return FirmwareError(
         errno.EBUSY,
         "EBUSY:\n\nAnother DriveBase has these motors.\n--> Make one DriveBase, and use it everywhere.",
@@ -272,7 +272,7 @@ def build_busy_error() -> Any:
 
 
 def no_device(hint: str) -> Any:
-    """Return the firmware's error for a port on which the needed device is not.
+    """Return the firmware's error for a port on which there is no such motor or sensor.
 
     Args:
         hint: Names the devices on the ports.
@@ -285,10 +285,10 @@ def no_device(hint: str) -> Any:
 
 
 def whole(value: Any) -> int:
-    """Return a number as the firmware takes it, without its fraction.
+    """Return a number without its fraction, as the firmware converts it.
 
     Raises:
-        TypeError: it is no number.
+        TypeError: it is not a number.
     """
     if not isinstance(value, int | float):
         raise TypeError(f"can't convert {type(value).__name__} to int")
@@ -296,15 +296,15 @@ def whole(value: Any) -> int:
 
 
 def round_number(value: float) -> float:
-    """Return a number rounded to as many digits as the floats of a hub have."""
+    """Return a number rounded to the number of digits that floats of a hub have."""
     return float(f"{round(value, 4):.7g}") + 0.0
 
 
 def text_of(value: Any) -> str:
-    """Return a text unchanged: the firmware does not convert other values.
+    """Return a text unchanged; the firmware does not convert other values to text.
 
     Raises:
-        TypeError: it is no text.
+        TypeError: the value is not a text.
     """
     if not isinstance(value, str):
         raise TypeError(f"can't convert '{type(value).__name__}' object to str implicitly")

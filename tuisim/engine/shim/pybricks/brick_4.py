@@ -22,7 +22,7 @@ HUES: Mapping[int, str] = {15: "RED", 45: "ORANGE", 90: "YELLOW", 180: "GREEN", 
 
 
 class AnimatedLight:
-    """A light that can blink and change its colour by itself.
+    """A light that can blink and change its colour in the background.
 
     Args:
         show: Shows a colour; None for darkness.
@@ -32,7 +32,7 @@ class AnimatedLight:
         self._show, self._animation = show, Animation()
 
     def on(self, color: Any) -> None:
-        """Turn the light on in a colour, or in the nearest one that it has."""
+        """Turn the light on in a colour, or in the nearest one that the light has."""
         self._animation.stop()
         self._show(color)
 
@@ -41,22 +41,22 @@ class AnimatedLight:
         self.on(None)
 
     def blink(self, color: Any, durations: Sequence[int]) -> None:
-        """Blink in a colour; durations in ms are of on and off in turn."""
+        """Let the light blink in a colour; `durations` are the times in ms that it is on and off, in turn."""
         frames = [(None if number % 2 else color, time) for number, time in enumerate(durations)]
         self._animation.play(self._show, frames)
 
     def animate(self, colors: Sequence[Any], interval: int) -> None:
-        """Show colours one after another, each for a time in ms."""
+        """Show colours one after another, each for `interval` ms."""
         self._animation.play(self._show, [(color, interval) for color in colors])
 
 
 class Speaker(TonePlayer):
-    """The speaker."""
+    """The speaker of a brick or hub under version 4 of Pybricks."""
 
     _volume = 100
 
     def volume(self, volume: int | None = None) -> int | None:
-        """Return the volume in percent, or set it."""
+        """Set the volume in percent; without an argument, return it."""
         if volume is None:
             return self._volume
         self.brick.command()
@@ -69,7 +69,7 @@ class Speaker(TonePlayer):
 
 
 class System(Connected):
-    """The settings of the hub itself: name, stop buttons, storage.
+    """The settings of the hub itself: its name, its stop buttons and its storage.
 
     Args:
         name: The name of the hub.
@@ -85,7 +85,7 @@ class System(Connected):
         self._session_names = {button: name for name, button in buttons.items()}
 
     def set_stop_button(self, button: Any) -> None:
-        """Let a button, or several pressed together, stop the program; with None, no button stops it."""
+        """Choose the button, or buttons pressed together, that stop the program; None for no button."""
         buttons = [button] if isinstance(button, Enum) else button or ()
         names = frozenset(self._session_names[pressed] for pressed in buttons)
         self.brick.session.stop_buttons = names
@@ -95,7 +95,7 @@ class System(Connected):
         return self._name
 
     def info(self) -> dict[str, Any]:
-        """Return name, reset reason, connections and start of the program, by the firmware's names."""
+        """Return the hub's name, reset reason, connections and start of the program, by the firmware's keys."""
         return {
             "name": self._name,
             "reset_reason": 0,
@@ -108,22 +108,25 @@ class System(Connected):
     def storage(
         self, offset: int, *, read: int | None = None, write: bytes | None = None
     ) -> bytes | None:
-        """Read or write bytes that stay when the program ends."""
+        """Return `read` bytes of the storage from `offset` on, or write the bytes `write` there.
+
+        The bytes stay when the program ends.
+        """
         if write is not None:
             self._stored[offset : offset + len(write)] = write
             return None
         return bytes(self._stored[offset : offset + whole(read)])
 
     def reset_storage(self) -> None:
-        """Make all bytes of the storage 0."""
+        """Set all bytes of the storage to 0."""
         self._stored = bytearray(len(self._stored))
 
     def shutdown(self) -> None:
-        """Turn the hub off: the program ends."""
+        """Turn the hub off, which ends the program."""
         raise SystemExit
 
     def reset_reason(self) -> int:
-        """Return why the hub was last turned off: 0, as usual."""
+        """Return the reason why the hub was last turned off: always 0, the usual one."""
         return 0
 
 
@@ -134,7 +137,7 @@ class Buttons(hubs.Buttons):
 
 
 class Battery(hubs.Battery):
-    """The battery, which can be charged."""
+    """The rechargeable battery of a brick under version 4 of Pybricks."""
 
     temperature = refused_part(
         "Battery", "temperature", Hardware("the temperature of the battery", "it stays as it is")
@@ -160,7 +163,7 @@ class Light(AnimatedLight, hubs.Light):  # type: ignore[misc]
 
 
 class EV3Brick(hubs.EV3Brick):
-    """The brick."""
+    """The EV3 brick under version 4 of Pybricks."""
 
     buttons = Buttons()
     battery = Battery()

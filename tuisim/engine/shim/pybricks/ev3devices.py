@@ -55,7 +55,7 @@ CHANNELS = range(1, 5)
 
 
 class Sensor(Connected):
-    """A sensor on an input port."""
+    """Base class of sensors on an input port."""
 
     KIND: ClassVar[str] = ""
     """One of `engine.core.sensors.SENSORS`; empty for any of them."""
@@ -68,27 +68,27 @@ class Sensor(Connected):
         self._sensor = sensor
 
     def _read(self, mode: str) -> tuple[int, ...]:
-        """Return a measurement in a mode; the first one after a change of mode also costs the time of the change."""
+        """Return the values of a measurement in a mode; the first one after a change of mode takes more time."""
         return self._sensor.measure(mode) if self._sensor.mode == mode else self._switched(mode)
 
     def _switched(self, mode: str) -> tuple[int, ...]:
-        """Switch to a mode, and return the first measurement in it."""
+        """Switch to a mode, and return the values of the first measurement in it."""
         self._sensor.switch(mode)
         return self._sensor.measure_switched(mode)
 
 
 class TouchSensor(Sensor):
-    """A touch sensor."""
+    """The EV3 touch sensor."""
 
     KIND = "touch"
 
     def pressed(self) -> bool:
-        """Return whether it is pressed."""
+        """Return whether the sensor is pressed."""
         return bool(self._read("TOUCH")[0])
 
 
 class ColorSensor(Sensor):
-    """A colour sensor."""
+    """The EV3 colour sensor."""
 
     KIND = "color"
 
@@ -114,7 +114,7 @@ class ColorSensor(Sensor):
 
 
 class UltrasonicSensor(Sensor):
-    """An ultrasonic sensor."""
+    """The EV3 ultrasonic sensor."""
 
     KIND = "ultrasonic"
 
@@ -130,7 +130,7 @@ class UltrasonicSensor(Sensor):
 
 
 class InfraredSensor(Sensor):
-    """An infrared sensor."""
+    """The EV3 infrared sensor."""
 
     KIND = "infrared"
 
@@ -148,23 +148,23 @@ class InfraredSensor(Sensor):
         return number - 1
 
     def beacon(self, channel: int) -> tuple[int, int] | tuple[None, None]:
-        """Return the distance of the beacon, 0 to 100, and its direction in degrees."""
+        """Return the beacon's distance, 0 to 100, and direction in degrees; None for both if it is not found."""
         at = 2 * self._channel(channel)
         heading, distance = self._read("IR-SEEK")[at : at + 2]
         return (None, None) if distance == NO_BEACON else (distance, DEG_PER_HEADING * heading)
 
     def buttons(self, channel: int) -> Any:
-        """Return the pressed buttons of the remote."""
+        """Return the buttons of the remote control that are pressed on a channel."""
         return self.COLLECT(REMOTE_BUTTONS[self._read("IR-REMOTE")[self._channel(channel)]])
 
     def keypad(self) -> Any:
-        """Return the pressed buttons of the remote on channel 1, any number of them."""
+        """Return the buttons of the remote control that are pressed on channel 1, in any combination."""
         bits = self._read("IR-REM-A")[0]
         return self.COLLECT(button for bit, button in KEYPAD_BITS.items() if bits & bit)
 
 
 class GyroSensor(Sensor):
-    """A gyro. Reading the speed and then the angle restarts the angle from 0, as on the brick."""
+    """The EV3 gyro. As on the brick, reading the speed and then the angle sets the angle to 0."""
 
     KIND = "gyro"
     _zero = 0
@@ -191,7 +191,7 @@ class GyroSensor(Sensor):
         return self._read("GYRO-ANG")[0] * self._sign
 
     def angle(self) -> int:
-        """Return the angle in degrees, clockwise."""
+        """Return the turned angle in degrees, clockwise."""
         return self._angle() - self._zero
 
     def speed(self) -> int:
@@ -199,5 +199,5 @@ class GyroSensor(Sensor):
         return self._read("GYRO-RATE")[0] * self._sign
 
     def reset_angle(self, angle: float) -> None:
-        """Set the current angle to a value in degrees."""
+        """Set the angle that the gyro shows now, in degrees."""
         self._zero = self._angle() - whole(angle)

@@ -7,10 +7,10 @@ from typing import Any
 
 
 def run_parallel(*functions: Callable[[], Any]) -> dict[Callable[[], Any], Any]:
-    """Run functions in threads of their own, wait until all are done, and return their results, by function.
+    """Run functions in separate threads, wait until all have ended, and return their results by function.
 
     Raises:
-        TypeError: there are fewer than two functions, or an argument is no function.
+        TypeError: there are fewer than two functions, or an argument is not a function.
         RuntimeError: an error has ended one of them; the others go on until the program ends.
     """
     # Imported here because the functions of the module must be patched before.

@@ -20,7 +20,7 @@ BLANK = " "
 
 
 class Font(Connected):
-    """A font of the screen, drawn with the letters of another font of this size and weight.
+    """A font of the screen. Its letters are drawn with another font of the same size and weight.
 
     Args:
         family: A name; all families look alike here.
@@ -51,17 +51,17 @@ class Font(Connected):
 
     @cached_property
     def drawn(self) -> ImageFont:
-        """The font as Pillow takes it."""
+        """The font as a Pillow font object."""
         return sized(self._size_px, self._bold, self._monospace)
 
     @property
     def family(self) -> str:
-        """The name of the family."""
+        """The name of the font's family."""
         return self._family
 
     @property
     def style(self) -> str:
-        """The weight in words."""
+        """The weight of the font, such as `Bold`."""
         return "Bold" if self._bold else "Regular"
 
     @cached_property
@@ -88,6 +88,6 @@ Font.DEFAULT = Font()
 
 
 def drawable(text: str) -> str:
-    """Return one line of text with a replacement for each character that fonts here lack."""
+    """Return a text as one line in which characters that no font here has are replaced."""
     latin = text.encode("latin-1", "replace").decode("latin-1")
     return "".join(letter if letter.isprintable() else BLANK for letter in latin)

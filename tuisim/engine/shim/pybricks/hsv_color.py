@@ -33,7 +33,7 @@ class _NamedColors(type):
 
 
 class Color(metaclass=_NamedColors):
-    """A colour.
+    """A colour, given by hue, saturation and value.
 
     Args:
         h: The hue in degrees.

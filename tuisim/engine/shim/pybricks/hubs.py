@@ -32,7 +32,7 @@ LIGHTS: Mapping[str, tuple[int, int]] = {
 
 
 class Buttons(Connected):
-    """Buttons that a hand presses.
+    """Buttons of the brick or of another device that the user presses.
 
     Args:
         buttons: The buttons by their names in the session.
@@ -48,17 +48,17 @@ class Buttons(Connected):
     """Makes the collections of buttons that it returns."""
 
     def pressed(self) -> Any:
-        """Return the pressed buttons."""
+        """Return the buttons that are pressed."""
         self.brick.read("pressed", self._place)
         pressed = self.brick.session.pressed
         return self.COLLECT(button for name, button in self._buttons.items() if name in pressed)
 
 
 class Light(Connected):
-    """The light around the buttons."""
+    """The light around the brick's buttons."""
 
     def on(self, color: Enum | None, brightness: int = 100) -> None:
-        """Turn the light on in a colour."""
+        """Turn the light on in a colour; None turns it off."""
         if brightness != 100:
             raise refused("the light of the EV3 has one brightness")
         self._shine(*LIGHTS.get(color.name, (0, 0)) if color is not None else (0, 0))
@@ -74,7 +74,7 @@ class Light(Connected):
 
 
 class Battery(Connected):
-    """The battery."""
+    """The battery of the brick."""
 
     def voltage(self) -> int:
         """Return the voltage in mV."""
@@ -88,7 +88,7 @@ class Battery(Connected):
 
 
 class EV3Brick(Connected):
-    """The brick."""
+    """The EV3 brick."""
 
     buttons = Buttons()
     light = Light()

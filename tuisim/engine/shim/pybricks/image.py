@@ -40,10 +40,10 @@ MOST_PIXELS = 4_000_000
 
 
 def paint_of(color: Any) -> Rgb | None:
-    """Return the paint for a colour; None, which paints nothing, for None.
+    """Return red, green and blue of a colour; None, with which nothing is drawn, for None.
 
     Raises:
-        TypeError: it is no colour.
+        TypeError: it is not a colour.
     """
     if color is None:
         return None
@@ -68,13 +68,13 @@ class Canvas(Connected):
 
     @cached_property
     def picture(self) -> Picture:
-        """The pixels as a Pillow image, white at first."""
+        """The pixels as a Pillow image, which is white at first."""
         from PIL import Image as pillow
 
         return pillow.new(MODE, (self.width, self.height), WHITE)
 
     def changed(self) -> None:
-        """Display the canvas if it is the screen; otherwise only count a command."""
+        """Display the canvas if it is the screen, and count a command."""
         session = self.brick.session
         session.command()
         if not self._shown:
@@ -97,10 +97,10 @@ def canvas_of(picture: Picture) -> Canvas:
 
 
 def load(path: str) -> Canvas:
-    """Return the canvas for a source: the screen, one of the brick's images, or a PNG file.
+    """Return the canvas with the pixels of a source: the screen, one of the brick's images, or a PNG file.
 
     Raises:
-        OSError: there is no such file, or it is no image.
+        OSError: there is no such file, or it is not an image.
     """
     if path == THE_SCREEN:
         return SCREEN
@@ -117,7 +117,7 @@ def load(path: str) -> Canvas:
 
 
 def placeholder(name: str) -> Canvas:
-    """Return a frame with the name of one of the brick's images, as large as the screen."""
+    """Return a picture as large as the screen that stands for one of the brick's images: its name in a frame."""
     Connected.brick.say_once(
         "images",
         f"the brick's own images are not part of tuisim: the screen shows a frame with a name, as {name}",
@@ -132,7 +132,7 @@ def placeholder(name: str) -> Canvas:
 
 
 def pen_on(picture: Picture) -> ImageDraw:
-    """Return the Pillow object with which to draw on a picture."""
+    """Return the Pillow object that draws on a picture."""
     from PIL import ImageDraw
 
     return ImageDraw.Draw(picture)
@@ -143,11 +143,11 @@ class Image(Connected):
 
     Args:
         source: The path of a PNG file, of which `.png` may be missing, or another image, which is copied.
-        sub: Whether to be a part of the source and share its pixels.
+        sub: Whether the image is a part of the source and shares its pixels.
         x1, y1, x2, y2: The first and the last pixel of that part; by default those of the source.
 
     Raises:
-        OSError: there is no such file, or it is no image.
+        OSError: there is no such file, or it is not an image.
         ValueError: the part is not inside the source.
     """
 
@@ -213,7 +213,7 @@ class Image(Connected):
         return self._box[3] - self._box[1]
 
     def _pixels(self) -> Picture:
-        """Return the pixels: the canvas itself if the image covers it, else a copy of its part."""
+        """Return the image's pixels: the canvas itself if the image covers all of it, else a copy of its part."""
         whole_picture = self._canvas.picture
         return (
             whole_picture
@@ -223,7 +223,7 @@ class Image(Connected):
 
     @contextmanager
     def _drawing(self) -> Iterator[tuple[Picture, ImageDraw]]:
-        """Yield the pixels and a Pillow object to change them in the block; then show them."""
+        """Return a context that yields the pixels and a Pillow object to change them; at its end they are displayed."""
         picture = self._pixels()
         yield picture, pen_on(picture)
         if picture is not self._canvas.picture:
@@ -233,7 +233,7 @@ class Image(Connected):
     # Drawing
 
     def clear(self) -> None:
-        """Make the image white; `print` begins at the top again."""
+        """Make the image white; the next `print` begins at the top."""
         with self._drawing() as (picture, _):
             self._wipe(picture)
 
@@ -284,7 +284,7 @@ class Image(Connected):
     def draw_circle(
         self, x: float, y: float, r: float, fill: bool = False, color: Color | None = Color.BLACK
     ) -> None:
-        """Draw a circle around a point."""
+        """Draw a circle of radius `r` around a point."""
         x = whole(x)
         y = whole(y)
         r = whole(r)
@@ -329,7 +329,7 @@ class Image(Connected):
         text_color: Color | None = Color.BLACK,
         background_color: Color | None = None,
     ) -> None:
-        """Draw a line of text with its top left corner at a point; other values are converted as `print` does."""
+        """Draw a line of text with its top left corner at a point; other values are converted to text as by `print`."""
         with self._drawing() as (_, pen):
             self._write(
                 pen,
@@ -347,7 +347,7 @@ class Image(Connected):
         paint: Rgb | None,
         background: Rgb | None,
     ) -> int:
-        """Write a line of text, and return its width in pixels."""
+        """Draw a line of text at a place, and return its width in pixels."""
         x, y = place
         width = self._font.text_width(text)
         line = drawable(text)
@@ -358,7 +358,7 @@ class Image(Connected):
         return width
 
     def print(self, *args: Any, sep: str = " ", end: str = "\n") -> None:
-        """Print below what was printed before, on white; at the bottom everything moves up."""
+        """Print a line of text, black on white, below the last one; if the image is full, the lines move up."""
         buffer = io.StringIO()
         print(*args, sep=sep, end=end, file=buffer)
         with self._drawing() as (picture, pen):
@@ -372,7 +372,7 @@ class Image(Connected):
                     )
 
     def _scroll(self, picture: Picture) -> None:
-        """Move everything up until the next line has room."""
+        """Move the lines of text up until there is space for another line."""
         missing = self._print_y + self._font.height - self.height
         if missing > 0:
             rest = picture.crop((0, missing, self.width, self.height + missing))
@@ -387,12 +387,12 @@ class Image(Connected):
 
 
 def pixels_of(source: Image | str) -> Picture:
-    """Return the pixels of an image, or of a file."""
+    """Return the pixels of an image, or of the image in a file."""
     return (source if isinstance(source, Image) else Image(source))._pixels()
 
 
 def mask_without(picture: Picture, paint: Rgb) -> Picture:
-    """Return a mask of the pixels that do not have this paint."""
+    """Return a mask of those pixels of a picture that do not have the colour `paint`."""
     from PIL import Image as pillow
     from PIL import ImageChops
 

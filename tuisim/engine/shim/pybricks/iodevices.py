@@ -10,7 +10,7 @@ from tuisim.engine.shim.pybricks.parameters import Port
 
 
 class Ev3devSensor(Sensor):
-    """Any sensor, by the modes of its driver."""
+    """Any sensor on an input port, which is read by the modes of its ev3dev driver."""
 
     def __init__(self, port: Port) -> None:
         super().__init__(port)
@@ -21,11 +21,11 @@ class Ev3devSensor(Sensor):
         """The number of the port's device."""
 
     def read(self, mode: str) -> tuple[int, ...]:
-        """Return the values of a measurement in a mode such as `COL-REFLECT`. A change of mode costs time.
+        """Return the values of a measurement in a mode such as `COL-REFLECT`. A change of mode takes time.
 
         Raises:
             OSError: the sensor has no such mode.
-            NotSimulated: it is a mode of a sensor that is not simulated.
+            NotSimulated: only a sensor that is not simulated has this mode.
         """
         if mode not in self._sensor.modes:
             try:

@@ -14,13 +14,13 @@ Rows = tuple[tuple[float, ...], ...]
 
 
 def _single(value: float) -> float:
-    """Return a number rounded to 32 bits, as the hub stores it."""
+    """Return a number rounded to a float of 32 bits, as the hub stores it."""
     number: float = struct.unpack("f", struct.pack("f", value))[0]
     return number
 
 
 class Matrix:
-    """A matrix of numbers, row by row."""
+    """A matrix of numbers, given row by row."""
 
     def __init__(self, rows: Sequence[Sequence[float]]) -> None:
         self._rows: Rows = tuple(tuple(map(_single, row)) for row in rows)
@@ -88,7 +88,7 @@ class Matrix:
 
 
 def vector(x: float, y: float, z: float | None = None) -> Matrix:
-    """Return a column of two or three numbers."""
+    """Return a matrix of one column with two or three numbers."""
     return Matrix([[value] for value in (x, y, z) if value is not None])
 
 

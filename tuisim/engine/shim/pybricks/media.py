@@ -14,11 +14,11 @@ _HYPHENS = {"T_REX_ROAR": "t-rex_roar", "OKEY_DOKEY": "okey-dokey", "UH_OH": "uh
 
 
 class SoundFile:
-    """The brick's sounds, by name: paths for `speaker.play_file`."""
+    """The paths of the brick's own sounds, by name, for `speaker.play_file`."""
 
 
 class ImageFile:
-    """The brick's images, by name: paths for `screen.load_image`."""
+    """The paths of the brick's own images, by name, for `screen.load_image`."""
 
 
 _NAMES: Mapping[type, Mapping[str, str]] = {
@@ -68,5 +68,5 @@ for _class, _files in ((SoundFile, SOUNDS), (ImageFile, IMAGES)):
 
 
 def name_of(path: str, files: Mapping[str, str]) -> str | None:
-    """Return the name of the constant in `files` that has a path; None if there is none."""
+    """Return the name of the constant in `files` whose value is a path; None if there is none."""
     return next((name for name, known in files.items() if known == path), None)

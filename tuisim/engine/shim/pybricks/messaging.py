@@ -21,12 +21,12 @@ CONNECT_MS, SEND_MS = 500, 10
 
 
 class Mailbox(Connected):
-    """A named value that both ends of a connection share.
+    """A named value that is sent from one end of a connection to the other.
 
     Args:
         name: The same at both ends.
         connection: A server or a client.
-        encode, decode: Turn a value into bytes and back; None leaves it as it is.
+        encode, decode: Turn a value into bytes and back; None if values are bytes.
     """
 
     def __init__(
@@ -42,20 +42,20 @@ class Mailbox(Connected):
         vars(self).update({name: convert for name, convert in own.items() if convert is not None})
 
     def encode(self, value: Any) -> Any:
-        """Return a value as bytes."""
+        """Return the bytes that stand for a value in a message."""
         return value
 
     def decode(self, payload: Any) -> Any:
-        """Return the value that bytes stand for."""
+        """Return the value that the bytes of a message stand for."""
         return payload
 
     def read(self) -> Any:
-        """Return the newest value; None before the first one."""
+        """Return the newest value that has arrived; None before the first one."""
         payload = self._connection.read_from_mailbox(self.name)
         return None if payload is None else self.decode(payload)
 
     def send(self, value: Any, destination: str | None = None) -> None:
-        """Send a value to the brick of a name, or to every connected one for None."""
+        """Send a value to the connected brick with a name; None sends it to all connected bricks."""
         self._connection.send_to_mailbox(destination, self.name, self.encode(value))
 
     def wait(self) -> None:
@@ -63,7 +63,7 @@ class Mailbox(Connected):
         self._connection.wait_for_mailbox_update(self.name)
 
     def wait_new(self) -> Any:
-        """Block until a value arrives that differs from the one before, and return it."""
+        """Block until a value arrives that differs from the last one, and return it."""
         before = self.read()
         while (value := self._next()) == before:
             pass
@@ -78,11 +78,11 @@ class LogicMailbox(Mailbox):
     """A mailbox for True and False."""
 
     def encode(self, value: Any) -> bytes:
-        """Return one byte."""
+        """Return a truth value as one byte."""
         return b"\x01" if value else b"\x00"
 
     def decode(self, payload: bytes) -> bool:
-        """Return whether the byte is not 0."""
+        """Return whether the byte of a message is not 0."""
         return bool(payload[0])
 
 
@@ -90,11 +90,11 @@ class NumericMailbox(Mailbox):
     """A mailbox for numbers."""
 
     def encode(self, value: float) -> bytes:
-        """Return a 32-bit float: about seven digits are kept."""
+        """Return a number as a 32-bit float, which keeps about seven digits."""
         return struct.pack("<f", value)
 
     def decode(self, payload: bytes) -> float:
-        """Return the number."""
+        """Return the number that the bytes of a message stand for."""
         number: float = struct.unpack("<f", payload)[0]
         return number
 
@@ -103,16 +103,16 @@ class TextMailbox(Mailbox):
     """A mailbox for texts."""
 
     def encode(self, value: Any) -> bytes:
-        """Return the text in UTF-8, ended by a zero byte."""
+        """Return a text in UTF-8, with a zero byte at its end."""
         return f"{value}\0".encode()
 
     def decode(self, payload: bytes) -> str:
-        """Return the text without its zero byte."""
+        """Return the text of a message without its zero byte."""
         return payload.decode().strip("\0")
 
 
 class MailboxHandlerMixIn(Connected):
-    """One end of a Bluetooth connection, with the newest bytes for each of its mailboxes."""
+    """One end of a Bluetooth connection, with the newest bytes of each of its mailboxes."""
 
     def __init__(self) -> None:
         self._payloads: dict[str, Any] = {}
@@ -128,7 +128,7 @@ class MailboxHandlerMixIn(Connected):
         return self._payloads.get(mbox)
 
     def send_to_mailbox(self, brick: str | None, mbox: str, payload: Any) -> None:
-        """Send bytes to a mailbox of a brick, or of every connected brick for None.
+        """Send bytes to a mailbox of the connected brick with a name; None sends them to all connected bricks.
 
         Raises:
             ValueError: no brick of that name is connected.
@@ -142,7 +142,7 @@ class MailboxHandlerMixIn(Connected):
             peer.receive(mbox, payload)
 
     def receive(self, mbox: str, payload: Any) -> None:
-        """Put bytes into a mailbox, and wake the threads that wait for them."""
+        """Store bytes that arrive in a mailbox, and wake the threads that wait for them."""
         self._payloads[mbox] = payload
         self._wake(mbox)
 
@@ -161,12 +161,12 @@ class MailboxHandlerMixIn(Connected):
             lock.release()
 
     def join(self, name: str, peer: MailboxHandlerMixIn) -> None:
-        """Connect with another end, by the name of its brick."""
+        """Connect this end with another one, whose brick is called `name`."""
         self._peers.append((name, peer))
         self._wake(_CONNECTION)
 
     def leave(self, peer: MailboxHandlerMixIn) -> None:
-        """End the connection with another end."""
+        """End the connection of this end with another one."""
         self._peers = [one for one in self._peers if one[1] is not peer]
 
 
@@ -175,7 +175,7 @@ _CONNECTION = "\0connection"
 
 
 class BluetoothMailboxServer(MailboxHandlerMixIn):
-    """The end that waits for clients."""
+    """The end of a Bluetooth connection that waits for clients."""
 
     newest: ClassVar[BluetoothMailboxServer | None] = None
     """The server of this program, if it has one."""
@@ -188,7 +188,7 @@ class BluetoothMailboxServer(MailboxHandlerMixIn):
         self.server_close()
 
     def wait_for_connection(self, count: int = 1) -> None:
-        """Block until this number of clients is connected.
+        """Block until `count` clients are connected.
 
         Raises:
             NotSimulated: the program has no client: another brick would have to connect.
@@ -208,13 +208,13 @@ class BluetoothMailboxServer(MailboxHandlerMixIn):
                 session.spend(POLL_MS * MS)
 
     def server_close(self) -> None:
-        """Accept no more clients."""
+        """Stop accepting clients."""
         if BluetoothMailboxServer.newest is self:
             BluetoothMailboxServer.newest = None
 
 
 class BluetoothMailboxClient(MailboxHandlerMixIn):
-    """The end that connects to a server."""
+    """The end of a Bluetooth connection that connects to a server."""
 
     exists: ClassVar[bool] = False
     """Whether the program has created a client."""
@@ -242,7 +242,7 @@ class BluetoothMailboxClient(MailboxHandlerMixIn):
         server.join(brick, self)
 
     def close(self) -> None:
-        """End all connections."""
+        """End all connections of this client."""
         for _, peer in self._peers:
             peer.leave(self)
         self._peers.clear()

@@ -79,7 +79,7 @@ INSTALLED: Mapping[str, Hardware] = {"umqtt": _NETWORK, "urequests": _NETWORK}
 
 
 class MicroPythonFinder:
-    """Finds MicroPython's modules.
+    """Module finder for MicroPython's modules.
 
     Args:
         of_python: As `OF_PYTHON`.
@@ -91,7 +91,7 @@ class MicroPythonFinder:
         self._refused = refused
 
     def find_spec(self, fullname: str, *_: object) -> ModuleSpec | None:
-        """Return how to load a module of MicroPython; None for other modules."""
+        """Return the spec of a module of MicroPython; None for other modules."""
         loader: Any = self
         is_refused = fullname.partition(".")[0] in self._refused
         known = fullname in self._of_python or is_refused
@@ -102,14 +102,14 @@ class MicroPythonFinder:
         )
 
     def create_module(self, spec: ModuleSpec) -> types.ModuleType:
-        """Return the module, still empty."""
+        """Return a new module without any names in it yet."""
         hardware = self._refused.get(spec.name.partition(".")[0])
         return (
             types.ModuleType(spec.name) if hardware is None else HardwareModule(spec.name, hardware)
         )
 
     def exec_module(self, module: types.ModuleType) -> None:
-        """Fill the module with the names of Python's own module."""
+        """Add the names of Python's own module to MicroPython's form of it."""
         if (source := self._of_python.get(module.__name__)) is not None:
             names = vars(import_module(source))
             vars(module).update(
@@ -120,7 +120,7 @@ class MicroPythonFinder:
 
 
 def install(session: DeviceSession) -> None:
-    """Let a program import MicroPython's modules; add names that only MicroPython has to Python's modules."""
+    """Make MicroPython's modules importable by the program, and add MicroPython's own names to Python's modules."""
     for name, more in (
         ("time", clock_names(session)),
         ("gc", GARBAGE),
@@ -144,7 +144,7 @@ def install(session: DeviceSession) -> None:
 
 
 def clock_names(session: DeviceSession) -> dict[str, Callable[..., Any]]:
-    """Return the functions that only MicroPython's `time` has, by name; they count simulated time from the start on."""
+    """Return the functions that only MicroPython's `time` has, by name; they measure simulated time."""
     cost = session.sim.spec.profile.clock_read_ns
 
     def counter(tick_ns: int) -> Callable[[], int]:
@@ -201,7 +201,7 @@ def _opt_level(level: int | None = None) -> int | None:
 
 
 def _lenient(real: Callable[..., Any], fitted: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that calls `fitted` if `real`, Python's own function, raises ValueError for the arguments."""
+    """Return a function that calls `real`, Python's own one, and `fitted` if that raises ValueError."""
 
     @wraps(real)
     def function(*given: Any, **named: Any) -> Any:
@@ -214,7 +214,7 @@ def _lenient(real: Callable[..., Any], fitted: Callable[..., Any]) -> Callable[.
 
 
 def _named_tuple(name: str, fields: Any, **named: Any) -> type:
-    """Return a named tuple with changed names, in place of names that Python does not allow."""
+    """Return a named tuple class in which names that Python does not allow are changed."""
     return namedtuple("_" + re.sub(r"\W", "_", name.strip()), fields, rename=True, **named)
 
 
@@ -245,7 +245,7 @@ GARBAGE: Mapping[str, Any] = {
 
 
 def _ilistdir(folder: str = ".") -> Iterator[tuple[str, int, int]]:
-    """Yield name, kind and inode of the entries of a folder."""
+    """Yield the name, the type and the inode of each entry of a folder, as MicroPython's `os.ilistdir` does."""
     os = import_module("os")
     for entry in os.scandir(folder):
         yield entry.name, FOLDER if entry.is_dir() else FILE, entry.inode()
@@ -256,12 +256,12 @@ FILES: Mapping[str, Any] = {"ilistdir": _ilistdir}
 
 
 def _print_exception(error: BaseException, file: Any = None) -> None:
-    """Print an error with its traceback, to the program's output if no other file is given."""
+    """Print an error with its traceback to a file, by default to the program's output."""
     import_module("traceback").print_exception(error, file=sys.stdout if file is None else file)
 
 
 class _Implementation(types.SimpleNamespace):
-    """The value of `sys.implementation`, whose fields also have numbers."""
+    """The value of `sys.implementation`, whose fields can also be read by number."""
 
     def __getitem__(self, index: int) -> Any:
         return (self.name, self.version)[index]

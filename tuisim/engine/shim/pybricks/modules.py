@@ -44,7 +44,7 @@ Names = dict[str, dict[str, Any]]
 
 
 def _read_names(version: str) -> Names:
-    """Return the names that the modules in a folder of `engine/shim/names` have."""
+    """Return what is defined in the modules of a folder of `engine/shim/names`, by module and name."""
     package = import_module(f"tuisim.engine.shim.names.{version}")
     prefix = f"{package.__name__}."
     return {
@@ -58,7 +58,7 @@ def _read_names(version: str) -> Names:
 
 
 def read_version_2() -> Names:
-    """Return the names in each module of version 2.0."""
+    """Return what each module of Pybricks 2.0 defines, by module and name."""
     names = _read_names("version_2")
     names["pybricks.iodevices"] |= refused_classes("pybricks.iodevices", IO_DEVICES)
     names["pybricks.nxtdevices"] |= refused_classes("pybricks.nxtdevices", NXT_DEVICES)
@@ -66,7 +66,7 @@ def read_version_2() -> Names:
 
 
 def read_version_4(hub: str = "") -> Names:
-    """Return the names in each module of version 4.
+    """Return what each module of Pybricks 4 defines, by module and name.
 
     Args:
         hub: The robot's hub, one of `HUBS`; empty for the EV3.
@@ -91,13 +91,13 @@ def read_version_4(hub: str = "") -> Names:
 
 
 def _name_later(owner: str, name: str) -> str:
-    """Return a hint, after a colon, that a class of version 4 has an attribute; empty if it has not."""
+    """Return a hint, after a colon, that a class of Pybricks 4 has this attribute; empty if it does not have it."""
     later = next((names[owner] for names in read_version_4().values() if owner in names), None)
     return ": Pybricks 4 has it, which --profile pybricks4 chooses" if hasattr(later, name) else ""
 
 
 def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Names:
-    """Return the names in each module for a run; also let the brick explain names of other versions.
+    """Return what each module of the library defines in a run, and set the hints for names of other versions.
 
     Args:
         brick: The brick.
@@ -141,7 +141,7 @@ def refuse_name(hub: str, module: str, name: str) -> NoReturn:
 def install(
     session: DeviceSession, built: BuiltBrick, plugs: Plugs, screen: Screen, mixer: Mixer
 ) -> None:
-    """Let a program import the library, and the modules of MicroPython."""
+    """Make the library, and the modules of MicroPython, importable by the program."""
     sys.meta_path.insert(0, refuse_other(("ev3dev2", "ev3dev"), Library.PYBRICKS))
     sys.meta_path.append(HardwareFinder(Library.PYBRICKS))
     micropython.install(session)

@@ -36,7 +36,7 @@ FACTORS: Mapping[str, int] = {
 
 
 def gear_ratio(gears: Any) -> float:
-    """Return how often a motor turns for one turn of the part that it drives.
+    """Return how many turns a motor makes for one turn of the part that it drives.
 
     Args:
         gears: None, the teeth of one gear train, or a list of trains.
@@ -56,14 +56,14 @@ def gear_ratio(gears: Any) -> float:
 
 
 def ending_of(known: Mapping[Any, Ending], then: Any) -> Ending:
-    """Return how a move ends, such as holding, for a member of the library's `Stop`.
+    """Return the ending of a move that a member of the library's `Stop` stands for.
 
     Args:
         known: The endings by member.
         then: The member.
 
     Raises:
-        TypeError: it is no such member.
+        TypeError: it is not such a member.
     """
     if not isinstance(then, Enum) or then not in known:
         raise TypeError(f"a Stop is needed, not {then!r}")
@@ -71,7 +71,7 @@ def ending_of(known: Mapping[Any, Ending], then: Any) -> Ending:
 
 
 class DCMotor(Connected):
-    """A motor without control of its speed."""
+    """A motor that is run with a power, without control of its speed."""
 
     def __init__(self, port: Port, positive_direction: Direction = Direction.CLOCKWISE) -> None:
         self._set_up(port, positive_direction, 1.0)
@@ -89,11 +89,11 @@ class DCMotor(Connected):
         self.tell(Call.SET_UP, float(direction.sign), ratio, float(keeps_angle))
 
     def tell(self, call: Call, *values: float | None) -> None:
-        """Pass a call with its values to the simulated motor; None stands for a value that is not given."""
+        """Give a command with its values to the simulated motor; None stands for a value that is not given."""
         self.brick.tell(self.brick.session.sim.find_number(self.simulated), call, *values)
 
     def _command(self) -> None:
-        """Count a command.
+        """Count a command, and check that no drive base uses the motor.
 
         Raises:
             OSError: a drive base moves or holds the motor.
@@ -116,7 +116,7 @@ class DCMotor(Connected):
         self._run_freely(None)
 
     def brake(self) -> None:
-        """Let the motor brake itself."""
+        """Stop the motor by its own brake, without holding its angle."""
         self._run_freely(0)
 
 
@@ -136,19 +136,19 @@ class Motor(DCMotor):
     # Readings
 
     def angle(self) -> int:
-        """Return the angle in degrees."""
+        """Return the motor's angle in degrees."""
         now_us = self.brick.read("position", *self.port_names)
         return self.simulated.control.settings.units(
             round(self.simulated.find_milli(now_us) / MILLI)
         )
 
     def speed(self) -> int:
-        """Return the speed in degrees per second."""
+        """Return the motor's speed in degrees per second."""
         now_us = self.brick.read("speed", *self.port_names)
         return self.simulated.control.settings.units(self.simulated.find_counts_per_s(now_us))
 
     def reset_angle(self, angle: float | None = None) -> None:
-        """Set the current angle to a value in degrees; a motion ends there."""
+        """Set the angle that the motor shows now, in degrees; a motion under way ends."""
         if angle is None:
             raise OSError(
                 errno.EOPNOTSUPP,
@@ -160,13 +160,13 @@ class Motor(DCMotor):
     # Motions without an end
 
     def hold(self) -> None:
-        """Stop and hold the angle."""
+        """Stop the motor, and hold its angle."""
         self._command()
         self.tell(Call.HOLD)
         self._follow()
 
     def run(self, speed: float) -> None:
-        """Run at a speed in degrees per second."""
+        """Run the motor at a speed in degrees per second, without an end."""
         self._command()
         settings = self.simulated.control.settings
         rate = settings.counts(whole(speed))
@@ -176,7 +176,7 @@ class Motor(DCMotor):
         self.tell(Call.FOLLOW, ending)
 
     def track_target(self, target_angle: float) -> None:
-        """Turn to an angle as fast as possible, and hold it."""
+        """Turn the motor to an angle as fast as possible, and hold it there."""
         self._command()
         counts = self.simulated.control.settings.counts(whole(target_angle))
         self.tell(Call.HOLD_MILLI, counts * MILLI)
@@ -187,7 +187,7 @@ class Motor(DCMotor):
     def run_time(
         self, speed: float, time: float, then: Stop = Stop.HOLD, wait: bool = True
     ) -> None:
-        """Run at a speed for a time in milliseconds."""
+        """Run the motor at a speed for `time` ms."""
         self._command()
         settings = self.simulated.control.settings
         time_us = whole(time) * MS_US
@@ -200,7 +200,7 @@ class Motor(DCMotor):
     def run_angle(
         self, speed: float, rotation_angle: float, then: Stop = Stop.HOLD, wait: bool = True
     ) -> None:
-        """Turn by an angle in degrees."""
+        """Turn the motor by an angle in degrees."""
         speed = whole(speed)
         angle = whole(rotation_angle)
         return self._move(
@@ -210,7 +210,7 @@ class Motor(DCMotor):
     def run_target(
         self, speed: float, target_angle: float, then: Stop = Stop.HOLD, wait: bool = True
     ) -> None:
-        """Turn to an angle in degrees."""
+        """Turn the motor to an angle in degrees."""
         return self._move(
             whole(speed), whole(target_angle), then, wait, "run_target()", relative=False
         )
@@ -243,7 +243,7 @@ class Motor(DCMotor):
         return None
 
     def _done(self, now_us: int, call: str) -> bool:
-        """Return whether the motor's move is over; tell the user once if something blocks it."""
+        """Return whether the motor's move is over; print a message once if something blocks the motor."""
         motor = self.simulated
         if motor.guide is None:
             return True
@@ -252,15 +252,20 @@ class Motor(DCMotor):
         return self.move_done(now_us, motor.control)
 
     def change_setting(self, _control: Controller, setting: int, value: int) -> None:
-        """Change a setting of the motor's controller, by its number."""
+        """Change a setting of the motor's controller.
+
+        Args:
+            setting: The number of the setting.
+            value: Its new value, in counts.
+        """
         self.tell(Call.SET_CONTROL, setting, value)
 
     def has_let_go(self) -> bool:
-        """Return whether the move is over and nothing holds the motor any more."""
+        """Return whether the move is over, and the motor coasts or brakes instead of holding."""
         return self.simulated.lets_go and self.move_done(self.brick.now_us, self.simulated.control)
 
     def move_done(self, now_us: int, control: Controller) -> bool:
-        """Return whether a controller of the motor has no move under way."""
+        """Return whether no move of a controller of the motor is under way."""
         return control.done(
             now_us, self.simulated.find_milli(now_us), self.simulated.find_counts_per_s(now_us)
         )
@@ -268,7 +273,7 @@ class Motor(DCMotor):
     def run_until_stalled(
         self, speed: float, then: Stop = Stop.COAST, duty_limit: float | None = None
     ) -> int:
-        """Run at a speed until something stops the motor, and return the angle."""
+        """Run the motor at a speed until something stops it, and return its angle in degrees."""
         limit = None if duty_limit is None else max(0, min(100, whole(duty_limit))) * PERCENT
         self.run(speed)
         self.tell(Call.LIMIT_DUTY, limit)
@@ -292,7 +297,7 @@ class Motor(DCMotor):
 
 
 class Control(Connected):
-    """The settings of a controller.
+    """The settings of a motor's or drive base's controller, as a program reads and sets them.
 
     Args:
         owner: The motor or drive base of the controller.
@@ -311,7 +316,7 @@ class Control(Connected):
         return self._control.settings.counts_per_unit
 
     def _access(self, **values: float | None) -> tuple[int, ...] | None:
-        """Return settings, by their names, in the program's units; or set those that are not None.
+        """Return settings by their names, in the program's units, or set those that are not None.
 
         Raises:
             OSError: a move is under way, or the motor holds.
@@ -341,7 +346,7 @@ class Control(Connected):
         acceleration: float | None = None,
         actuation: float | None = None,
     ) -> tuple[int, ...] | None:
-        """Return the highest speed, acceleration and power, or set them."""
+        """Set the highest speed, acceleration and power; without arguments, return them."""
         if any(
             value is not None and whole(value) < 1 for value in (speed, acceleration, actuation)
         ):
@@ -357,7 +362,7 @@ class Control(Connected):
         integral_rate: float | None = None,
         feed_forward: float | None = None,
     ) -> tuple[int, ...] | None:
-        """Return the gains of the controller, or set them. Of these, only `kp` changes a simulated motion."""
+        """Set the gains of the controller; without arguments, return them. Only `kp` changes a simulated motion."""
         return self._access(
             kp=kp,
             ki=ki,
@@ -370,17 +375,17 @@ class Control(Connected):
     def target_tolerances(
         self, speed: float | None = None, position: float | None = None
     ) -> tuple[int, ...] | None:
-        """Return the tolerances of speed and position within which a move at its target is done, or set them."""
+        """Set how near to its target speed and position a move is done; without arguments, return these tolerances."""
         return self._access(speed_tolerance=speed, position_tolerance=position)
 
     def stall_tolerances(
         self, speed: float | None = None, time: float | None = None
     ) -> tuple[int, ...] | None:
-        """Return the speed below which, and the time after which, a motor counts as stalled, or set them."""
+        """Set the speed below which, and the time after which, a motor is stalled; without arguments, return them."""
         return self._access(stall_speed=speed, stall_time_ms=time)
 
     def trajectory(self) -> tuple[int, ...] | None:
-        """Return the running trajectory: four times in ms, four positions, the speed and the two accelerations."""
+        """Return the present trajectory: four times in ms, four positions, the speed and the two accelerations."""
         trajectory = self._control.trajectory
         if trajectory is None:
             return None
@@ -394,12 +399,12 @@ class Control(Connected):
         )
 
     def done(self) -> bool:
-        """Return whether no move is under way."""
+        """Return whether no move of the controller is under way."""
         return bool(
             self._owner.move_done(self.brick.read("state", *self._owner.port_names), self._control)
         )
 
     def stalled(self) -> bool:
-        """Return whether something blocks the motion."""
+        """Return whether something blocks the controller's motion."""
         self.brick.read("state", *self._owner.port_names)
         return self._control.stalled

@@ -7,7 +7,7 @@ from typing import Any
 
 
 class NamedEnum(Enum):
-    """An enumeration whose members are printed as the firmware does, such as `Port.A`."""
+    """An enumeration whose members are printed as on the brick, such as `Port.A`."""
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}.{self.name}"
@@ -20,15 +20,15 @@ class AnyPort(NamedEnum):
 
     @property
     def device_port(self) -> str:
-        """The name of the port in a robot."""
+        """The name of the port in the simulated robot."""
         return self.name
 
 
 def find_port(port: Any) -> str:
-    """Return the name of a port in a robot.
+    """Return the name that a port has in the simulated robot.
 
     Raises:
-        TypeError: it is no port.
+        TypeError: it is not a port.
     """
     if not isinstance(port, AnyPort):
         raise TypeError(f"a Port is needed, not {type(port).__name__}")
@@ -54,13 +54,13 @@ class Stop(NamedEnum):
 
 
 class Direction(NamedEnum):
-    """The direction that counts as positive."""
+    """The direction of a motor in which its angle increases."""
 
     CLOCKWISE, COUNTERCLOCKWISE = range(2)
 
     @property
     def sign(self) -> int:
-        """1 or -1."""
+        """1 for clockwise, -1 for counter-clockwise."""
         return 1 if self is Direction.CLOCKWISE else -1
 
 
@@ -72,12 +72,12 @@ class Button(NamedEnum):
 
 
 class Color(NamedEnum):
-    """Colours of the sensor, the light and the screen."""
+    """Colours of the colour sensor, the brick's light and the screen."""
 
     BLACK, BLUE, GREEN, YELLOW, RED, WHITE, BROWN, ORANGE, PURPLE = range(1, 10)
 
 
 class Align(NamedEnum):
-    """Where version 1.0 shows an image."""
+    """Places on the screen at which version 1.0 shows an image."""
 
     BOTTOM_LEFT, BOTTOM, BOTTOM_RIGHT, LEFT, CENTER, RIGHT, TOP_LEFT, TOP, TOP_RIGHT = range(1, 10)

@@ -22,7 +22,7 @@ from tuisim.engine.shim.unsupported.modules import refused_part
 
 
 class DriveBase(Connected):
-    """A robot with two driven wheels."""
+    """A robot with two driven wheels, which drives straight and turns."""
 
     CONTROL: ClassVar[type[Control]] = Control
     current: ClassVar[DriveBase | None] = None
@@ -57,30 +57,30 @@ class DriveBase(Connected):
         self.reset()
 
     def _take_place(self, earlier: DriveBase) -> None:
-        """Take over the motors from an earlier drive base."""
+        """Stop the earlier drive base, whose motors this one may use."""
         earlier.stop()
 
     def tell(self, call: Call, *values: float | None) -> None:
-        """Pass a call with its values to the simulated drive base; None stands for a value that is not given."""
+        """Give a command with its values to the simulated drive base; None stands for a value that is not given."""
         self.brick.tell(self._number, call, *values)
 
     def has_motor(self, motor: Any) -> bool:
-        """Return whether a motor is one of the two of this drive base."""
+        """Return whether a motor is one of the two motors of this drive base."""
         return any(ours.simulated is motor.simulated for ours in (self.left, self.right))
 
     @property
     def holds_by_gyro(self) -> bool:
-        """Whether the drive base drives or holds with its heading from the gyro."""
+        """Whether the drive base drives or holds, and takes its heading from the gyro."""
         return self._base.uses_gyro and self._base.active
 
     # Motions
 
     def straight(self, distance: float) -> None:
-        """Drive a distance in mm, and hold."""
+        """Drive a distance in mm, and hold the wheels."""
         return self._move(whole(distance), 0, "straight()")
 
     def turn(self, angle: float) -> None:
-        """Turn by an angle in degrees, clockwise, and hold."""
+        """Turn by an angle in degrees, clockwise, and hold the wheels."""
         return self._move(0, whole(angle), "turn()")
 
     def _move(
@@ -101,7 +101,7 @@ class DriveBase(Connected):
         return self.brick.finish(self._wait_for_end(call)) if wait else None
 
     def _wait_for_end(self, call: str) -> Waiting[None]:
-        """Wait until the move of a call is over; tell the user once if something blocks the wheels."""
+        """Wait until the move of a call is over; print a message once if something blocks the wheels."""
         base = self._base
 
         def done(now_us: int) -> bool:
@@ -118,7 +118,7 @@ class DriveBase(Connected):
         *,
         drive_speed: float | None = None,
     ) -> None:
-        """Drive on at a speed in mm/s and a rate of turn in degrees per second.
+        """Drive at a speed in mm/s and a rate of turn in degrees per second, without an end.
 
         Args:
             speed, turn_rate: Both are needed.
@@ -131,11 +131,11 @@ class DriveBase(Connected):
         self.tell(Call.DRIVE_BASE, whole(speed), whole(turn_rate))
 
     def stop(self) -> None:
-        """Stop, and let the motors coast."""
+        """Stop the drive base, and let its motors coast."""
         self._end(None)
 
     def _end(self, actuation: int | None) -> None:
-        """End a motion with a power of the motors: None lets them coast, 0 brakes them."""
+        """End a motion: run the motors with a power in hundredths of a percent; None lets them coast, 0 brakes them."""
         self.brick.command()
         self.tell(Call.STOP_BASE, actuation)
 
@@ -178,7 +178,13 @@ class DriveBase(Connected):
         self._zeros = round(total / MILLI), round(difference / MILLI)
 
     def change_setting(self, control: Controller, setting: int, value: int) -> None:
-        """Change a setting of a controller of the drive base, by its number."""
+        """Change a setting of one of the drive base's two controllers.
+
+        Args:
+            control: The controller.
+            setting: The number of the setting.
+            value: Its new value, in counts.
+        """
         self.tell(Call.SET_BASE_CONTROL, control is self._base.heading, setting, value)
 
     def has_let_go(self) -> bool:
@@ -186,7 +192,7 @@ class DriveBase(Connected):
         return False
 
     def move_done(self, now_us: int, control: Controller) -> bool:
-        """Return whether a controller of the drive base has no move under way."""
+        """Return whether no move of a controller of the drive base is under way."""
         at = 0 if control is self._base.distance else 1
         return control.done(
             now_us, self._base.find_millis(now_us)[at], self._base.find_rates(now_us)[at]
@@ -201,7 +207,7 @@ class DriveBase(Connected):
         turn_rate: float | None = None,
         turn_acceleration: float | None = None,
     ) -> tuple[int, ...] | None:
-        """Return speeds and accelerations of `straight` and `turn`, or set them."""
+        """Set the speeds and accelerations of `straight` and `turn`; without arguments, return them."""
         base = self._base
         given: tuple[Any, ...] = (
             straight_speed,
@@ -221,7 +227,7 @@ class DriveBase(Connected):
         return None
 
     def _check_setting(self, value: int, at: int) -> int:
-        """Return a setting limited to what the motors can do.
+        """Return a setting, limited to what the motors can do.
 
         Args:
             value: In units of the program.

@@ -35,15 +35,15 @@ WHOLE_NOTE_MS_AT_1 = 240_000
 
 
 def note_of(text: Any, whole_ms: int) -> Tone:
-    """Return the tone of a note such as `C#4/8._`; one without `_` is silent in its last eighth.
+    """Return the tone of a note such as `C#4/8._`; a note without `_` is silent in its last eighth.
 
     Args:
         text: The note: a name, or R for a rest; the octave; a fraction of a whole note; a dot; an underscore.
         whole_ms: Length of a whole note.
 
     Raises:
-        TypeError: it is no text.
-        ValueError: it is no note.
+        TypeError: it is not a text.
+        ValueError: it is not a note.
     """
     match = NOTE.fullmatch(text_of(text))
     if match is None:
@@ -68,13 +68,13 @@ def note_of(text: Any, whole_ms: int) -> Tone:
 
 
 def set_volumes(mixer: Mixer, volumes: Mapping[str, int]) -> None:
-    """Set volumes in percent, by the name of their control."""
+    """Set volumes of the brick in percent, by the names of their mixer controls."""
     for control, percent in volumes.items():
         mixer.do(("set", control, f"{percent}%"))
 
 
 class TonePlayer(Connected):
-    """What the speaker of every version plays: tones and notes."""
+    """Base class of the speakers of all versions, which play tones and notes."""
 
     def _play(self, heard: Heard) -> Any:
         Loudspeaker(self.brick.session).play(heard, heard.length_ns)
@@ -82,7 +82,7 @@ class TonePlayer(Connected):
     def beep(self, frequency: float = 500, duration: float = 100) -> Any:
         """Play a tone of a frequency in Hz for a duration in ms, and wait for its end.
 
-        A negative duration returns at once; the tone then lasts until the next beep.
+        With a negative duration, the call does not wait, and the tone lasts until the next beep.
         """
         frequency_hz = max(0, whole(frequency))
         length_ms = whole(duration)
@@ -115,21 +115,21 @@ class TonePlayer(Connected):
 
 
 class Speaker(TonePlayer):
-    """The speaker of the EV3. It stores the volume, which changes nothing that is recorded."""
+    """The speaker of the EV3. It stores the volume, but a recorded sound is the same at any volume."""
 
     _words_a_minute = START_WORDS_A_MINUTE
 
     def play_file(self, file: str | None = None, *, file_name: str | None = None) -> None:
         """Play a sound file, and wait for its end.
 
-        One of the brick's own sounds, which are not part of tuisim, is shown by its name and takes a second.
+        The brick's own sounds are not part of tuisim: such a sound is shown by its name, and takes a second.
 
         Args:
             file: A constant of `SoundFile`, or the path of a WAV file.
             file_name: The same, under the name that the handbook gives it.
 
         Raises:
-            RuntimeError: the file is missing, or no WAV file.
+            RuntimeError: the file is missing, or is not a WAV file.
         """
         path = text_of(file if file_name is None else file_name)
         name = name_of(path, SOUNDS)
@@ -146,7 +146,7 @@ class Speaker(TonePlayer):
         """Speak a text, and wait for its end.
 
         Raises:
-            TypeError: it is no text, such as a number.
+            TypeError: it is not a text, but for example a number.
         """
         self._play(speech_heard(text_of(text), str(self._words_a_minute)))
 
@@ -157,7 +157,7 @@ class Speaker(TonePlayer):
         speed: float | None = None,
         pitch: float | None = None,
     ) -> None:
-        """Set how `say` speaks; None leaves an option. Of these, only the speed, in words per minute, is simulated."""
+        """Set how `say` speaks; None keeps an option. Only the speed, in words per minute, has an effect here."""
         for text in (language, voice):
             if text is not None:
                 text_of(text)

@@ -28,24 +28,24 @@ def wait(time: float) -> None:
 
 
 def wait_until(end_us: int) -> Waiting[None]:
-    """Wait until a time in microseconds, even if a motor ends its move before."""
+    """Wait until a time in microseconds, even if a motor ends a move before."""
     while Connected.brick.now_us < end_us:
         yield end_us
 
 
 def localtime(seconds: float | None = None) -> clock.struct_time:
-    """Return the simulated date and time, or the date and time of a count of seconds."""
+    """Return the date and time of a number of seconds, by default of the simulated present."""
     return clock.localtime(seconds)
 
 
 def ticks_us() -> int:
-    """Return the simulated time in microseconds, which starts again from 0 after a period."""
+    """Return the simulated time in microseconds, which starts again from 0 after each period of the counter."""
     ticks: int = vars(clock)["ticks_us"]()
     return ticks
 
 
 class StopWatch(Connected):
-    """A stopwatch; it runs from its creation on."""
+    """A stopwatch, which starts when it is created."""
 
     _counted_ns = 0
     _runs = True
@@ -57,28 +57,28 @@ class StopWatch(Connected):
         return self._counted_ns + (self.brick.session.now - self._began_ns if self._runs else 0)
 
     def time(self) -> int:
-        """Return the counted milliseconds."""
+        """Return the measured time in milliseconds."""
         self.brick.session.charge(self.brick.session.sim.spec.profile.clock_read_ns)
         return self._passed_ns() // MS
 
     def pause(self) -> None:
-        """Stop counting."""
+        """Stop the stopwatch; it keeps its time."""
         self._counted_ns = self._passed_ns()
         self._runs = False
 
     def resume(self) -> None:
-        """Go on counting."""
+        """Let the stopwatch run on from its time."""
         self._counted_ns = self._passed_ns()
         self._began_ns = self.brick.session.now
         self._runs = True
 
     def reset(self) -> None:
-        """Set the time to 0; a stopwatch that runs goes on."""
+        """Set the time to 0; a running stopwatch runs on."""
         self._counted_ns, self._began_ns = 0, self.brick.session.now
 
 
 class DataLog(Connected):
-    """A file with rows of values."""
+    """A file into which a program writes rows of values, separated by commas."""
 
     def __init__(
         self,
@@ -99,7 +99,10 @@ class DataLog(Connected):
             self._write(headers)
 
     def log(self, *values: Any) -> None:
-        """Write one row. Its numbers are also samples of the run, except those whose names begin with `time`."""
+        """Write one row to the file.
+
+        Its numbers are also samples of the run, except those in columns whose names begin with `time`.
+        """
         self._write(values)
         for at, value in enumerate(values):
             name = self._names[at] if at < len(self._names) else f"value{at + 1}"

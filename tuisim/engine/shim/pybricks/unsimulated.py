@@ -99,7 +99,7 @@ def refuse_hub(hub: str, name: str) -> NoReturn:
 
 
 def explain_hub(name: str, hub: str = "") -> tuple[str, str]:
-    """Return what to say about a name that belongs to another hub than the robot's, and a hint.
+    """Return message and hint of the error for a name that belongs to another hub than the robot's.
 
     Args:
         name: The full name.
@@ -117,7 +117,7 @@ def explain_hub(name: str, hub: str = "") -> tuple[str, str]:
 
 
 def refuse_all(classes: Mapping[str, Sequence[str]], instead: str) -> dict[str, dict[str, Any]]:
-    """Return classes that can be imported but not used, by module and name.
+    """Return classes that a program can import but not use, by module and name.
 
     Args:
         classes: The names of the classes, by module.
@@ -132,5 +132,5 @@ def refuse_all(classes: Mapping[str, Sequence[str]], instead: str) -> dict[str, 
 
 
 def refused_classes(module: str, classes: Mapping[str, Hardware]) -> dict[str, Any]:
-    """Return the classes of a module of the library that can be imported but not used, by name."""
+    """Return those classes of a module of the library that a program can import but not use, by name."""
     return {name: refused_part(module, name, hardware) for name, hardware in classes.items()}

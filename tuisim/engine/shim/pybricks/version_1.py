@@ -25,17 +25,17 @@ class _OfBrick:
 
 
 class Speaker(_OfBrick):
-    """The speaker. Each sound sets the volume, in percent."""
+    """The speaker in version 1.0 of Pybricks. Each call gives the volume, in percent."""
 
     def beep(
         self, frequency: float = 500, duration: float = 100, volume: float = START_VOLUMES["Beep"]
     ) -> None:
-        """Play a tone, and wait for its end."""
+        """Play a tone of a frequency in Hz for a duration in ms, and wait for its end."""
         _brick.speaker.set_volume(volume, "Beep")
         _brick.speaker.beep(frequency, duration)
 
     def beeps(self, number: float) -> None:
-        """Play several short tones."""
+        """Play `number` short tones."""
         for _ in range(whole(number)):
             self.beep()
             wait(BEEPS_PAUSE_MS)
@@ -45,7 +45,7 @@ class Speaker(_OfBrick):
         frequencies_and_durations: Iterable[tuple[float, float]],
         volume: float = START_VOLUMES["Beep"],
     ) -> None:
-        """Play tones of a frequency in Hz and a duration in ms."""
+        """Play tones, each given by a frequency in Hz and a duration in ms."""
         for frequency, duration in frequencies_and_durations:
             self.beep(frequency, duration, volume)
 
@@ -61,14 +61,14 @@ class Speaker(_OfBrick):
 
 
 class Display(_OfBrick):
-    """The screen."""
+    """The screen in version 1.0 of Pybricks."""
 
     def clear(self) -> None:
         """Make the screen white."""
         _brick.screen.clear()
 
     def text(self, text: Any, location: tuple[float, float] | None = None) -> None:
-        """Show a line of text at a point, or below the line before."""
+        """Show a line of text at a point; without a point, below the last line."""
         if location is None:
             _brick.screen.print(text)
         else:
@@ -80,7 +80,7 @@ class Display(_OfBrick):
         location_or_alignment: tuple[float, float] | Align = Align.CENTER,
         clear: bool = True,
     ) -> None:
-        """Show an image at a point or an alignment; clear the screen first unless `clear` is False."""
+        """Show an image at a point or an alignment; if `clear` is True, clear the screen first."""
         screen = _brick.screen
         source = Image(file_name)
         place = location_or_alignment
@@ -101,10 +101,10 @@ sound, display = Speaker("EV3"), Display("EV3")
 
 
 def light(color: Color | None) -> None:
-    """Turn the light on in a colour; None turns it off."""
+    """Turn the brick's light on in a colour; None turns it off."""
     _brick.light.on(color)
 
 
 def buttons() -> list[Button]:
-    """Return the pressed buttons."""
+    """Return the brick's pressed buttons."""
     return [*_brick.buttons.pressed()]

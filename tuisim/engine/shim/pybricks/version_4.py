@@ -47,7 +47,7 @@ class Stop(NamedEnum):
 
 
 class Motor(motor.Motor):
-    """A large or medium motor."""
+    """A motor under version 4 of Pybricks."""
 
     # A smart ending has the same effect as a plain one, because a simulated motor is always where it should be.
     ENDINGS: ClassVar[Mapping[Any, Ending]] = {
@@ -70,7 +70,7 @@ class Motor(motor.Motor):
             self.control.target_tolerances(position=max(MIN_PROFILE_DEG, whole(profile)))
 
     def _command(self) -> None:
-        """Count a command; if a drive base moves or holds the motor, it lets both of its motors coast."""
+        """Count a command. If a drive base moves or holds the motor, that lets both of its motors coast."""
         self.brick.command()
         guide = self.simulated.guide
         if (
@@ -84,7 +84,7 @@ class Motor(motor.Motor):
     """The angle, as the program counts it, of the mark on the shaft, where the motor began."""
 
     def reset_angle(self, angle: float | None = None) -> None:
-        """Set the current angle to a value in degrees.
+        """Set the angle that the motor shows now, in degrees.
 
         By default, it is the angle from the mark on the shaft, which the motor of a hub knows.
         """
@@ -95,13 +95,13 @@ class Motor(motor.Motor):
         super().reset_angle(angle)
 
     def speed(self, window: float = 100) -> int:
-        """Return the speed in degrees per second, which is exact for any window."""
+        """Return the speed in degrees per second; the window of time changes nothing, because the speed is exact."""
         if whole(window) <= 0:
             raise invalid_argument()
         return super().speed()
 
     def done(self) -> bool:
-        """Return whether no move is under way."""
+        """Return whether no move of the motor is under way."""
         return self.control.done()
 
     def stalled(self) -> bool:
@@ -109,12 +109,12 @@ class Motor(motor.Motor):
         return self.control.stalled()
 
     def load(self) -> int:
-        """Return the load in mNm: nothing but an obstacle loads a simulated motor."""
+        """Return the load on the motor in mNm: always 0 for a simulated motor."""
         self.brick.read()
         return 0
 
     def settings(self, max_voltage: float | None = None) -> tuple[int] | None:
-        """Return the highest voltage in mV, or set it."""
+        """Set the highest voltage in mV; without an argument, return it."""
         control = self.simulated.control
         full_mv = 6000 if self.simulated.kind == "small-angular" else 9000
         if max_voltage is None:
@@ -126,7 +126,7 @@ class Motor(motor.Motor):
         return None
 
     def close(self) -> None:
-        """Let the motor coast, and free it for another drive base."""
+        """Let the motor coast, so that another drive base can use it."""
         self.stop()
         if DriveBase.current is not None and DriveBase.current.has_motor(self):
             robotics.DriveBase.current = None
@@ -138,14 +138,17 @@ def _check_range(value: float, lowest: int, highest: int) -> None:
 
 
 class Control(motor.Control):
-    """The settings of a controller, which may be changed at any time."""
+    """The settings of a controller under version 4 of Pybricks, which may be changed at any time."""
 
     SETTINGS_WHILE_ACTIVE = True
 
     def limits(
         self, speed: float | None = None, acceleration: Any = None, torque: float | None = None
     ) -> tuple[int, ...] | None:
-        """Return the highest speed, acceleration and torque in mNm, or set them; the torque limits nothing."""
+        """Set the highest speed, acceleration and torque in mNm; without arguments, return them.
+
+        The torque has no effect on a simulated motor.
+        """
         if isinstance(acceleration, tuple):
             acceleration = acceleration[0]
         for value, lowest, highest in ((speed, *SPEEDS_DPS), (acceleration, *ACCELERATIONS_DPS2)):
@@ -161,20 +164,20 @@ class Control(motor.Control):
         integral_deadzone: float | None = None,
         integral_rate: float | None = None,
     ) -> tuple[int, ...] | None:
-        """Return the gains in micro-Nm per degree (and second) with two more numbers, or set them."""
+        """Set the gains in micro-Nm per degree (and second), and two more numbers; without arguments, return them."""
         scale = self._control.settings.torque_unm * COUNTS_PER_DEG / FULL_ACTUATION
         kp, ki, kd = (None if gain is None else round(gain / scale) for gain in (kp, ki, kd))
         gains = super().pid(kp, ki, kd, integral_deadzone, integral_rate)
         return gains and (*(round(gain * scale) for gain in gains[:3]), *gains[3:5])
 
     def load(self) -> int:
-        """Return the load in mNm."""
+        """Return the load on the motor or drive base in mNm: always 0 in the simulation."""
         self.brick.read()
         return 0
 
 
 class DriveBase(robotics.DriveBase):
-    """A robot with two driven wheels."""
+    """A robot with two driven wheels, under version 4 of Pybricks."""
 
     CONTROL = Control
 
@@ -187,7 +190,7 @@ class DriveBase(robotics.DriveBase):
         super()._take_place(earlier)
 
     def straight(self, distance: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
-        """Drive a distance in mm."""
+        """Drive a distance in mm; `then` says what the motors do afterwards."""
         return self._move(whole(distance), 0, "straight()", then, wait=wait)
 
     def move_by(self, dx: float, dy: float, then: Stop = Stop.HOLD) -> None:
@@ -208,14 +211,14 @@ class DriveBase(robotics.DriveBase):
     def turn(
         self, angle: float, then: Stop = Stop.HOLD, wait: bool = True, absolute: bool = False
     ) -> None:
-        """Turn by an angle in degrees, clockwise; with `absolute`, turn to that heading."""
+        """Turn by an angle in degrees, clockwise; with `absolute`, turn to a heading of this angle."""
         by: float = whole(angle)
         if absolute:
             by = (by - self.angle() + 180) % 360 - 180
         return self._move(0, by, "turn()", then, wait=wait)
 
     def curve(self, radius: float, angle: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
-        """Drive along an arc by an angle in degrees; a negative radius turns the other way."""
+        """Drive along an arc by an angle in degrees; a negative radius turns in the other direction."""
         turned = -whole(angle) if radius < 0 else whole(angle)
         way = whole(radius) * radians(abs(whole(angle)))
         return self._move(way, turned, "curve()", then, wait=wait)
@@ -244,7 +247,7 @@ class DriveBase(robotics.DriveBase):
         return round_number(counts / base.heading.settings.counts_per_unit)
 
     def use_gyro(self, use_gyro: bool) -> None:
-        """Take the heading from the hub's gyro, or from the wheels for False; a change lets the motors coast."""
+        """Take the heading from the hub's gyro, or for False from the wheels; a change lets the motors coast."""
         if not self.brick.session.sim.spec.robot.hub:
             raise refused("the EV3 has no gyro inside")
         if bool(use_gyro) != self._base.uses_gyro:
@@ -259,7 +262,10 @@ class DriveBase(robotics.DriveBase):
         turn_rate: Any = None,
         turn_acceleration: Any = None,
     ) -> tuple[Any, ...] | None:
-        """Return speeds and accelerations, or set them; an acceleration may be a pair, for the start and the stop."""
+        """Set the speeds and accelerations of moves; without arguments, return them.
+
+        An acceleration may be a pair: for the start and for the stop.
+        """
         values = straight_speed, straight_acceleration, turn_rate, turn_acceleration
         pairs = [value if isinstance(value, tuple) else (value, value) for value in values]
         current = super().settings(*(first for first, _ in pairs))
@@ -283,15 +289,15 @@ class DriveBase(robotics.DriveBase):
         return value
 
     def brake(self) -> None:
-        """Stop and let the motors brake themselves."""
+        """Stop the drive base, and let its motors brake."""
         self._end(0)
 
     def hold(self) -> None:
-        """Stop and hold the wheels."""
+        """Stop the drive base, and hold its wheels."""
         return self._move(0, 0, "hold()", wait=False)
 
     def done(self) -> bool:
-        """Return whether no move is under way."""
+        """Return whether no move of the drive base is under way."""
         now_us = self.brick.read("state", *self.port_names)
         return not self._base.active or self._base.done(now_us)
 
@@ -301,7 +307,7 @@ class DriveBase(robotics.DriveBase):
         return self._base.stalled
 
     def reset(self, distance: float = 0, angle: float = 0) -> None:
-        """Set the current distance in mm and angle in degrees."""
+        """Set the distance in mm and the angle in degrees that the drive base shows now."""
         self.stop()
         super().reset()
         base = self._base
@@ -323,22 +329,22 @@ class GyroDriveBase(DriveBase):
 
 
 class ColorSensor(ev3devices.ColorSensor):
-    """A colour sensor."""
+    """The EV3 colour sensor under version 4 of Pybricks."""
 
     def color(self, surface: bool = True) -> Any:
-        """Return the colour; `Color.NONE` if there is none."""
+        """Return the colour that the sensor sees; `Color.NONE` if there is none."""
         color = super().color()
         return Color.NONE if color is None else Color[color.name]
 
 
 class InfraredSensor(ev3devices.InfraredSensor):
-    """An infrared sensor."""
+    """The EV3 infrared sensor under version 4 of Pybricks."""
 
     COLLECT = set
 
 
 class GyroSensor(ev3devices.GyroSensor):
-    """A gyro."""
+    """The EV3 gyro under version 4 of Pybricks."""
 
     def calibrate(self) -> None:
         """Calibrate the gyro, which sets the angle to 0."""
@@ -346,10 +352,10 @@ class GyroSensor(ev3devices.GyroSensor):
 
 
 class StopWatch(tools.StopWatch):
-    """A stopwatch; it runs from its creation on."""
+    """A stopwatch, which starts when it is created, under version 4 of Pybricks."""
 
     def running(self) -> bool:
-        """Return whether the stopwatch counts."""
+        """Return whether the stopwatch is running."""
         return self._runs
 
 
@@ -363,10 +369,10 @@ def read_input_byte(last: bool = False, chr: bool = False) -> int | str | None: 
 
 
 def _steps(task: Any) -> Waiting[Any]:
-    """Return an iterator over the times until which a task waits.
+    """Return an iterator over the times, in microseconds, until which a task waits.
 
     Raises:
-        TypeError: it is no task.
+        TypeError: it is not a task.
     """
     if hasattr(task, "send"):
         return task  # type: ignore[no-any-return]
@@ -376,10 +382,10 @@ def _steps(task: Any) -> Waiting[Any]:
 
 
 def run_task(task: Any = None) -> Any:
-    """Run a task to its end and return None; without a task, return whether one runs.
+    """Run a task until it ends, and return None; without a task, return whether one is running.
 
     Raises:
-        RuntimeError: a task runs already.
+        RuntimeError: a task is running already.
     """
     brick = Connected.brick
     if task is None:
@@ -395,7 +401,7 @@ def run_task(task: Any = None) -> Any:
 
 
 class multitask:  # noqa: N801 - as the library names it
-    """Runs several tasks at once when a task awaits it."""
+    """Runs several tasks at the same time when a task awaits it."""
 
     def __init__(self, *tasks: Any, race: bool = False) -> None:
         self._tasks = [_steps(task) for task in tasks]

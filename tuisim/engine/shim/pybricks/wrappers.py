@@ -12,20 +12,20 @@ def _invalid_stop() -> ValueError:
 
 
 class Motor(motor.Motor):
-    """A large or medium motor."""
+    """The motor of version 2.0 of Pybricks, which keeps the methods of version 1.0."""
 
     def stop(self, stop_type: Stop = Stop.COAST) -> None:
-        """Let the motor coast, brake or hold."""
+        """Stop the motor: it coasts, brakes or holds."""
         if not isinstance(stop_type, Stop):
             raise _invalid_stop()
         self._rest(self.ENDINGS[stop_type])
 
     def stalled(self) -> bool:
-        """Return whether something blocks the motion."""
+        """Return whether something blocks the motor."""
         return self.control.stalled()
 
     def set_run_settings(self, max_speed: float, acceleration: float) -> None:
-        """Set the highest speed and acceleration."""
+        """Set the highest speed and acceleration of the motor's moves."""
         self.control.limits(max_speed, acceleration)
 
     def set_dc_settings(self, duty_limit: float, duty_offset: float) -> None:
@@ -44,23 +44,23 @@ class Motor(motor.Motor):
         stall_speed: float,
         stall_time: float,
     ) -> None:
-        """Set the gains, when a move is done and when the motor is stalled; `tight_loop_limit` has no effect."""
+        """Set the gains, and when a move is done and when the motor is stalled; `tight_loop_limit` has no effect."""
         self.control.pid(kp, ki, kd)
         self.control.target_tolerances(speed_tolerance, angle_tolerance)
         self.control.stall_tolerances(stall_speed, stall_time)
 
 
 class DriveBase(robotics.DriveBase):
-    """A robot with two driven wheels."""
+    """The drive base of version 2.0 of Pybricks, which keeps the methods of version 1.0."""
 
     def drive_time(self, speed: float, steering: float, time: float) -> None:
-        """Drive for a time in milliseconds, and coast."""
+        """Drive for a time in milliseconds, then let the motors coast."""
         self.drive(speed, steering)
         wait(time)
         self.stop()
 
     def stop(self, stop_type: Stop = Stop.COAST) -> None:
-        """Stop, and coast, brake or hold."""
+        """Stop the drive base: its motors coast, brake or hold."""
         match stop_type:
             case Stop.COAST:
                 super().stop()

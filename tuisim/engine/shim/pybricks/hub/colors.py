@@ -12,7 +12,7 @@ MAX_DARK_VALUE = 1
 
 
 def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
-    """Return hue, saturation and value of red, green and blue from 0 to 1024, as the firmware computes them."""
+    """Return the hue, saturation and value that the firmware computes of red, green and blue, each 0 to 1024."""
     channels = [channel / 4 for channel in (red, green, blue)]
     brightest = max(channels)
     chroma = brightest - min(channels)
@@ -35,7 +35,7 @@ def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
 
 
 def find_nearest(measured: tuple[int, int, int], colors: Sequence[Any]) -> Any:
-    """Return the colour that is nearest to a measured hue, saturation and value."""
+    """Return the one of `colors` that is nearest to a measured hue, saturation and value."""
     hue, saturation, value = measured
     if not all(_is_ideal(color) for color in colors):
         place = _find_place(measured)
@@ -52,7 +52,7 @@ def _is_ideal(color: Any) -> bool:
 
 
 def _find_place(color: tuple[int, int, int]) -> tuple[float, float, float]:
-    """Return the place of a colour in a double cone."""
+    """Return the coordinates of a colour in a double cone, in which distances between colours are measured."""
     hue, saturation, value = color
     chroma = max(0, value) * saturation
     angle = radians(hue)

@@ -43,7 +43,7 @@ class Controller(Connected):
         """Check that the controller is connected.
 
         Raises:
-            OSError: it is not.
+            OSError: the controller is not connected.
         """
         if not self._is_connected:
             raise FirmwareError(
@@ -62,7 +62,7 @@ class Controller(Connected):
 
 
 class Keys(Buttons):
-    """The buttons of a controller."""
+    """The buttons of a remote control or game controller."""
 
     def __init__(self, controller: Controller) -> None:
         port = controller.PORT
@@ -72,7 +72,7 @@ class Keys(Buttons):
         self._controller = controller
 
     def pressed(self) -> Any:
-        """Return the pressed buttons."""
+        """Return the pressed buttons of the controller."""
         self._controller.check()
         return super().pressed()
 
@@ -94,7 +94,7 @@ class RemoteLight:
 
 
 class Remote(Controller):
-    """The remote control of Powered Up."""
+    """The remote control of LEGO Powered Up."""
 
     PORT = "remote"
 
@@ -105,7 +105,7 @@ class Remote(Controller):
         self.light = RemoteLight(self)
 
     def name(self, name: str | None = None) -> str | None:
-        """Return the name of the remote control, or set it."""
+        """Set the name of the remote control; without an argument, return it."""
         return self.brick.finish(self._rename(name))
 
     def _rename(self, name: str | None) -> Waiting[str | None]:
@@ -118,7 +118,7 @@ class Remote(Controller):
 
 
 class XboxController(Controller):
-    """The controller of an Xbox."""
+    """The game controller of an Xbox."""
 
     PORT = "xbox"
     state = refused_part("XboxController", "state", RAW)
@@ -134,13 +134,13 @@ class XboxController(Controller):
         super().__init__(name, connect)
 
     def _read(self, *names: str) -> list[int]:
-        """Return 1 for each key that is pressed, else 0."""
+        """Return for each key of the controller 1 if it is pressed, else 0."""
         self.check()
         self.brick.read("pressed", self.PORT)
         return [f"{self.PORT}.{name}" in self.brick.session.pressed for name in names]
 
     def _find_direction(self, part: str) -> tuple[int, int]:
-        """Return how far a part is pressed to the right, and up, in percent."""
+        """Return how far a part of the controller, such as a stick, is pressed to the right, and up, in percent."""
         up, down, left, right = self._read(*(f"{part}_{way}" for way in WAYS))
         return FULL * (right - left), FULL * (up - down)
 
@@ -163,7 +163,7 @@ class XboxController(Controller):
         return round(degrees(atan2(right, up)) / 45) % 8 + 1 if right or up else 0
 
     def profile(self) -> int:
-        """Return the chosen profile: 0, as a controller without profiles does."""
+        """Return the chosen profile of buttons: always 0, as a controller without profiles does."""
         self.check()
         return 0
 
@@ -178,6 +178,6 @@ class XboxController(Controller):
         count: int = 1,
         delay: int = 100,
     ) -> None:
-        """Let the controller vibrate, which nothing shows here."""
+        """Do nothing: the vibrations of the controller are not shown."""
         self.check()
         self.brick.command()

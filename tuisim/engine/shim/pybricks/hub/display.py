@@ -22,7 +22,7 @@ TURNS: Mapping[Side, int] = {Side.TOP: 0, Side.RIGHT: 1, Side.BOTTOM: 2, Side.LE
 
 
 def _spread_bits(bits: int) -> Pixels:
-    """Return a brightness, 0 or 100, for each of 25 bits, from the highest to the lowest."""
+    """Return a brightness, 0 or 100, for each of 25 bits, beginning with the highest."""
     return tuple(100 * (bits >> place & 1) for place in reversed(range(len(DARK))))
 
 
@@ -31,10 +31,10 @@ def _split_rows(pixels: Pixels) -> list[Pixels]:
 
 
 class Icon:
-    """Pictures for the matrix; `Icon(bits)` makes one from 25 bits, of which the highest is the upper left pixel."""
+    """Pictures for the matrix of lights. `Icon(bits)` makes one from 25 bits; the highest is the upper left pixel."""
 
     def __new__(cls, bits: int) -> Any:
-        """Return a picture as a matrix of brightnesses."""
+        """Return a picture as a matrix of brightness values, 0 or 100."""
         return Matrix(_split_rows(_spread_bits(bits)))
 
 
@@ -52,7 +52,7 @@ def _read_icon(icon: Any) -> Pixels:
 
 
 class Display(Connected):
-    """The matrix of lights."""
+    """The matrix of 5 × 5 lights of a hub."""
 
     current: ClassVar[Display | None] = None
     """That of the newest hub, on which `hub_menu` shows."""
@@ -76,14 +76,14 @@ class Display(Connected):
         show_pixels([value for row in rows for value in row])
 
     def orientation(self, up: Side) -> None:
-        """Say which side of the matrix is up."""
+        """Set which side of the matrix is up."""
         if up not in TURNS:
             raise invalid_argument()
         self._up = up
         self._draw(self._pixels)
 
     def on(self, brightness: float = 100) -> None:
-        """Turn all pixels on."""
+        """Turn all pixels on, with a brightness in percent."""
         self._show((whole(brightness),) * len(DARK))
 
     def off(self) -> None:
@@ -98,11 +98,11 @@ class Display(Connected):
             self._show(tuple(pixels))
 
     def icon(self, icon: Any) -> None:
-        """Show a picture."""
+        """Show a picture, given as a matrix of brightness values in percent."""
         self._show(_read_icon(icon))
 
     def animate(self, icons: Iterable[Any], interval: int) -> None:
-        """Show pictures one after another, each for a time in ms."""
+        """Show pictures one after another, each for `interval` ms, in the background."""
         self._animation.play(self._draw, [(_read_icon(icon), interval) for icon in icons])
 
     def char(self, char: str) -> None:
@@ -112,7 +112,7 @@ class Display(Connected):
         self._show(_spread_bits(int(CHARACTERS[ord(char) - ord(" ")], 32)))
 
     def number(self, number: int) -> None:
-        """Show a number of two digits; a negative one with a faint dot."""
+        """Show a number of two digits; a faint dot stands for the minus of a negative number."""
         value = whole(number)
         if abs(value) > MAX_NUMBER:
             self.char(">" if value > 0 else "<")
@@ -125,7 +125,7 @@ class Display(Connected):
         self._show(tuple(pixels))
 
     def text(self, text: str, on: float = 500, off: float = 50) -> None:
-        """Show the characters of a text one after another, with a pause between them, in ms."""
+        """Show the characters of a text one after another, each for `on` ms, with pauses of `off` ms."""
         return self.brick.finish(self._spell(text_of(text), whole(on), whole(off)))
 
     def _spell(self, text: str, on_ms: int, off_ms: int) -> Waiting[None]:
@@ -146,7 +146,7 @@ class Display(Connected):
         show(symbol)
 
     def _choose(self, symbols: Sequence[Any]) -> Any:
-        """Let the user choose a symbol by the buttons, and return it."""
+        """Let the user choose a symbol with the hub's buttons, and return it."""
         session = self.brick.session
         before = session.stop_buttons
         session.stop_buttons = frozenset()

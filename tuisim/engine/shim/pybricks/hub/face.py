@@ -22,7 +22,7 @@ DARK: Pixels = (0,) * SIDE_PIXELS**2
 
 
 def shine(color: Any, owner: str = "") -> None:
-    """Show a colour, or darkness for None.
+    """Show a light in a colour; None turns it off.
 
     Args:
         color: The colour.
@@ -32,12 +32,12 @@ def shine(color: Any, owner: str = "") -> None:
 
 
 def show_pixels(pixels: Sequence[int]) -> None:
-    """Show a picture on the matrix of lights."""
+    """Show a picture on the hub's matrix of lights; `pixels` are brightness values in percent, row by row."""
     _show(dict(zip(PIXEL_NAMES, map(_convert, pixels), strict=True)))
 
 
 def show_light(port: str, brightness: int) -> None:
-    """Show how bright the light on a port is, in percent."""
+    """Show how bright the light that is connected to a port is, in percent."""
     _show({f"{PORT_LIGHT}{port}": _convert(brightness)})
 
 

@@ -26,17 +26,17 @@ BUTTON_NAMES: Mapping[str, Button] = {
 
 
 class Charger(Connected):
-    """The charger, which is not connected: its connection, its state and its current in mA are 0."""
+    """The charger, which is never connected: its connection, its state and its current in mA are 0."""
 
     def connected(self) -> int:
-        """Return 0."""
+        """Return 0: the charger is not connected."""
         return 0
 
     status = current = connected
 
 
 class Hub(Connected):
-    """Base of the classes of all hubs."""
+    """Base class of all hubs."""
 
     BUTTONS: tuple[str, ...] = ("enter",)
     SENSES: ClassVar[type[Accelerometer] | None] = IMU

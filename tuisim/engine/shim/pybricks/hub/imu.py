@@ -59,23 +59,23 @@ class Accelerometer(Connected):
         self.brick.read(mode, INSIDE)
 
     def up(self, calibrated: bool = True) -> Side:
-        """Return the side of the hub that is up."""
+        """Return which side of the hub is up."""
         self._read("TILT-ANG")
         return max(self._sides, key=lambda side: self._sides[side][2])
 
     def tilt(self, calibrated: bool = True) -> tuple[float, float]:
-        """Return pitch and roll in degrees."""
+        """Return pitch and roll of the hub in degrees."""
         self._read("TILT-ANG")
         return 0.0, 0.0
 
     def acceleration(self, axis: Matrix | None = None, calibrated: bool = True) -> Any:
-        """Return the acceleration in mm/s² along an axis; without an axis, along all three."""
+        """Return the acceleration in mm/s² along an axis; without an axis, a vector of all three."""
         self._read("TILT-ANG")
         return _along(axis, vector(0, 0, GRAVITY_MM_S2))
 
 
 class IMU(Accelerometer):
-    """The gyro and the accelerometer of a hub."""
+    """The inertial measurement unit of a hub: its gyro and its accelerometer."""
 
     def __init__(self, top: Matrix, front: Matrix) -> None:
         super().__init__(top, front)
@@ -88,16 +88,16 @@ class IMU(Accelerometer):
 
     @property
     def _rate_dps(self) -> float:
-        """Return the rate of turn in degrees per second, counter-clockwise."""
+        """Return the robot's rate of turn in degrees per second, counter-clockwise."""
         return self.brick.session.sim.build_instant().turn_rate_dps
 
     def heading(self) -> float:
-        """Return the heading in degrees, clockwise; it goes on beyond 360."""
+        """Return the heading in degrees, clockwise, which is not wrapped at 360."""
         self._read()
         return round_number(self._heading)
 
     def reset_heading(self, angle: float) -> None:
-        """Set the current heading to a value in degrees.
+        """Set the heading that the hub shows now, in degrees.
 
         Raises:
             OSError: a drive base drives or holds by the gyro.
@@ -109,28 +109,28 @@ class IMU(Accelerometer):
         self.brick.tell(0, Call.SET_GYRO, angle)
 
     def ready(self) -> bool:
-        """Return whether the gyro is calibrated: True, as it was calibrated before the program began."""
+        """Return whether the gyro is calibrated: always True, because that happens before the program begins."""
         self._read()
         return True
 
     def stationary(self) -> bool:
-        """Return whether the hub is at rest, and no motor is held."""
+        """Return whether the robot is at rest, and no motor is held."""
         self._read("GYRO-RATE")
         motors = self.brick.session.sim.motors
         return abs(self._rate_dps) < STILL_DPS and all(map(_is_at_rest, motors))
 
     def angular_velocity(self, axis: Matrix | None = None, calibrated: bool = True) -> Any:
-        """Return the rate of turn in degrees per second about an axis; without an axis, about all three."""
+        """Return the rate of turn in degrees per second about an axis; without an axis, a vector for all three."""
         self._read("GYRO-RATE")
         return _along(axis, vector(0, 0, self._rate_dps))
 
     def rotation(self, axis: Matrix, calibrated: bool = True) -> float:
-        """Return the turn in degrees about an axis since the heading was last reset."""
+        """Return the turned angle in degrees about an axis since the heading was last reset."""
         self._read()
         return _along(axis, vector(0, 0, -self._heading))  # type: ignore[no-any-return]
 
     def orientation(self) -> Matrix:
-        """Return the rotation of the robot as a matrix whose columns are the directions of the robot's axes."""
+        """Return the robot's rotation as a matrix whose columns are the directions of the robot's axes."""
         self._read()
         angle = -radians(self._heading)
         return Matrix([[cos(angle), -sin(angle), 0], [sin(angle), cos(angle), 0], [0, 0, 1]])
@@ -144,7 +144,7 @@ class IMU(Accelerometer):
         angular_velocity_scale: Any = None,
         acceleration_correction: Any = None,
     ) -> tuple[Any, ...] | None:
-        """Return the thresholds of rest and the corrections, or set them; setting them changes no measurement.
+        """Set the thresholds of rest and the corrections; without arguments, return them. They change no measurement.
 
         Raises:
             ValueError: the correction of the heading is far from a whole turn.
@@ -168,7 +168,7 @@ class IMU(Accelerometer):
 
 
 def _is_at_rest(motor: Any) -> bool:
-    """Return whether a motor coasts and stands."""
+    """Return whether a motor coasts, and does not turn."""
     return motor.guide is None and motor.duty is None and not motor.speed_dps
 
 

@@ -25,13 +25,13 @@ Result = TypeVar("Result")
 
 
 class Sensor(ev3devices.Sensor):
-    """A sensor on a port."""
+    """Base class of sensors on a port of a hub."""
 
     SWITCH_US: ClassVar[int] = 0
     """How long the first reading in another mode takes."""
 
     def _read_as(self, mode: str, convert: Callable[[int], Result]) -> Result:
-        """Measure in a mode and return the converted number; in a task, an object to await."""
+        """Measure in a mode and return the converted number; while a task runs, return an object to await."""
         return self.brick.finish(self._measure(mode, convert))
 
     def _measure(self, mode: str, convert: Callable[[int], Result]) -> Waiting[Result]:
@@ -44,7 +44,7 @@ class Sensor(ev3devices.Sensor):
 
 
 class Lights:
-    """The lights around the eye of a sensor, which nothing shows."""
+    """The lights around the eye of a sensor, which are not shown."""
 
     def on(self, brightness: Any = 100) -> None:
         """Turn the lights on: one brightness in percent for all, or one for each."""
@@ -56,7 +56,7 @@ class Lights:
 
 
 class Light(Connected):
-    """A light on a port: nothing senses it, and the panel of the hub shows it."""
+    """A light on a port of a hub. The panel of the hub shows it, but no sensor sees it."""
 
     def __init__(self, port: Port) -> None:
         name = self._take_port(port, self.brick.session.sim.spec.robot.output_ports)
@@ -73,7 +73,7 @@ class Light(Connected):
 
 
 class ColorSensor(Sensor):
-    """A colour sensor."""
+    """The colour sensor of SPIKE Prime."""
 
     KIND = "color"
     SWITCH_US = 30_000
@@ -87,7 +87,7 @@ class ColorSensor(Sensor):
         self._sensor.mode = ""
 
     def _read_light(self, convert: Callable[..., Result]) -> Result:
-        """Measure red, green and blue, and return what `convert` makes of them."""
+        """Measure red, green and blue, and return the result of `convert` for them."""
         assert isinstance(self._sensor, ColorDevice)
         channels = self._sensor.channels
         return self._read_as("RGB-RAW", lambda _: convert(*color.measure_hub_channels(channels())))
@@ -101,17 +101,17 @@ class ColorSensor(Sensor):
         return self._read_as("COL-AMBIENT", int)
 
     def hsv(self, surface: bool = True) -> Any:
-        """Return hue, saturation and value."""
+        """Return hue, saturation and value of what the sensor sees."""
         return self._read_light(lambda *channels: Color(*measure_hsv(*channels)))
 
     def color(self, surface: bool = True) -> Any:
-        """Return the nearest of the detectable colours."""
+        """Return the one of the detectable colours that is nearest to what the sensor sees."""
         return self._read_light(
             lambda *channels: find_nearest(measure_hsv(*channels), self._colors)
         )
 
     def detectable_colors(self, colors: Any = None) -> Sequence[Any] | None:
-        """Return the colours that `color` tells apart, or set them."""
+        """Set the colours from which `color` chooses; without an argument, return them."""
         if colors is None:
             return self._colors
         self._colors = tuple(colors)
@@ -119,14 +119,14 @@ class ColorSensor(Sensor):
 
 
 class UltrasonicSensor(Sensor):
-    """A distance sensor."""
+    """The distance sensor of SPIKE Prime."""
 
     KIND = "ultrasonic"
     SWITCH_US = 50_000
     lights = Lights()
 
     def distance(self) -> int:
-        """Return the distance to the next object in mm, 2000 for none."""
+        """Return the distance to the next object in mm; 2000 if there is none."""
         return self._read_as("US-DIST-CM", lambda distance_mm: min(FARTHEST_MM, distance_mm))
 
     def presence(self) -> bool:
@@ -135,7 +135,7 @@ class UltrasonicSensor(Sensor):
 
 
 class ForceSensor(Sensor):
-    """A force sensor, which is pressed with its full force or not at all."""
+    """A force sensor, which is always pressed with its full force or not at all."""
 
     KIND = "touch"
 
@@ -143,7 +143,7 @@ class ForceSensor(Sensor):
         return self._read_as("TOUCH", lambda is_pressed: pressed if is_pressed else released)
 
     def force(self) -> float:
-        """Return the force in N."""
+        """Return the force on the sensor in newtons."""
         return self._push(MAX_FORCE_N, 0.0)
 
     def distance(self) -> float:
@@ -151,7 +151,7 @@ class ForceSensor(Sensor):
         return self._push(MAX_PRESS_MM, 0.0)
 
     def pressed(self, force: float = 3) -> bool:
-        """Return whether the sensor is pressed with at least this force in N."""
+        """Return whether the sensor is pressed with at least `force` newtons."""
         return self._push(force <= MAX_FORCE_N, force <= 0)
 
     def touched(self) -> bool:
