@@ -9,7 +9,7 @@ from tuisim.engine.runtime import wallclock
 
 
 class Channel:
-    """Receives commands without blocking and sends events immediately.
+    """The child's ends of two pipes: it receives commands without blocking, and sends events immediately.
 
     Args:
         command_fd: Read end of the command pipe.
@@ -22,7 +22,7 @@ class Channel:
         self._rest = b""
 
     def send(self, event: Message) -> None:
-        """Send an event. A host that no longer exists is not an error."""
+        """Send an event to the host; if the host has ended, do nothing."""
         data = event.encode()
         try:
             while data:
@@ -40,5 +40,5 @@ class Channel:
         return [parse_command(line) for line in lines]
 
     def wait(self, timeout_s: float) -> bool:
-        """Block until a command arrives or the real time is over; return whether one has arrived."""
+        """Block until a command arrives, for at most `timeout_s` of real time; return whether one has arrived."""
         return bool(wallclock.select_files([self.command_fd], [], [], max(0.0, timeout_s))[0])

@@ -74,9 +74,10 @@ SPARE_FRAMES = 100
 
 
 class KnownPrograms:
-    """Compiles a program when it is run for the second time.
+    """Compiles programs that are run more than once, and keeps their code.
 
-    The first time, the process of the run compiles it; so it does whenever there is an error or a warning to report.
+    When a program is run for the first time, or when there is an error or a warning to report, the process of the run
+    compiles it instead.
     """
 
     def __init__(self) -> None:
@@ -114,7 +115,7 @@ def _compile(text: str, file: str, drops_annotations: bool) -> types.CodeType | 
         sys.setrecursionlimit(before)
 
 
-# A handler may raise only in the program's own code. Inside the runtime it only sets a
+# A handler of a signal may raise only in the program's own code. Inside the runtime it only sets a
 # bit, so that core code is never unwound halfway; the frames show whose code is running.
 
 RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S = 0.2, 0.02
@@ -122,17 +123,17 @@ LEFT_TO_OTHERS_S = 0.1
 """Real time that a thread has to take a command before the main thread, which waits for its turn, does."""
 STALL_LOOK_S = 1.0
 
-# Saved: the program's `faulthandler` gets other functions.
+# The real functions are stored here, because `faulthandler` gets other functions for the program.
 _enable = faulthandler.enable
 _register = faulthandler.register
 
 
 def die_with_host(lifeline_fd: int) -> None:
-    """Make the kernel kill this process and its group when the host ends, even inside a long C call.
+    """Make the kernel kill this process and its group when the host ends, even during a long call of C code.
 
     Args:
-        lifeline_fd: Read end of a pipe that nothing is ever written to. When the host
-            ends, the pipe closes and the kernel sends SIGIO, whose default action is to kill.
+        lifeline_fd: Read end of a pipe that nothing is ever written to. When the host ends, the pipe closes and the
+            kernel sends SIGIO, whose default action is to kill.
     """
     fcntl.fcntl(lifeline_fd, fcntl.F_SETOWN, -os.getpgrp())
     fcntl.fcntl(lifeline_fd, fcntl.F_SETFL, fcntl.fcntl(lifeline_fd, fcntl.F_GETFL) | os.O_ASYNC)
@@ -142,11 +143,11 @@ def die_with_host(lifeline_fd: int) -> None:
 
 
 class Interrupts:
-    """Signal handlers of one run.
+    """The signal handlers of one run.
 
     Args:
         session: The run.
-        soft_codes: Code objects of the runtime in which a handler may raise, unlike in the rest of the runtime.
+        soft_codes: Code objects of the runtime in which a handler may raise an exception, unlike in the rest of it.
     """
 
     def __init__(self, session: Session, soft_codes: frozenset[types.CodeType]) -> None:
@@ -159,13 +160,13 @@ class Interrupts:
         self._stall_now, self._stall_s = -1, 0.0
 
     def install(self, folder: Path) -> None:
-        """Install the handlers.
+        """Install the signal handlers.
 
         Args:
-            folder: Run folder; a signal writes the stack there, even inside a long C call.
+            folder: Run folder; a signal writes the stack there, even during a long call of C code.
         """
         stack_fd = private(f"{folder}{os.sep}{STACK_FILE}", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
-        # Crashes such as SIGSEGV are written there, too.
+        # The stack at a crash, such as by SIGSEGV, is written to the same file.
         _enable(stack_fd, all_threads=False)
         _register(STACK_SIGNAL, file=stack_fd, all_threads=False)
         signal.signal(COMMAND_SIGNAL, self._on_command)
@@ -177,7 +178,10 @@ class Interrupts:
             wallclock.set_timer(signal.ITIMER_VIRTUAL, STALL_LOOK_S, STALL_LOOK_S)
 
     def remove(self) -> None:
-        """Disarm the handlers when the program is over. Any thread may do so; only the main one could remove them."""
+        """Disable the signal handlers at the end of the program.
+
+        Any thread may call this. It does not remove the handlers, because only the main thread could.
+        """
         self._removed = True
         wallclock.set_timer(signal.ITIMER_REAL, 0.0)
         wallclock.set_timer(signal.ITIMER_VIRTUAL, 0.0)
@@ -191,7 +195,8 @@ class Interrupts:
             # The run waits for commands, maybe in another thread, which reads them from the pipe itself.
             return
         if self.main_is_parked:
-            # The thread whose turn it is takes the command in its turn, unless it computes without end.
+            # The thread that is running processes the command when it next checks; a thread that computes without end
+            # never does, so the main thread processes the command after a while.
             if not self._timer_on:
                 wallclock.set_timer(signal.ITIMER_REAL, LEFT_TO_OTHERS_S)
         elif self._can_raise(frame):
@@ -235,7 +240,10 @@ class Interrupts:
             session.check_stop()
 
     def _can_raise(self, frame: types.FrameType | None) -> bool:
-        """Return whether a handler may raise: in code of the program or of a library that it called, or in a wait."""
+        """Return whether a handler may raise an exception in a frame.
+
+        It may in code of the program, in code of a library that the program called, and in a wait.
+        """
         if self.main_is_parked or (frame is not None and frame.f_code in self._soft_codes):
             return True
         while frame is not None:
@@ -287,7 +295,7 @@ def _build_memory_error(error: OSError) -> str:
 
 
 class Child:
-    """One run with all its parts: prepared for a robot in a world, then connected with the run.
+    """One run with all its parts: first prepared for a robot in a world, then connected to a run folder and the host.
 
     Args:
         config: The run, or another one that differs at most in what `expect` changes.
@@ -309,13 +317,13 @@ class Child:
         self._known_programs = KnownPrograms()
 
     def expect(self, folder: Path, changes: Mapping[str, Any]) -> None:
-        """Prepare for a run without executing anything of its program; arguments as of `derive_config`."""
+        """Prepare for another run without executing anything of its program; arguments as of `derive_config`."""
         self._config = config = derive_config(self._config, folder, changes)
         drops_annotations = config.spec.profile.motor_law.library.drops_annotations
         self._runner.code = self._known_programs.code(config.program, drops_annotations)
 
     def _patch_modules(self, turn: Callable[[], None]) -> None:
-        """Replace functions of Python's modules, and make the objects that run the program."""
+        """Replace functions of Python's modules, and create the objects that run the program."""
         # Imported here: threads must be patched before anything else imports `threading`.
         from tuisim.engine.runtime.patches.signals import patch_signals
         from tuisim.engine.runtime.patches.threads import patch_threads
@@ -371,7 +379,7 @@ class Child:
         session.make_debugger = lambda: _build_debugger(session, scheduler, self._runner)
 
     def connect(self, channel: Channel, raw_fds: Sequence[int] = ()) -> None:
-        """Create the recording of the run, and connect all parts with it.
+        """Create the recording of the run, and connect all parts of the run to it.
 
         Args:
             channel: Pipes to the host.
@@ -418,7 +426,7 @@ class Child:
         self._output.drain = self._runner.raw.drain
 
     def _record_commands(self) -> None:
-        """Record the program's commands from now on, and those that the prelude has given."""
+        """Record the commands that the prelude has given, and from now on those of the program."""
         self._commands = CommandsWriter(self._config.folder)
         for command in self._early_commands:
             self._commands.add(*command)
@@ -433,7 +441,7 @@ class Child:
 
     def _write_turns(self, turns: tuple[Turn, ...]) -> None:
         sim = self._sim
-        # Not at the session's time: in a paced run it advances in smaller steps.
+        # The time is that of the tick, not the session's: in a paced run, the session's time advances in smaller steps.
         self._output.write_row(
             build_motors_row(turns), Stream.MOTORS, sim.tick, sim.compute_due_ns(sim.tick), sim.line
         )

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 class SessionFlag(IntFlag):
-    """The bits of `Session.flags`. Each makes the session leave the short path on which time passes."""
+    """The bits of `Session.flags`; each says that more must be done when time passes than running ticks."""
 
     LIVE = 1
     """The control is called before ticks."""
@@ -68,19 +68,19 @@ FAST_SLICE_TICKS = 64
 
 
 class DebugHooks(Protocol):
-    """The methods of the debugger that session and control call."""
+    """The methods of the debugger that the session and the control of the run call."""
 
     def begin(self, options: RunOptions) -> None:
-        """Apply the settings that are known before the program's first line."""
+        """Apply the debugger's options before the program's first line."""
 
     def take(self, command: Message) -> None:
-        """Process a command; the caller handles pausing and resuming."""
+        """Process a command of the user to the debugger; the caller handles pausing and resuming."""
 
     def enter(self) -> None:
         """Switch tracing on or off in the current thread, as the debugger needs it."""
 
     def check_goal(self) -> None:
-        """Pause if the goal is reached. Called right before a tick, after user actions."""
+        """Pause if the run has reached the requested instant; called right before a tick, after user actions."""
 
     def limit_ticks(self, most: int) -> int:
         """Return the number of ticks that may run before `check_breakpoints` has to be called."""
@@ -95,17 +95,17 @@ class DebugHooks(Protocol):
         """Pause at the next line of the program; if a tick comes first, the control pauses there instead."""
 
     def answer(self) -> None:
-        """Answer the requests received while paused."""
+        """Answer the requests that have arrived while the run is paused."""
 
     def forget_goals(self) -> None:
-        """Cancel steps and goals: the user has requested something else."""
+        """Cancel steps and requested lines and instants, because the user has requested something else."""
 
     def go_on(self) -> None:
-        """Prepare for resuming from a pause."""
+        """Update tracing before the run resumes from a pause."""
 
 
 class ControlledRun(Protocol):
-    """The part of `Session` that the control uses; see there."""
+    """The part of `Session` that the control of a run uses; see `Session`."""
 
     sim: Simulation
     now: int
@@ -116,7 +116,7 @@ class ControlledRun(Protocol):
 
     @property
     def stop_reason(self) -> BaseException | None:
-        """Why the run stops; None if it goes on."""
+        """Why the run stops; None if it is not stopping."""
 
     def debug(self) -> DebugHooks:
         """Return the debugger; it is created on first use."""
@@ -129,7 +129,7 @@ class ControlledRun(Protocol):
 
 
 class RunControl:
-    """Lets the host control the run.
+    """Controls a run as the host commands: pauses, speed and user actions.
 
     Args:
         channel: Pipes to the host.
@@ -177,7 +177,7 @@ class RunControl:
     # Commands
 
     def receive(self, session: ControlledRun) -> None:
-        """Process the commands that have arrived; user actions wait for the next tick."""
+        """Process the commands that have arrived; user actions are stored for the next tick."""
         for command in self._channel.receive():
             match command:
                 case protocol.Stop():
@@ -205,14 +205,14 @@ class RunControl:
                     session.debug().take(command)
 
     def resume(self, at_full_speed: bool = False) -> None:
-        """Resume the run until the debugger pauses it again."""
+        """Resume the run until the debugger pauses it again, with `at_full_speed` without pacing."""
         self._paused = False
         self._steps = 0
         self._rushing = at_full_speed
 
     @property
     def only_rushes(self) -> bool:
-        """Whether nothing needs the control before the debugger's next goal."""
+        """Whether the run goes at full speed to a goal of the debugger, and no user action is due before."""
         return self._rushing and not self._script and not self._waiting
 
     @staticmethod
@@ -221,11 +221,11 @@ class RunControl:
             session.debugger.forget_goals()
 
     def begin_grace(self) -> None:
-        """Start the grace period of a stop."""
+        """Start the time that the program has for its cleanup after a stop."""
         self._stop_asked_at = self._read_grace_clock()
 
     def has_grace_ended(self) -> bool:
-        """Whether the time for the program's cleanup after a stop is over."""
+        """Return whether the time that the program has for its cleanup after a stop is over."""
         most_s = STOP_GRACE_S if self.live else STOP_GRACE_CPU_S
         return (
             self._stop_asked_at is not None
@@ -233,14 +233,15 @@ class RunControl:
         )
 
     def _read_grace_clock(self) -> float:
-        # A user waits in real time; what a program of a batch does must not depend on what else the machine does.
+        # With a user, real time matters. In a batch, the result of a program must not depend on the load of the
+        # machine.
         return wallclock.monotonic() if self.live else wallclock.process_time()
 
     # Right before ticks
 
     @property
     def wanted(self) -> bool:
-        """Whether the control must be called before ticks: the run is live, actions are pending, or it is debugged."""
+        """Whether the control must be called before ticks: the run is live, debugged, or has pending user actions."""
         return self.live or self.debugged or bool(self._script)
 
     def await_ticks(self, session: ControlledRun, most: int) -> int:
@@ -262,7 +263,7 @@ class RunControl:
             session.check_stop(before_tick=True)
             return most
         if self._script:
-            # Stop right before the tick that the next action is for.
+            # Run no further than to the tick before which the next known action takes effect.
             most = min(most, self._script[0].tick - session.sim.tick)
         if self.debugged:
             debugger = session.debug()
@@ -279,16 +280,16 @@ class RunControl:
         return self._keep_pace(session, most)
 
     def hold(self, session: ControlledRun, moment: protocol.Paused) -> None:
-        """Pause the run; block until it is resumed or stopped.
+        """Pause the run, and block until it is resumed or stopped.
 
         Args:
             session: The run.
-            moment: Where it pauses. User actions take effect immediately only right before a tick.
+            moment: Where the run pauses. User actions take effect during the pause only if it is right before a tick.
 
         Raises:
             StopProgram: the run has to stop.
         """
-        # The run is live from here on, however it started.
+        # From here on the run is live, even if it was started without a user.
         self.live = True
         session.flags = session.flags | LIVE
         self._paused = True
@@ -314,14 +315,14 @@ class RunControl:
         self._raise_here(session, before_tick=moment.ordinal == BEFORE_NEXT_TICK)
 
     def _raise_here(self, session: ControlledRun, before_tick: bool = False) -> None:
-        """Raise a stop in the thread that has waited for commands; the signal would raise it in the main thread."""
+        """Raise a requested stop in this thread, which has waited for commands, instead of in the main thread."""
         try:
             session.check_stop(before_tick)
         finally:
             self.holding = False
 
     def replay_next(self, session: ControlledRun, kind: type[Answer | Reply]) -> bool:
-        """Apply the next known action if it is of this kind, and was recorded here while simulated time stood still.
+        """Apply the next known user action, if it is of this kind and was recorded at this place without time passing.
 
         Returns:
             Whether it was applied.
@@ -338,7 +339,7 @@ class RunControl:
     def wait_for_reply(
         self, session: ControlledRun, kind: type[Answer | Reply], question: Message
     ) -> None:
-        """Ask the host, and block until its answer is applied. No simulated time passes.
+        """Send a question to the host, and block until its answer is applied. No simulated time passes.
 
         Args:
             session: The run.
@@ -420,7 +421,7 @@ class RunControl:
         try:
             self._write_down(sim.tick, action)
         except OSError as error:
-            # Without this record the run could not be repeated.
+            # Without a record of the action, the run could not be repeated, so it is stopped.
             session.ask_stop(
                 End.DISK_FULL, f"the user's action cannot be recorded: {error.strerror}"
             )

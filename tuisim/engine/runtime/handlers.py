@@ -16,8 +16,8 @@ from tuisim.engine.runtime.tracebacks import own_files
 def is_caught(error: type[Exception], frame: FrameType | None, program_file: str) -> bool:
     """Return whether the program would catch an error that is raised in a frame.
 
-    A handler for any error counts only in the function that calls the library: around a whole program, it does not
-    mean that the program expects an error.
+    A handler for any `Exception` is considered only in the function that calls the library: around a whole program, it
+    does not mean that the program expects this error.
 
     Args:
         error: The class of the error.
@@ -54,7 +54,7 @@ def _parse_tries(file: str) -> list[ast.Try]:
 
 
 def _find_classes(node: ast.expr | None, frame: FrameType) -> list[type]:
-    """Return the classes of errors that the expression of an `except` names."""
+    """Return the classes of errors that the expression after an `except` names."""
     match node:
         case None:
             return [BaseException]

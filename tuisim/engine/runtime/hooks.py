@@ -22,7 +22,7 @@ from tuisim.engine.shim.unsupported.modules import point_at_keys, point_at_packa
 
 
 def format_safely(write: Callable[[object], str], value: object) -> str:
-    """Return the `str` or `repr` of a value, or a placeholder if that fails."""
+    """Return the `str` or `repr` of a value, or a placeholder if the value's own code raises an error."""
     try:
         return write(value)
     except BaseException:  # a program's own method may do anything
@@ -30,7 +30,7 @@ def format_safely(write: Callable[[object], str], value: object) -> str:
 
 
 class ErrorHooks:
-    """The hooks of `sys` and `threading` through which Python reports errors.
+    """Replaces the hooks of `sys` and `threading` through which Python shows errors.
 
     Args:
         session: The program's clock.
@@ -52,8 +52,8 @@ class ErrorHooks:
         self._source = source
 
     def install(self) -> None:
-        """Replace Python's own hooks."""
-        # Not imported earlier: the functions that `threading` uses must be patched first.
+        """Replace the hooks of Python."""
+        # Imported here because the functions that `threading` uses must be patched before.
         import threading
 
         replace(sys, "excepthook", lambda _kind, error, _trace: self.show(error), (3, 3))
@@ -64,7 +64,7 @@ class ErrorHooks:
         self._own = sys.excepthook
 
     def report(self, error: BaseException, alone: bool = False) -> ErrorReport:
-        """Return the report of an error; `alone` as of `report_error`."""
+        """Return the report of an error, with notes that may help; `alone` as of `report_error`."""
         if not alone:
             add_prelude_note(error)
             add_namesake_note(error, self._session.program_file)
@@ -76,10 +76,10 @@ class ErrorHooks:
         return ErrorReport(text, report.line, summary)
 
     def show_uncaught(self, error: BaseException) -> ErrorReport:
-        """Show the error that ended the program, through the program's own hook if it has one; return its report.
+        """Show the error that ended the program, through the program's own hook if it has one, and return its report.
 
         Raises:
-            SystemExit: by the hook of the program.
+            SystemExit: the hook of the program has raised it.
         """
         report = self.report(error)
         hook = vars(sys).get("excepthook", self)
@@ -101,14 +101,14 @@ class ErrorHooks:
         return report
 
     def show(self, error: BaseException | None) -> None:
-        """Show an error that does not end the program; ignore a stop, which is not an error."""
+        """Show an error that does not end the program; a stop of the run is ignored, because it is not an error."""
         if error is not None and not isinstance(error, StopProgram):
             self.write(self.report(error).text)
 
     def _show_of_thread(self, args: Any) -> None:
         kind, error, _trace, thread = args
         if error is None or issubclass(kind, SystemExit | StopProgram):
-            # As in Python: such an exception ends the thread silently.
+            # As in Python, such an exception ends the thread without a message.
             return
         name = thread.name if thread is not None else wallclock.get_ident()
         self.write(f"Exception in thread {name}:\n{self.report(error).text}")
@@ -142,7 +142,7 @@ class ErrorHooks:
         """Write an error text to the program's error output."""
         file = vars(sys).get("stderr")
         if file is None:
-            # As in Python: without an error output, nothing is shown.
+            # As in Python, nothing is shown if the program has set `sys.stderr` to None.
             return
         if file is not self._stderr:
             try:
@@ -153,15 +153,15 @@ class ErrorHooks:
             else:
                 return
         with suppress(LogError):
-            # A recording without space ends the run and reports itself.
+            # If the recording has no space left, that ends the run and is reported elsewhere.
             for line in (self._stderr.take_part() + text).rstrip("\n").split("\n"):
                 self._output.row(line, Stream.STDERR)
 
 
 def flush_streams(own: tuple[LineStream, LineStream]) -> None:
-    """Flush the streams by which a program has replaced its own, as Python does at the end."""
+    """Flush streams with which the program has replaced `sys.stdout` or `sys.stderr`, as Python does at the end."""
     for stream in (vars(sys).get("stdout"), vars(sys).get("stderr")):
         if stream is not None and not any(stream is own_stream for own_stream in own):
-            # The program is over: errors of its streams no longer matter.
+            # The program has ended, so errors of its own streams do not matter.
             with suppress(Exception):
                 stream.flush()

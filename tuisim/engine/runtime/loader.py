@@ -12,7 +12,7 @@ from tuisim.base.source import PRELUDE_TEXTS
 
 
 class MissingPart:
-    """Stands for a name of the prelude whose part the robot does not have.
+    """Stands for a predefined name whose part the robot does not have.
 
     Args:
         name: The name.
@@ -42,7 +42,7 @@ LOOP_HOOK = "__loop_turn__"
 
 
 class _LoopHooks(ast.NodeTransformer):
-    """Inserts a call of the loop hook at the start of every loop body."""
+    """Inserts a call of the loop hook at the start of every loop body of a program."""
 
     def _add_hook(self, node: ast.For | ast.While | ast.AsyncFor) -> ast.AST:
         self.generic_visit(node)
@@ -84,7 +84,7 @@ def _check_encoding(text: str, file: str) -> None:
 
 
 def _find_declared_encoding(text: str) -> tuple[int, str] | None:
-    """Return the line in which a file declares its encoding, and the encoding (see PEP 263); None without one."""
+    """Return the line in which a file declares its encoding, and the encoding; None without one (PEP 263)."""
     import re
 
     for number, line in enumerate(text.split("\n", 2)[:2], start=1):
@@ -103,7 +103,7 @@ def _is_text_encoding(name: str) -> bool:
 
 
 def compile_program(text: str, file: str, drops_annotations: bool = False) -> types.CodeType:
-    """Return the program's code, with loop hooks and its own line numbers.
+    """Return the program's code, with a loop hook in each loop, and with unchanged line numbers.
 
     Args:
         text: The source.
@@ -120,7 +120,7 @@ def compile_program(text: str, file: str, drops_annotations: bool = False) -> ty
 def compile_with_hooks(
     source: str | bytes, file: str, drops_annotations: bool = False
 ) -> types.CodeType:
-    """Return the code of a program or of one of its modules; arguments as of `compile_program`.
+    """Return the code of a program or of one of its modules, with loop hooks; arguments as of `compile_program`.
 
     Raises:
         SyntaxError, ValueError: the source is not Python.
@@ -132,7 +132,7 @@ def compile_with_hooks(
 
 
 def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:
-    """Yield the statements of a prelude: the name of the part that it creates, or an empty string, and its code.
+    """Yield for each statement of a prelude the name of the part that it creates, if any, and its code.
 
     Raises:
         KeyError: no prelude has this name.
@@ -147,7 +147,7 @@ def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:
 
 
 def add_prelude_note(error: BaseException) -> None:
-    """Add a note to an error about a name that only a prelude defines: how the program can get that name."""
+    """Add a note to an error about a predefined name that the program has not enabled: how it can get that name."""
     if not isinstance(error, NameError) or not error.name:
         return
     statement = _find_statement(error.name)

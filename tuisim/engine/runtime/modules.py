@@ -31,13 +31,13 @@ def is_own(path: str) -> bool:
 
 
 def remember_source(file: str, source: str) -> None:
-    """Make tracebacks show the source that runs, even if the file changes."""
+    """Make tracebacks show this source of a file, even if the file changes later."""
     lines = [line + "\n" for line in source_lines(source)]
     linecache.cache[file] = len(source), None, lines, file
 
 
 class OwnLoader(SourceFileLoader):
-    """Loads a module from the text that was first read of its file.
+    """Loads a module of the program from the text that was first read from its file.
 
     Args:
         module: The module.
@@ -50,20 +50,20 @@ class OwnLoader(SourceFileLoader):
         self._data = module.text.encode("utf-8", "surrogateescape")
 
     def get_data(self, path: str) -> bytes:
-        """Return the stored text, or the contents of another file."""
+        """Return the stored text of the module's file; for another path, the contents of that file."""
         return self._data if path == self.path else super().get_data(path)
 
     def source_to_code(self, data: Any, path: Any, *, _optimize: int = -1) -> types.CodeType:  # type: ignore[override]
-        """Return the code of the module, in whose loops time passes as in those of the program."""
+        """Return the code of the module, with loop hooks as in the program."""
         return compile_with_hooks(data, path, self._drops_annotations)
 
     def path_stats(self, path: str) -> NoReturn:
-        """Raise OSError: compiled code beside the file may belong to another text."""
+        """Raise OSError, so that Python uses no compiled code beside the file: it may belong to another text."""
         raise OSError
 
 
 class OwnModules(PathFinder):
-    """Finds modules in files, and stores a copy of those that are the user's.
+    """Module finder for files, which stores a copy of each module of the user with the run.
 
     Args:
         run_folder: Where the copies are stored.
@@ -93,9 +93,9 @@ class OwnModules(PathFinder):
         path: Sequence[str] | None = None,
         target: types.ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """Return how to load a module; None if it does not exist."""
+        """Return the spec of a module; None if there is no such module."""
         if known := self._known.get(fullname):
-            # A module that was imported several times may have had another text each time.
+            # A module that was imported several times may have had another text each time: use each text once.
             return self._spec_of(known.pop(0) if len(known) > 1 else known[0])
         if path is None and self._brick_folder:
             path = [place_folder(str(folder), self._brick_folder) for folder in sys.path]
@@ -132,7 +132,10 @@ class OwnModules(PathFinder):
 
 
 def install_finder(run_folder: Path, brick_folder: str, drops_annotations: bool) -> None:
-    """Store modules that the program imports with its run; when a run is repeated, load its stored modules instead."""
+    """Install a module finder that stores the program's own modules with the run.
+
+    When a run is repeated, the finder loads the modules that are stored in its folder instead.
+    """
     finders: list[Any] = sys.meta_path
     finders[finders.index(PathFinder)] = OwnModules(
         run_folder, read_modules(run_folder), brick_folder, drops_annotations
@@ -140,7 +143,7 @@ def install_finder(run_folder: Path, brick_folder: str, drops_annotations: bool)
 
 
 def _own_module(name: str, spec: ModuleSpec) -> OwnModule | None:
-    """Return the module to store; None if it is not the user's, or is compiled: then it is loaded from its place."""
+    """Return the module to store; None if it is not the user's, or is compiled, so that Python loads it as usual."""
     folders = (
         None if spec.submodule_search_locations is None else tuple(spec.submodule_search_locations)
     )

@@ -39,7 +39,7 @@ _NEVER_KEPT = (types.FrameType, types.TracebackType)
 
 
 class _Given(NamedTuple):
-    """The number that is printed in place of an address."""
+    """The number that is printed in place of the address of an object."""
 
     number: int
     is_same: Callable[[], object]
@@ -47,11 +47,12 @@ class _Given(NamedTuple):
 
 
 class Addresses:
-    """Gives each object whose address is printed the next of a fixed sequence, in the order of first appearance.
+    """Replaces addresses in printed texts by numbers that are the same in every run.
 
-    Only addresses that Python itself writes are changed, after ` at 0x`, and the identifiers of threads. A number
-    that cannot be an address stays as it is. Which memory is used again depends on the machine: so a number stands for
-    an object as long as that exists; a later object at the same address gets another number.
+    Each object whose address is printed gets the next number of a fixed sequence. Only addresses that Python itself
+    writes are changed, after ` at 0x`, and the identifiers of threads. A number that cannot be an address stays as it
+    is. Which memory is used again depends on the machine: so a number stands for an object as long as that exists; a
+    later object at the same address gets another number.
 
     Args:
         names: Returns the program's global names.
@@ -105,10 +106,10 @@ class Addresses:
         return _FIRST <= number < _FIRST + self._count * _STEP
 
     def _find(self, real: int, before: str) -> object:
-        """Return the object at an address; None if there is none that the text before the address can be about."""
+        """Return the object at an address; None if there is none to which the text before the address can refer."""
         if self._searched > _MAX_SEARCHED:
             return None
-        # The collector does not know all objects, and leaves out those that were made before the program.
+        # The garbage collector does not list all objects, so those that the program's names refer to are searched, too.
         by_age = [partial(gc.get_objects, generation) for generation in range(3)]
         searches: list[Callable[[], list[Any]]] = [*by_age, self._list_reached]
         for search in searches:
@@ -135,7 +136,7 @@ class Addresses:
 
     @cached_property
     def _heap(self) -> range:
-        """The addresses of the heap, whose begin the system chooses; empty if the system does not tell."""
+        """The addresses of the heap, whose start the system chooses; empty if the system does not give them."""
         with (
             suppress(OSError, ValueError),
             open("/proc/self/maps", encoding="utf-8", errors="replace") as maps,
@@ -143,21 +144,24 @@ class Addresses:
             for row in maps:
                 if row.rstrip().endswith("[heap]"):
                     start, end = (int(part, 16) for part in row.split()[0].split("-"))
-                    # The heap grows later on.
+                    # The heap grows later, so addresses up to `_LOWEST` may belong to it.
                     return range(start, max(end, _LOWEST))
         return range(0)
 
 
 def _is_meant(one: object, before: str) -> bool:
-    """Return whether the text before an address can be about this object, not about an earlier one there."""
+    """Return whether the text before an address can refer to this object, and not to an earlier one at the address."""
     kind = type(one)
-    # A program's class can have a `__repr__` without the name of the class.
+    # The `__repr__` of a program's own class need not contain the name of the class.
     is_own = kind.__flags__ & _HEAP_TYPE and not str(kind.__module__).startswith("tuisim")
     return bool(is_own) or kind.__name__ in before
 
 
 def _watch(one: object) -> Callable[[], object]:
-    """Return a function that tells whether an object still exists; an object that cannot be watched is kept alive."""
+    """Return a function that returns whether an object still exists.
+
+    An object to which Python allows no weak reference is kept alive.
+    """
     if one is None:
         return lambda: False
     if isinstance(one, _NEVER_KEPT):
@@ -170,7 +174,7 @@ def _watch(one: object) -> Callable[[], object]:
 
 
 class OutputRecorder:
-    """Writes rows of output, each with the time, the tick and the source line that wrote it."""
+    """Writes rows of output to the run folder, each with the time, the tick and the source line that wrote it."""
 
     writer: OutputWriter
     """The file; set before the first row."""
@@ -188,18 +192,18 @@ class OutputRecorder:
         self._addresses = Addresses(lambda: self.names())
 
     def row(self, text: str, stream: Stream) -> None:
-        """Write one row."""
+        """Write one row of a stream, with the present time, tick and source line."""
         self.drain()
         tick, now, line = self.place()
         if (" at 0x" in text or ", st" in text) and stream in TEXT_STREAMS:
-            # A quick check: most rows have no address.
+            # This check is quick, because most rows have no address.
             (text,) = self.stabilize(text)
         self.writer.write(text.encode("utf-8", "backslashreplace"), tick, now, line, stream)
         if self.watch is not None:
             self.watch(text, stream)
 
     def stabilize(self, *texts: str) -> tuple[str, ...]:
-        """Return texts of one instant with addresses that are the same in every run."""
+        """Return texts of one instant in which addresses are replaced by numbers that are the same in every run."""
         return self._addresses.stabilize(*texts)
 
     def write_row(self, text: str, stream: Stream, tick: int, time_ns: int, line: int) -> None:
@@ -207,12 +211,12 @@ class OutputRecorder:
         self.writer.write(text.encode(), tick, time_ns, line, stream)
 
     def close(self) -> None:
-        """Close the file and truncate it to its size."""
+        """Close the file of the output, and cut off its unused space."""
         self.writer.close()
 
 
 class LineStream(io.TextIOBase):
-    """`sys.stdout` or `sys.stderr` of the program.
+    """The program's `sys.stdout` or `sys.stderr`, which records whole lines.
 
     Args:
         output: Receives whole lines.
@@ -235,7 +239,7 @@ class LineStream(io.TextIOBase):
 
     @property
     def name(self) -> str:
-        """Name of the real stream."""
+        """Name of the stream, as Python's own stream has it."""
         return "<stdout>" if self._stream == Stream.STDOUT else "<stderr>"
 
     @property
@@ -247,10 +251,10 @@ class LineStream(io.TextIOBase):
         return f"<_io.TextIOWrapper name={self.name!r} mode='w' encoding='utf-8'>"
 
     def reconfigure(self, **_settings: object) -> None:
-        """Do nothing: lines are always written at once and in UTF-8."""
+        """Do nothing: lines are always written immediately and in UTF-8."""
 
     def fileno(self) -> int:
-        """Return the descriptor that C writes to."""
+        """Return the descriptor to which C code writes for this stream."""
         return int(self._stream)
 
     def writable(self) -> bool:
@@ -258,12 +262,12 @@ class LineStream(io.TextIOBase):
         return True
 
     def detach(self) -> Any:
-        """Return the binary stream; this one is unusable afterwards."""
+        """Return the binary stream; this stream cannot be used afterwards."""
         self._is_detached = True
         return self._buffer
 
     def write(self, text: str) -> int:
-        """Write text; whole lines are recorded at once."""
+        """Write text, and return its length; whole lines are recorded immediately."""
         if not isinstance(text, str):
             raise TypeError(f"write() argument must be str, not {type(text).__name__}")
         if self._is_detached:
@@ -273,7 +277,7 @@ class LineStream(io.TextIOBase):
         return self.put(text)
 
     def put(self, text: str) -> int:
-        """Write text, even if the program has closed the stream."""
+        """Write text, even if the program has closed the stream, and return its length."""
         self._output.drain()
         if "\n" not in text:
             self._part.write(text)
@@ -281,7 +285,7 @@ class LineStream(io.TextIOBase):
                 # The partial line is longer than the file accepts: write it before it fills the memory.
                 self.finish()
             return len(text)
-        # Taken first: if writing a row ends the program, nothing is written twice.
+        # The partial line is removed before rows are written: if writing ends the program, nothing is written twice.
         *lines, rest = (self.take_part() + text).split("\n")
         self._part.write(rest)
         for line in lines:
@@ -290,19 +294,19 @@ class LineStream(io.TextIOBase):
         return len(text)
 
     def put_bytes(self, data: bytes) -> None:
-        """Write bytes, decoded as UTF-8; a character may come in several parts."""
+        """Write bytes, decoded as UTF-8; the bytes of one character may come in several calls."""
         self._buffer.put(data)
 
     def flush(self) -> None:
         """Do nothing: whole lines are written already, and a partial line waits for its end."""
 
     def finish(self) -> None:
-        """Write the partial line."""
+        """Record the partial line at the end, if there is one."""
         if part := self.take_part() + self._buffer.take_rest():
             self._output.row(part, self._stream)
 
     def take_part(self) -> str:
-        """Return the partial line and clear it."""
+        """Return the partial line, and remove it from the stream."""
         part = self._part.getvalue()
         self._part = io.StringIO()
         return part
@@ -323,7 +327,7 @@ class ByteStream(io.RawIOBase):
 
     @property
     def name(self) -> str:
-        """Name of the real stream."""
+        """Name of the stream, as Python's own stream has it."""
         return self._stream.name
 
     @property
@@ -332,7 +336,7 @@ class ByteStream(io.RawIOBase):
         return self
 
     def fileno(self) -> int:
-        """Return the descriptor that C writes to."""
+        """Return the descriptor to which C code writes for this stream."""
         return self._stream.fileno()
 
     def writable(self) -> bool:
@@ -340,7 +344,7 @@ class ByteStream(io.RawIOBase):
         return True
 
     def write(self, data: Any) -> int:
-        """Write bytes, decoded as UTF-8."""
+        """Write bytes, decoded as UTF-8, and return their number."""
         if self.closed:
             raise ValueError("write to closed file")
         taken = bytes(data)

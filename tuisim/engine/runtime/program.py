@@ -44,7 +44,7 @@ _FOLDER_CALLS = ("listdir", "scandir", "chdir")
 
 
 class HomeFolder:
-    """Makes functions that take paths find files of the brick's home folder beside the program.
+    """Makes paths in the brick's home folder work: their files are looked for beside the program.
 
     Args:
         own_folder: Returns the folder of the program.
@@ -54,7 +54,7 @@ class HomeFolder:
         self._own_folder = own_folder
 
     def patch(self) -> None:
-        """Replace the functions."""
+        """Replace the functions that take paths of files or folders."""
         self._wrap(builtins, "open", self._find_file)
         vars(io)["open"] = builtins.open
         for name in _FILE_CALLS:
@@ -74,7 +74,7 @@ class HomeFolder:
         replace(module, name, call)
 
     def _find_file(self, path: Any) -> Any:
-        """Return the real path of a file; a missing file of the home folder will be created in the program's folder."""
+        """Return the real path of a file; for a missing file of the home folder, a path in the program's folder."""
         if not (text := _parse_home_path(path)):
             return path
         own_folder = self._own_folder()
@@ -88,7 +88,7 @@ class HomeFolder:
         return os.path.join(own_folder, parts[-1])
 
     def _find_folder(self, path: Any) -> Any:
-        """Return the real path of a folder; a missing folder of the home folder is the program's folder."""
+        """Return the real path of a folder; for a missing folder of the home folder, the program's folder."""
         return place_folder(text, self._own_folder()) if (text := _parse_home_path(path)) else path
 
 
@@ -98,14 +98,16 @@ def _parse_home_path(path: Any) -> str:
     return text if isinstance(text, str) and text.startswith(HOME) else ""
 
 
-# A brick's driver ends their moves, and lets their wheels come to rest; what has no end is stopped.
+# At the end of a program, a brick's driver goes on with moves that have an end, and the wheels come to rest.
 
 MAX_REST_NS = NS_PER_S // 2
 """How long wheels may take to come to rest."""
 
 
 def finish_moves(session: Session) -> str:
-    """Let all moves end that are for a time or to a position; then let the wheels come to rest, unless a motor runs on.
+    """Run until all moves to a position or for a time have ended; then let the wheels come to rest.
+
+    Wheels are not waited for if a motor would turn on for ever.
 
     Returns:
         Which motors would turn on for ever, in words; empty for none, and for motors without a driver.
@@ -122,7 +124,7 @@ def finish_moves(session: Session) -> str:
     if any(motor.ends_alone for motor in motors.values()):
         sim.line = 0
     while any(motor.ends_alone for motor in motors.values()):
-        # `advance`, not a wait of the scheduler: the program's threads are over.
+        # The clock is advanced directly, without the scheduler, because the program's threads have ended.
         session.advance(session.now + NS_PER_S, True)
     turning = sorted(port for port, motor in motors.items() if motor.mode and motor.aim_dps)
     if not turning:
@@ -134,7 +136,7 @@ def finish_moves(session: Session) -> str:
 
 
 def _let_rest(session: Session, motors: Collection[SimulatedMotor]) -> None:
-    """Let wheels roll out, or swing back to the position that they hold, within the time limit."""
+    """Run until all wheels have come to rest, at most for `MAX_REST_NS` or until the time limit."""
     if all(motor.axle.stands for motor in motors):
         return
     end_ns = min(session.now + MAX_REST_NS, session.limits.time_ns or 1 << 62)
@@ -159,7 +161,7 @@ _INTERRUPTED = 128 + signal.SIGINT
 
 
 def _has_finalizer(value: object) -> bool:
-    """Return whether code of the program runs when a value is deleted."""
+    """Return whether deleting a value runs code of the program."""
     words = hasattr(type(value), "__del__") or isinstance(
         value, types.GeneratorType | types.CoroutineType
     )
@@ -167,33 +169,33 @@ def _has_finalizer(value: object) -> bool:
 
 
 def _is_data(value: object) -> bool:
-    """Return whether a value is neither code nor an open file."""
+    """Return whether a value is data: neither code nor an open file."""
     return not isinstance(
         value, types.ModuleType | types.FunctionType | types.BuiltinFunctionType | type | io.IOBase
     )
 
 
 def _add(outcome: ProgramOutcome, words: str) -> ProgramOutcome:
-    """Add words to the summary."""
+    """Return an outcome with words added to its summary."""
     return replace_fields(outcome, summary="; ".join(filter(None, (outcome.summary, words))))
 
 
 def _add_caught(outcome: ProgramOutcome) -> ProgramOutcome:
-    """Add to the summary the first missing part of the simulation that the program used, if it caught the error."""
+    """Return an outcome whose summary names the first NotSimulated error, if the program caught it."""
     if not NotSimulated.first or outcome.end not in (End.FINISHED, End.TIME_LIMIT):
         return outcome
     return _add(outcome, f"caught NotSimulated: {NotSimulated.first}")
 
 
 class ProgramRunner:
-    """The environment that the program sees in this process.
+    """Runs the program in this process: its prelude, its streams, its end.
 
     Args:
         session: The program's clock.
         output: Receives the program's lines.
         scheduler: The program's threads.
         loop_hook: Called at the start of each loop body.
-        leave: Ends the process at once, with an outcome.
+        leave: Ends the process immediately, with an outcome.
     """
 
     def __init__(
@@ -223,12 +225,12 @@ class ProgramRunner:
         self._loop_hook = loop_hook
 
     def prepare(self, prelude: str) -> None:
-        """Do what comes before the program and is the same for every program: streams, and the named prelude."""
+        """Do what is the same for every program: replace streams and functions, and run the prelude with this name."""
         vars(builtins)[LOOP_HOOK] = self._loop_hook
         self._patch()
         vars(self._module)["__builtins__"] = builtins
         sys.modules["__main__"] = self._module
-        # The prelude is free of charge.
+        # The calls of the prelude take no simulated time.
         self._session.free += 1
         try:
             self._run_prelude(prelude)
@@ -247,22 +249,22 @@ class ProgramRunner:
                 self.names[part] = MissingPart(part, error)
 
     def connect(self, config: RunConfig) -> None:
-        """Set the run and its program."""
+        """Set the configuration of the run, with its program."""
         self._config = config
         session = self._session
         self._starts_in_own_folder = config.starts_in_own_folder
-        # A relative path would mean another file from the program's folder.
+        # The program may start in another folder, from which a relative path would mean another file.
         in_own_folder = os.path.join(config.own_folder, os.path.basename(session.program_file))
         self._file = in_own_folder if self._starts_in_own_folder else session.program_file
         self._answers = list(config.options.answers)
         sys.argv = [self._file, *config.program.arguments]
 
     def run(self) -> ProgramOutcome:
-        """Run prelude and program to their end; never raises."""
+        """Run the program to its end, and return how it ended; never raises."""
         try:
             return self._run()
         except StopProgram as stop:
-            # There was no space for the last rows.
+            # The recording had no space for the last rows, which stops the run.
             return ProgramOutcome(stop.end, 0, stop.summary, error_line=stop.line)
 
     def _run(self) -> ProgramOutcome:
@@ -273,7 +275,7 @@ class ProgramRunner:
             and self._session.stop_reason is None
             and outcome.end in (End.FINISHED, End.RAISED)
         ):
-            # As in Python, also after an error or an exit of the main thread.
+            # As in Python, the other threads are waited for even after an error or an exit in the main thread.
             later = self._run_part(self._scheduler.join_all)
             outcome = outcome if later.end is End.FINISHED else later
         outcome = self._hold_at_end(outcome)
@@ -295,7 +297,7 @@ class ProgramRunner:
         return ProgramOutcome(End.FINISHED)
 
     def _hold_at_end(self, outcome: ProgramOutcome) -> ProgramOutcome:
-        """If the program ended before the instant that the debugger was asked for, let the debugger pause here."""
+        """Let the debugger pause if the program has ended before a requested instant; return the outcome."""
         if self._session.debugger is None or self._session.stop_reason is not None:
             return outcome
         try:
@@ -305,7 +307,7 @@ class ProgramRunner:
         return outcome
 
     def _finish_moves(self, outcome: ProgramOutcome) -> ProgramOutcome:
-        """Let the moves end that the program has begun, as on a brick; add to the summary which motors still run."""
+        """Let the program's moves end, as on a brick; return the outcome with the motors that would still run."""
         try:
             left = finish_moves(self._session)
         except StopProgram as stop:
@@ -318,17 +320,17 @@ class ProgramRunner:
             atexit._run_exitfuncs()
             flush_streams((self.stdout, self.stderr))
             if self._session.stop_reason is not None:
-                # The traceback of the stop would keep frames alive.
+                # The traceback of the stop would keep frames and their objects alive, so that finalizers do not run.
                 self._session.stop_reason.with_traceback(None)
             if self._session.stop_reason is None or len(self._scheduler.tasks) == 1:
-                # Otherwise a thread still computes after a stop by the user, and needs the program's names.
+                # After a stop by the user, other threads may still compute, and need the program's names.
                 self._clear_module()
         except BaseException as error:  # the program is over: later errors are only reported
             self.hooks.show(error)
 
     def _clear_module(self) -> None:
-        """Clear the program's module in an order in which finalizers still find most of its names."""
-        # Functions of the program that Python calls all the time would need its names: remove them first.
+        """Delete the program's global names, in an order in which finalizers still find most of them."""
+        # Trace functions and callbacks of the program would still be called and need its names: remove them first.
         gc.collect()
         wallclock.settrace(None)
         wallclock.setprofile(None)
@@ -351,18 +353,18 @@ class ProgramRunner:
             try:
                 stream.finish()
             except LogError:
-                # A recording without space has ended the run and reported itself.
+                # If the recording has no space left, that has ended the run and was reported elsewhere.
                 continue
 
     @property
     def _has_brick_folder(self) -> bool:
-        """Whether the program's folder counts as part of the brick's home folder."""
+        """Whether paths in the brick's home folder can mean files in the program's folder."""
         return self._session.sim.spec.profile.starts_in_own_folder
 
     def _patch(self) -> None:
         sys.stdout = self.stdout
         sys.stderr = self.stderr
-        # Also for code that replaces a stream and restores it.
+        # Code that replaces a stream for a while restores it from these attributes.
         vars(sys).update(__stdout__=self.stdout, __stderr__=self.stderr)
         self.hooks.install()
         patch_faulthandler()
@@ -381,7 +383,7 @@ class ProgramRunner:
         self.names["__file__"] = self._file
         if self._prelude_error is not None:
             raise self._prelude_error
-        # Only now: earlier, the library's `import logging` would find a program named logging.py.
+        # The program's folder is added late: earlier, the library's `import logging` would find a program logging.py.
         folder = self._config.own_folder
         sys.path[:0] = [folder, *self._config.program.python_path]
         brick_folder = folder if self._has_brick_folder else ""
@@ -391,7 +393,7 @@ class ProgramRunner:
             with suppress(OSError):
                 os.chdir(folder)
         self.prepared |= {name: id(value) for name, value in self.names.items()}
-        # Existing objects stay; only the program's own garbage is collected from here on.
+        # All objects that exist now are exempt from garbage collection, which then takes less time.
         gc.freeze()
         gc.enable()
         if self._config.debugged:
@@ -454,7 +456,7 @@ class ProgramRunner:
 
     @waits_for(Wait.INPUT)
     def _read_input(self, prompt: object = "") -> str:
-        """Replacement for input(): returns a scripted answer, or the user's."""
+        """Return a scripted answer, or the user's; replaces `input`."""
         self.stdout.write(str(prompt))
         (prompt_text,) = self._output.stabilize(self.stdout.take_part())
         answer: str | None
@@ -465,7 +467,7 @@ class ProgramRunner:
         else:
             answer = self._await_answer(prompt_text)
         self._output.row(prompt_text + (answer or ""), Stream.INPUT)
-        # No time passes for answers that have arrived: check for a stop here.
+        # If the answer is there already, no time passes, in which a stop would be noticed: check for one here.
         self._output.after_write()
         if answer is None:
             raise EOFError(NO_ANSWER)

@@ -25,7 +25,7 @@ _LINE_BUFFERED = 1
 
 
 def silence_descriptors() -> None:
-    """Discard what is written to descriptors 1 and 2: this process is a copy that shares the original's files."""
+    """Discard what this process writes to descriptors 1 and 2: it is a copy that shares the files of the original."""
     with suppress(OSError):
         null = os.open(os.devnull, os.O_WRONLY)
         for fd in (1, 2):
@@ -33,7 +33,7 @@ def silence_descriptors() -> None:
 
 
 class RawFile:
-    """The file in memory that replaces one of the descriptors 1 and 2.
+    """The file in memory that replaces descriptor 1 or 2.
 
     Args:
         fd: 1 or 2.
@@ -55,12 +55,12 @@ class RawFile:
         finally:
             os.close(created)
         self._identity = os.fstat(self._fd)
-        # Reading one byte of memory shows whether there is anything: asking the system would take much longer.
+        # One byte of memory shows whether anything was written; a system call would take much longer.
         self.first = mmap.mmap(self._fd, mmap.PAGESIZE)
         """Begins with 0 unless something has been written; output that begins with a null byte is not noticed."""
 
     def drain(self) -> int:
-        """Pass on what was written; return its length."""
+        """Pass what was written to `take`, and return its length."""
         try:
             length = min(os.lseek(self._fd, 0, os.SEEK_CUR), RAW_BYTES)
             if not length or not os.path.samestat(os.fstat(self._fd), self._identity):
@@ -76,7 +76,7 @@ class RawFile:
 
 
 class RawOutput:
-    """Passes on what is written to descriptors 1 and 2.
+    """Passes on what is written to descriptors 1 and 2, such as by C code.
 
     Args:
         stdout: Receives what was written to descriptor 1.
@@ -95,7 +95,10 @@ class RawOutput:
         self._write = os.write
 
     def open(self, created: Sequence[int] = ()) -> None:
-        """Replace the descriptors, as far as this system can; `created` has one file for each, see `RawFile`."""
+        """Replace descriptors 1 and 2 by files in memory, if this system has these.
+
+        `created` has descriptors of files that the host has created for this.
+        """
         with suppress(OSError, AttributeError):
             for (fd, take), file in zip_longest(self._takers.items(), created):
                 self._files.append(RawFile(fd, take, file))
@@ -103,13 +106,13 @@ class RawOutput:
         self._first_out, self._first_err, *_ = *firsts, _NOTHING, _NOTHING
 
     def drain(self) -> None:
-        """Pass on what was written, unless it begins with a null byte: a quick check."""
-        # No loop, which would take longer: this is called at each reading.
+        """Pass on what was written. The check is quick: output that begins with a null byte is not noticed."""
+        # Written without a loop, which would take longer: this is called at each reading of a sensor.
         if self._first_out[0] or self._first_err[0]:
             self.drain_all()
 
     def drain_all(self) -> int:
-        """Pass on everything that was written; return its length."""
+        """Pass on everything that was written, and return its length."""
         if self._busy:
             return 0
         self._busy = True
@@ -119,24 +122,24 @@ class RawOutput:
             self._busy = False
 
     def finish(self) -> None:
-        """Pass on everything, also what C has buffered."""
+        """Pass on everything that was written, including what C code has buffered."""
         self._flush_c()
         self.drain_all()
 
     def write(self, fd: int, data: Any) -> int:
-        """Replacement for os.write(): pass on output at once."""
+        """Write to a descriptor, and pass on the output immediately; replaces `os.write`."""
         count = self._write(fd, data)
         drained = self.drain_all()
         size = memoryview(data).nbytes
         while drained and count < size:
-            # The file had no room for more: write the rest now that it is empty.
+            # The file was full, and is empty now: write the rest.
             count += self._write(fd, memoryview(data).cast("B")[count:])
             drained = self.drain_all()
         return count
 
     def finish_ctypes(self, module: Any) -> None:
-        """Make C write each line at once, as to a terminal: nobody would flush its buffers later."""
-        # If C has other names for these functions, its output is passed on at the end.
+        """Make C code write each line immediately, because nobody flushes its buffers at the end."""
+        # On a system whose C library has other names for these functions, the output is passed on only at the end.
         with suppress(OSError, ValueError, AttributeError):
             c = module.CDLL(None)
             self._flush_c = lambda: c.fflush(None)

@@ -23,7 +23,7 @@ from tuisim.engine.runtime import wallclock
 
 @dataclass(frozen=True, slots=True)
 class RunConfig:
-    """The part of `run.json` that the child needs."""
+    """The part of a run's `run.json` that its child process needs."""
 
     folder: Path
     """The run folder."""
@@ -34,13 +34,13 @@ class RunConfig:
 
     @property
     def own_folder(self) -> str:
-        """Folder of the program's own modules: that of its file, or the configured one, or the working directory."""
+        """Folder of the program's own modules: the configured one, or else the folder of the program's file."""
         program = self.program
         return program.module_folder or os.path.dirname(wallclock.absolute(program.file))
 
     @property
     def starts_in_own_folder(self) -> bool:
-        """Whether the program starts in its own folder. An example does not: its files are for the user."""
+        """Whether the program starts in its own folder. Examples do not, because their files are for the user."""
         program = self.program
         if not self.spec.profile.starts_in_own_folder or not (
             program.path or program.module_folder
@@ -54,7 +54,7 @@ class RunConfig:
 
     @property
     def debugged(self) -> bool:
-        """Whether the debugger is needed from the first line on."""
+        """Whether the debugger is needed from the program's first line on."""
         options = self.options
         return (
             bool(options.breaks)
@@ -64,7 +64,7 @@ class RunConfig:
 
 
 def read_config(folder: Path) -> RunConfig:
-    """Read `run.json`.
+    """Return the configuration in the `run.json` of a run folder.
 
     Raises:
         OSError, ValueError, KeyError, TypeError: the host has not prepared the folder.
@@ -88,7 +88,7 @@ def parse_config(folder: Path, data: Mapping[str, Any]) -> RunConfig:
 
 
 def derive_config(last: RunConfig, folder: Path, changes: Mapping[str, Any]) -> RunConfig:
-    """Return the configuration of another run of the same robot and world.
+    """Return the configuration of another run of the same robot in the same world.
 
     Args:
         last: The configuration of the run before.

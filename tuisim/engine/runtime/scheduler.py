@@ -54,7 +54,7 @@ _PROCESS_CALLS = (
 
 
 def limit_memory(threads: int = 0) -> None:
-    """Limit the process's address space, with additional room for the stacks of `threads` threads."""
+    """Limit the address space of the process, with additional space for the stacks of `threads` threads."""
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
     stack = wallclock.stack_size() or STACK_BYTES
     limit = MEMORY_LIMIT_BYTES + (threads and threads + STACKS_KEPT) * stack
@@ -91,7 +91,7 @@ FOREVER = -1
 
 
 class ScheduledThread:
-    """One thread of the program."""
+    """One thread of the program, and what it waits for."""
 
     __slots__ = (
         "daemon",
@@ -141,7 +141,7 @@ class Scheduler:
 
     Args:
         session: The program's clock.
-        parked: Called with whether the main thread waits for its turn.
+        parked: Called with True when the main thread begins to wait for its turn, and with False afterwards.
     """
 
     def __init__(self, session: Session, parked: Callable[[bool], None]) -> None:
@@ -163,7 +163,7 @@ class Scheduler:
     # Waiting
 
     def sleep_until(self, until: int, on_change: bool = False) -> None:
-        """Block the current thread until a simulated time, or until a motor ends a move."""
+        """Block the current thread until a simulated time in ns or, with `on_change`, until a motor ends a move."""
         self.wait(until, on_change)
 
     def wait(self, until: int, on_change: bool = False, queue: Queue | None = None) -> bool:
@@ -173,8 +173,7 @@ class Scheduler:
             until: Simulated ns, or FOREVER.
             on_change: Whether a motor that ends a move ends the wait.
             queue: Holds the thread while it waits, so that another one can wake it. Such a wait also ends after an
-                interrupt
-                has run in the thread: what the thread waits for may be available by then.
+                interrupt has run in the thread: what the thread waits for may be available by then.
 
         Returns:
             Whether another thread (or a motor) ended the wait before its time.
@@ -202,11 +201,11 @@ class Scheduler:
                 return False
 
     def pause(self) -> None:
-        """Block the main thread until an interrupt has been called in it."""
+        """Block the main thread until an interrupt has been handled in it."""
         self.wait(FOREVER, queue=[])
 
     def interrupt_main(self, call: Callable[[], None]) -> None:
-        """Call a function in the main thread as soon as that waits; unless the function raises, the wait goes on."""
+        """Call a function in the main thread when it next waits; unless the function raises, the wait continues."""
         main = self.main
         main.interrupt = call
         if main.order:
@@ -253,7 +252,7 @@ class Scheduler:
             self._leave_if_stopping(me)
 
     def give_way(self) -> None:
-        """Let every other thread that is ready run first, without time passing."""
+        """Run every other thread that is ready before the current one continues, without time passing."""
         me = self.current
         self._order += 1
         me.order = self._order
@@ -282,7 +281,8 @@ class Scheduler:
         try:
             me.gate.acquire()
         finally:
-            # A stop raised here ends the wait out of turn: the run is being unwound.
+            # A stop that is raised here ends the wait although it is not this thread's turn: the program is ending
+            # anyway.
             self._parked(False)
 
     def _choose(self) -> ScheduledThread:
@@ -362,7 +362,7 @@ class Scheduler:
         try:
             wallclock.start_new_thread(run, ())
         except RuntimeError as error:
-            # Not how many there are: what this machine allows depends on what else runs on it.
+            # The message does not say how many threads there are, because that depends on what else this machine runs.
             raise RuntimeError(f"{error}: this machine allows no more") from None
         self._alive.append(task)
         self._ready.append(task)
@@ -379,7 +379,7 @@ class Scheduler:
             self.wake(joiner)
         reason = self._session.stop_reason
         if reason is not None and self._session.stop_raised_in == task.ident:
-            # The main thread does not know of the stop yet: it runs first.
+            # The main thread does not know of the stop yet, so it runs before all others.
             self._ready.appendleft(self._send_to_main(reason))
         chosen = self._choose()
         self.current = chosen
@@ -387,7 +387,7 @@ class Scheduler:
         chosen.gate.release()
 
     def join(self, task: ScheduledThread, timeout_ns: int = FOREVER) -> None:
-        """Block until a thread ends."""
+        """Block until a thread has ended, or until the timeout in simulated ns is over."""
         until = FOREVER if timeout_ns == FOREVER else self._session.now + timeout_ns
         while not task.done and (until == FOREVER or self._session.now < until):
             self.wait(until, queue=task.joiners)
@@ -399,7 +399,7 @@ class Scheduler:
 
 
 class SimulatedLock:
-    """Replaces `_thread.lock`: only one thread runs at a time, so a flag and a queue are enough."""
+    """Replaces `_thread.lock`. Only one thread runs at a time, so a flag and a queue are enough."""
 
     def __init__(self, scheduler: Scheduler) -> None:
         self._scheduler = scheduler
@@ -408,16 +408,17 @@ class SimulatedLock:
 
     @waits_for(Wait.LOCK)
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Acquire the lock; block in simulated time if requested."""
+        """Acquire the lock, if requested after waiting in simulated time; return whether it was acquired."""
         if timeout != -1:
-            # A free lock is acquired at once, unless the arguments are invalid.
+            # A real lock, which is free, checks the arguments, and raises the proper error if they are invalid.
             wallclock.allocate_lock().acquire(blocking, timeout)
         scheduler = self._scheduler
         until = FOREVER if timeout == -1 else scheduler._session.now + round(timeout * 1e9)
         while self._locked:
             if not blocking or timeout == 0:
                 return False
-            # A release passes the lock on: it is free afterwards only if this thread was interrupted.
+            # `release` passes the lock to a waiting thread. After the wait it is free only if this thread was
+            # interrupted.
             if scheduler.wait(until, queue=self._waiting):
                 return True
             if self.locked() and scheduler._session.now >= until != FOREVER:
@@ -426,7 +427,7 @@ class SimulatedLock:
         return True
 
     def release(self) -> None:
-        """Pass the lock to the thread that has waited longest, or free it."""
+        """Pass the lock to the thread that has waited longest; if none waits, unlock it."""
         if not self._locked:
             raise RuntimeError("release unlocked lock")
         if self._waiting:

@@ -58,7 +58,7 @@ CHUNK_TICKS = 2000
 
 @dataclass(frozen=True, slots=True)
 class RunLimits:
-    """The limits that end a headless run; 0 is no limit."""
+    """The limits that end a run without a user; 0 is no limit."""
 
     time_ns: int = 0
     stall_s: float = 0.0
@@ -66,7 +66,9 @@ class RunLimits:
 
 
 class StopProgram(BaseException):
-    """Ends the program by unwinding it. Not an `Exception`, so that the program's handlers do not catch it.
+    """Raised in the program to end it.
+
+    It is not an `Exception`, so that handlers of the program do not catch it.
 
     Args:
         end: How the run ends.
@@ -82,11 +84,11 @@ class StopProgram(BaseException):
 
 
 class Deadlock(RuntimeError):
-    """Every thread of the program waits for another one."""
+    """Raised when every thread of the program waits for another one."""
 
 
 class Session:
-    """Clock of one run.
+    """The clock of one run, and what happens when simulated time passes.
 
     It is prepared without a run; time may pass after `connect`.
 
@@ -148,7 +150,7 @@ class Session:
     def connect(
         self, channel: Channel, steering: RunControl, limits: RunLimits, program_file: str
     ) -> None:
-        """Connect the session with the run that is about to begin; arguments as the attributes."""
+        """Connect the session to the run that is about to begin; arguments as the attributes."""
         self.channel = channel
         self.steering = steering
         self.limits = limits
@@ -165,14 +167,14 @@ class Session:
 
     @property
     def field(self) -> Field:
-        """The mat in its current state, with pen marks if they are visible to sensors."""
+        """The mat in its present state, with pen marks if sensors can see them."""
         if self._pen is None:
             return self._field
         self._pen.add_records(self.sim.read_records(self._pen.records))
         return self._pen.field
 
     def spend(self, duration_ns: int, code: int = -1) -> None:
-        """Let simulated time pass, even where calls are free; arguments as in `DeviceSession`."""
+        """Let simulated time pass, even while calls are free of charge; arguments as in `DeviceSession`."""
         until = self.now + duration_ns
         line = 0
         if self.flags or until > self._quick_ns:
@@ -180,7 +182,7 @@ class Session:
         elif until < self._due:
             self.now = until
             if code >= 0:
-                # The time is new: no other reading has it.
+                # Time has passed since the last reading, so this one cannot be a repetition: record it without a check.
                 self.readings.add(code, until, self.program_line(3))
             return
         else:
@@ -188,7 +190,7 @@ class Session:
             sim = self.sim
             sim.line = line = self.program_line(3)
             # Most readings make exactly one tick due, and whole tick lengths can be added up.
-            # Same value as `sim.compute_due_ns(sim.tick + 2)`.
+            # The result is the same as `sim.compute_due_ns(sim.tick + 2)`.
             following = (
                 self._due + self._tick_ns
                 if self._tick_ns
@@ -211,7 +213,7 @@ class Session:
             self.note_reading(code, line)
 
     def note_reading(self, code: int, line: int = 0) -> None:
-        """Record that the program has read something, in `line` or, for 0, in the present line; see `DeviceSession`."""
+        """Record that the program has read something, in `line` or, for 0, in its present line; see `DeviceSession`."""
         readings = self.readings
         now = self.now
         # While no time passes, a loop may read the same value again and again: record it once.
@@ -220,12 +222,15 @@ class Session:
         readings.add(code, now, line or self.program_line(3))
 
     def charge(self, cost_ns: int) -> None:
-        """Let the time that a call costs pass, unless calls are free."""
+        """Let the simulated time of a call pass, unless calls are free of charge."""
         if not self.free:
             self.spend(cost_ns)
 
     def command(self) -> None:
-        """Count a call that costs nothing; many such calls at one time together cost a little."""
+        """Count a call that takes no time.
+
+        Many such calls at one time together take a little, so that no loop of them runs forever.
+        """
         if self._commands_at != self.now:
             self._commands_at = self.now
             self._commands = 0
@@ -241,7 +246,8 @@ class Session:
 
         Args:
             timeout_ns: The timeout.
-            again: Whether the caller would only wait again after the timeout.
+            again: Whether the caller would only wait again after the timeout, so that a longer wait has the same
+                effect.
         """
         if again and not self.flags & THREADS:
             # Nothing else can change during the wait, so many short waits are equivalent to one long wait.
@@ -249,36 +255,36 @@ class Session:
         self._pass(self.now + timeout_ns, True)
 
     def describe_part(self, port: str, part: str, role: str = "") -> PluggedPart:
-        """Return a part as plugged in now, in the program's present line; arguments as of `PluggedPart`."""
+        """Return a description of a part that is plugged in now; arguments as of `PluggedPart`."""
         from tuisim.engine.core.plugged import PluggedPart
 
         return PluggedPart(port, part, self.sim.tick, self.program_line(), role)
 
     def tell_plugged(self, parts: Sequence[PluggedPart]) -> None:
-        """Tell the host which parts have been plugged in."""
+        """Send to the host which parts have been plugged in."""
         for part in parts:
             self.channel.send(Plugged(part.port, part.part, part.tick, part.line, part.role))
 
     def is_tried(self, error: type[Exception]) -> bool:
-        """Return whether the program would catch an error that is raised here; see `DeviceSession`."""
-        # Imported on demand: few programs ask for what is not there.
+        """Return whether the program would catch an error raised now; see `DeviceSession`."""
+        # Imported on demand: few programs look for a device that is missing.
         from tuisim.engine.runtime.handlers import is_caught
 
         return is_caught(error, _getframe(1), self.program_file)
 
     @waits_for(Wait.SOUND)
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
-        """Record a sound and block for `wait_ns`; the other arguments are as in `engine.protocol.Spoke`."""
+        """Record a sound, and block for `wait_ns`; the other arguments are as in `engine.protocol.Spoke`."""
         self.output.row(text, Stream.SPEECH)
         self.channel.send(Spoke(text, self.now, tones, file))
         self.spend(wait_ns)
 
     def show(self, row: str, stream: Stream) -> None:
-        """Record a row of the brick's state."""
+        """Record a row that describes what the brick shows."""
         self.output.row(row, stream)
 
     def messages(self) -> list[Any]:
-        """Return all answers of the host's responder; wait for pending ones, while simulated time stands still."""
+        """Return all answers of the notebook's responder; wait for pending ones without simulated time."""
         self.command()
         steering = self.steering
         if not steering.replay_next(self, Reply) and self.replies and self.stop_reason is None:
@@ -302,11 +308,11 @@ class Session:
             self.advance(until, on_change)
 
     def advance(self, until: int, on_change: bool) -> bool:
-        """Advance the clock.
+        """Advance the clock, and run the ticks that are due.
 
         Args:
             until: Simulated time in ns.
-            on_change: Return early when a motor ends a move.
+            on_change: Whether to return early when a motor ends a move.
 
         Returns:
             Whether a motor ended the wait.
@@ -333,7 +339,7 @@ class Session:
                 raise self.stop_reason
         else:
             changed = self._run_ticks(until, on_change)
-        # A wait that a motor ended is over at the tick in which the motor stopped, or when its driver noticed it.
+        # A wait that a motor ended is over at the tick in which the motor stopped, or when its driver noticed the stop.
         sim = self.sim
         self.now = max(self.now, sim.compute_due_ns(sim.tick), sim.changed_ns) if changed else until
         self._due = self.sim.compute_due_ns(self.sim.tick + 1)
@@ -365,7 +371,8 @@ class Session:
         if not steering.wanted:
             self.flags &= ~LIVE
         while sim.tick < target:
-            # User actions take effect right before a tick: not now if the program goes on before the tick.
+            # User actions take effect right before a tick, so they must wait if a motor's change lets the program go on
+            # first.
             if on_change and sim.notice_change():
                 return True
             # The clock shows the last tick, but never goes back.
@@ -379,7 +386,7 @@ class Session:
         return False
 
     def skip_control(self, tick: int) -> None:
-        """Do not call the control before this tick is due."""
+        """Run without calling the control until this tick is due."""
         self.flags &= ~LIVE
         self._quick_ns = min(self._limit_ns, self.sim.compute_due_ns(tick) - 1)
 
@@ -393,7 +400,7 @@ class Session:
     # Stopping
 
     def check_stop(self, before_tick: bool = False) -> None:
-        """Process commands; raise if the program has to stop.
+        """Process commands of the host, and raise an exception if the program has to stop.
 
         Args:
             before_tick: Whether a tick is about to run and no code of the program comes before it: a position that a
@@ -416,7 +423,7 @@ class Session:
             raise reason
 
     def request_stop(self, end: End, summary: str) -> StopProgram:
-        """Record that the run ends, and why; the first reason is kept. Return the exception to raise."""
+        """Record that the run ends and why, unless a reason is known already; return the exception to raise."""
         if self.stop_reason is None:
             self.stop_reason = StopProgram(end, summary)
             self.steering.begin_grace()
@@ -425,18 +432,18 @@ class Session:
         return self.stop_reason
 
     def ask_stop(self, end: End, summary: str, line: int = 0) -> None:
-        """Record that the run has to end at the next checkpoint; arguments as of `StopProgram`."""
+        """Record that the run has to end at the next call that checks for a stop; arguments as of `StopProgram`."""
         if self.stop_reason is None:
             self.stop_reason = StopProgram(end, summary, line)
             self.steering.begin_grace()
         self.flags |= STOPPING
 
     def stop_lost(self) -> None:
-        """Make the next checkpoint raise the stop again: Python has dropped it, such as in a `__del__`."""
+        """Make the next check raise the stop again, because Python has dropped it, such as in a `__del__`."""
         self._stop_raised_at = None
 
     def program_line(self, skipped: int = 1) -> int:
-        """Return the line of the program that is running; 0 if there is none.
+        """Return the number of the program's line that is running; 0 if there is none.
 
         Args:
             skipped: How many frames are certainly not the program's: this one, and some of its callers.

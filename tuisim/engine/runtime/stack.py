@@ -33,7 +33,7 @@ _shows_whole = False
 
 @contextmanager
 def show_whole_stacks() -> Iterator[None]:
-    """Make `traceback` and `inspect` return the frames of the runtime, too, within the block."""
+    """Return a context in which `traceback` and `inspect` also return the frames of the runtime."""
     global _shows_whole
     _shows_whole = True
     try:
@@ -43,7 +43,7 @@ def show_whole_stacks() -> Iterator[None]:
 
 
 def _iterate_visible(walk: Iterable[Any], file_of: Callable[[Any], str]) -> Iterator[Any]:
-    """Yield items whose frames a program may see: none of the runtime, and none below the program."""
+    """Yield those items whose frames a program may see: not those of the runtime, and none below the program."""
     for item in walk:
         if _shows_whole:
             yield item
@@ -62,7 +62,7 @@ def _walk_frames(frame: types.FrameType | None) -> Iterator[types.FrameType]:
 
 
 def finish_traceback(module: types.ModuleType) -> None:
-    """Make `traceback` show only the frames that a program may see."""
+    """Patch `traceback` after its import, so that it shows only the frames that a program may see."""
     changed: Any = module
 
     def walk_stack(f: types.FrameType | None) -> Iterator[tuple[types.FrameType, int]]:
@@ -83,7 +83,7 @@ def finish_traceback(module: types.ModuleType) -> None:
 
 
 def finish_inspect(module: types.ModuleType) -> None:
-    """Make `inspect` show only the frames that a program may see."""
+    """Patch `inspect` after its import, so that it shows only the frames that a program may see."""
     changed: Any = module
     for name in ("getouterframes", "getinnerframes"):
         setattr(
@@ -112,9 +112,10 @@ def _build_listed(walk: Callable[..., Iterator[Any]]) -> Callable[..., list[Any]
 
 
 def patch_faulthandler() -> None:
-    """Let a program enable the fault handler, which always is: crashes are written for the host, with their line.
+    """Patch `faulthandler`, so that a program can enable it without effect: crashes are always written for the host.
 
-    Functions that write the stack after a real time do nothing: time in a run is simulated, its limits are the host's.
+    Functions that write the stack after some real time do nothing: time in a run is simulated, and the host has its
+    limits.
     """
     on = False
 
@@ -140,7 +141,7 @@ def patch_faulthandler() -> None:
 
 
 def _patch_registration() -> None:
-    """Let a program register signals that write the stack, except signals that the runtime uses itself."""
+    """Patch the functions of `faulthandler` that register signals, so that the runtime keeps its own signals."""
     before: dict[int, Any] = {}
 
     def register(
@@ -197,7 +198,7 @@ def _format_stack(heading: str, frame: types.FrameType) -> str:
 
 
 def _write(text: str, file: Any) -> None:
-    """Write to a file, which may be a descriptor, as the real function does."""
+    """Write text to a file object or to a descriptor, as the real function does."""
     if isinstance(file, int):
         os.write(file, text.encode("utf-8", "backslashreplace"))
     else:

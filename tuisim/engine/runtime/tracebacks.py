@@ -33,7 +33,7 @@ Trace = Any
 
 @dataclass(frozen=True, slots=True)
 class ErrorReport:
-    """An uncaught error."""
+    """The report of an uncaught error, as it is shown to the user."""
 
     text: str
     """The traceback as Python prints it, reduced to the program's frames."""
@@ -44,7 +44,7 @@ class ErrorReport:
 
 
 def report_error(error: BaseException, file: str, source: str, alone: bool = False) -> ErrorReport:
-    """Return the report of an error.
+    """Return the report of an error, with the program's own frames only.
 
     Args:
         error: What the program raised.
@@ -56,7 +56,7 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
     remember_source(file, source)
     _add_text(error, file, source)
     try:
-        # All frames: an error without any was created but never raised.
+        # All frames are read at first, because an error without any frame was created but never raised.
         with show_whole_stacks():
             trace: Trace = traceback.TracebackException.from_exception(
                 error, limit=sys.maxsize, lookup_lines=False, compact=True
@@ -91,26 +91,29 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
 
 
 def _cut(text: str) -> str:
-    """Return a text that can be sent to the host: only the beginning if it is too long."""
+    """Return a text that is short enough for the host; of a longer one only the beginning."""
     if len(text) <= _MAX_CHARACTERS:
         return text
     return f"{text[:_MAX_CHARACTERS]}… (too long: {len(text):,} characters)"
 
 
 def _add_text(error: BaseException, file: str, source: str) -> None:
-    """Add the program's line to a syntax error without one: Python looks for it in the file, which need not exist."""
+    """Add the program's line to a syntax error without one.
+
+    Python would look for the line in the file, which need not exist.
+    """
     if type(error) in _SYNTAX_ERRORS and isinstance(error, SyntaxError) and error.text is None:
         lines = source_lines(source)
         line = _find_line(error)
         if error.filename == file and 0 < line <= len(lines):
-            # Bytes that are no text cannot be shown.
+            # Bytes that are not valid text are replaced, because they cannot be shown.
             error.text = (
                 lines[line - 1].encode("utf-8", "surrogateescape").decode("utf-8", "replace") + "\n"
             )
 
 
 def find_line(trace: Any, file: str) -> int:
-    """Return a file's last line in a traceback; 0 if there is none."""
+    """Return the last line of a file in a traceback; 0 if the file is not in it."""
     line = 0
     while trace is not None:
         line = trace.tb_lineno if trace.tb_frame.f_code.co_filename == file else line
@@ -118,11 +121,11 @@ def find_line(trace: Any, file: str) -> int:
     return line
 
 
-# What only the interpreter itself prints, not its module `traceback`: up to Python 3.11 the names that were meant
+# Up to Python 3.11, only the interpreter itself prints which names may have been meant, not the module `traceback`.
 
 
 def _add_suggestions(trace: Trace, error: BaseException) -> None:
-    """Add the names that Python suggests to an error and those linked to it."""
+    """Add the names that Python suggests to the messages of an error and of the errors linked to it."""
     pairs: list[tuple[Trace, Any]] = [(trace, error)]
     for printed, real in pairs:
         if printed is None or real is None:
@@ -139,14 +142,14 @@ def _add_suggestions(trace: Trace, error: BaseException) -> None:
 def _find_suggestion(error: Any) -> str:
     """Return the suggestion that Python adds to the message of a NameError or an AttributeError."""
     kind = type(error)
-    # Without a message, whose text might be written by the program.
+    # The copy of the error has no message, because the program may have written that.
     bare = kind(name=error.name) if kind is NameError else kind(name=error.name, obj=error.obj)
     bare.__traceback__ = error.__traceback__
     return _print_error(bare).removeprefix(kind.__name__).rstrip("\n")
 
 
 def _print_as_python(trace: Trace, error: SyntaxError) -> None:
-    """Let a syntax error be formatted as Python itself prints it: `traceback` sets the carets differently."""
+    """Format a syntax error as Python itself prints it; the module `traceback` sets the carets differently."""
     bare: Any = type(error)()
     for name in (
         "msg",
@@ -165,7 +168,7 @@ def _print_as_python(trace: Trace, error: SyntaxError) -> None:
 
 
 def _print_error(error: BaseException) -> str:
-    """Return the text that Python prints of an error, without its frames."""
+    """Return the text that Python prints for an error, without its frames."""
     names = vars(sys)
     printed = io.StringIO()
     meanwhile = {"stderr": printed, "tracebacklimit": 0}
@@ -198,7 +201,10 @@ def _summarize(trace: Trace) -> str:
 
 
 def own_files(file: str) -> Callable[[str], bool]:
-    """Return a function that tells whether a file is the program, beside the program, or imported by it."""
+    """Return a function that returns whether a file belongs to the program.
+
+    Such a file is the program, lies beside the program, or was imported by it.
+    """
     beside = os.path.dirname(wallclock.absolute(file)) + os.sep
 
     def own(name: str) -> bool:
@@ -211,7 +217,7 @@ def own_files(file: str) -> Callable[[str], bool]:
 
 
 def add_namesake_note(error: BaseException, file: str) -> None:
-    """Add a note to an error if a module beside the program shadows one of Python's.
+    """Add a note to an error if a file beside the program has the name of a module of Python.
 
     Args:
         error: What the program raised.
@@ -228,7 +234,7 @@ def add_namesake_note(error: BaseException, file: str) -> None:
 
 
 def _keep_program_frames(trace: Trace, own: Callable[[str], bool]) -> list[Trace]:
-    """Remove frames that are not the program's from an error and its causes; return these, newest first."""
+    """Remove frames that are not the program's from an error and its causes; return the errors, newest first."""
     chains = [[trace]]
     limit = vars(sys).get("tracebacklimit")
     max_frames = max(limit, 0) if isinstance(limit, int) else sys.maxsize
@@ -241,7 +247,7 @@ def _keep_program_frames(trace: Trace, own: Callable[[str], bool]) -> list[Trace
             )
             chains += [[inner] for inner in getattr(one, "exceptions", None) or ()]
             before = chain[-2] if one is not chain[0] else None
-            # An error that never touched the program's code is a detail of the runtime or of the library.
+            # An error without a frame of the program is a detail of the runtime or of the library, so it is not shown.
             if before is not None and was_raised and not own_frames:
                 before.__cause__ = before.__context__ = None
                 chain.pop()
@@ -251,7 +257,7 @@ def _keep_program_frames(trace: Trace, own: Callable[[str], bool]) -> list[Trace
 
 
 def _find_linked(trace: Trace) -> Trace | None:
-    """Return the error that is printed before this one, its cause or context; None if there is none."""
+    """Return the cause or context of an error, which is printed before it; None if there is none."""
     return trace.__cause__ or (None if trace.__suppress_context__ else trace.__context__)
 
 
@@ -297,24 +303,26 @@ def add_hint(trace: Any, error: BaseException) -> None:
 
 
 def _find_meant(error: AttributeError) -> str:
-    """Return a suggestion of similar names for a wrong attribute of a library's object; empty if there are none."""
+    """Return a question that suggests names similar to a wrong attribute of a library's object; empty if none."""
     kind = type(error.obj)
     wrong = error.name
     library = str(getattr(kind, "__module__", "")).partition(".")[0]
     if not isinstance(wrong, str) or library not in _LIBRARIES:
         return ""
-    # The names of classes only: to list those of an object may run code.
+    # Only names of classes are listed: to list those of the object may run code of the program.
     names = {name for base in kind.__mro__ for name in vars(base)}
     meant = find_meant_names(wrong, names)
     return f"Did you mean: {' or '.join(map(repr, meant))}?" if meant else ""
 
 
 def _find_import(name: str | None, words: str) -> str:
-    """Return the import that the program lacks for a name; empty if none is known, or if Python names it.
+    """Return a question that suggests the import that the program lacks for a name.
+
+    It is empty if no module is known, or if Python suggests it already.
 
     Args:
         name: The name that is not defined.
-        words: What Python says.
+        words: Python's message.
     """
     if not isinstance(name, str) or "import" in words:
         return ""
@@ -327,9 +335,9 @@ def _find_import(name: str | None, words: str) -> str:
 
 
 def _find_module(name: str) -> str:
-    """Return the module of the library of the program, or of Python, that has a name; empty if none has."""
+    """Return the module of the library or of Python that defines a name; empty if none does."""
     if "pybricks" in sys.modules:
-        # All modules of the library are there from the start, whatever the program imports.
+        # All modules of Pybricks are in `sys.modules` from the start, even if the program does not import them.
         for module in (f"pybricks.{part}" for part in _PYBRICKS):
             if name[0] != "_" and name in vars(sys.modules.get(module, _NO_MODULE)):
                 return module

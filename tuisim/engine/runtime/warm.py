@@ -41,7 +41,7 @@ _NEEDED_LATER = (
 _ONLY_HERE = ("_socket", "hashlib", "_hashlib", "_blake2", "_sha3", "tuisim.engine.runtime.warm")
 """Modules that only forked children have: they are removed from `sys.modules`."""
 
-# Saved: a template replaces these functions of `os` for the program.
+# The real functions are stored here, because a template replaces them in `os` for the program.
 _read = os.read
 _write = os.write
 _close = os.close
@@ -49,7 +49,7 @@ _change_folder = os.chdir
 
 
 def serve(socket_fd: int) -> Child | None:
-    """Fork a child for each request until the host closes the socket; return in each child.
+    """Fork a child for each request until the host closes the socket; return in each child, not in this process.
 
     Args:
         socket_fd: The socket to the host.
@@ -78,7 +78,7 @@ def serve(socket_fd: int) -> Child | None:
 
 
 class ForkServer:
-    """Answers requests, and reports how children end.
+    """Forks a child for each request of the host, and reports how children end.
 
     Args:
         socket_fd: The socket to the host.
@@ -88,7 +88,7 @@ class ForkServer:
     def __init__(self, socket_fd: int, prepared: Child | None = None) -> None:
         self._prepared = prepared
         self._environment = dict(os.environ)
-        # Not `socket`: the program imports that with its functions patched.
+        # The C module, because the program has to import `socket` itself, with patched functions.
         library: Any = import_module("_socket")
         self._socket: Any = library.socket(fileno=socket_fd)
         self._attached_bytes: int = library.CMSG_SPACE(MAX_FILES * 4)
@@ -102,7 +102,11 @@ class ForkServer:
         """Where to report the end of each child, by process id."""
 
     def await_request(self) -> dict[str, Any]:
-        """Fork a child for each request; return the request, with the descriptors of its `channel`, in each child."""
+        """Fork a child for each request of the host; return only in each child.
+
+        Returns:
+            The request, with the descriptors of its `channel`.
+        """
         while True:
             ready = wallclock.select_files([self._socket, self._ended], [], [])[0]
             if self._ended in ready:
@@ -159,7 +163,7 @@ class ForkServer:
 
     def _become_child(self, request: dict[str, Any], given: list[int], status_fd: int) -> None:
         os.setsid()
-        # Not before `setsid`: the host may kill the child's process group at once.
+        # Reported only after `setsid`, because the host may kill the child's process group from then on.
         _report(status_fd, os.getpid())
         signal.set_wakeup_fd(-1)
         wallclock.set_signal(signal.SIGCHLD, int(signal.SIG_DFL))
@@ -183,7 +187,7 @@ def _report(status_fd: int, number: int) -> None:
     try:
         _write(status_fd, number.to_bytes(8, sys.byteorder, signed=True))
     except OSError:
-        # The host has given up this child, or has ended.
+        # The host no longer waits for this child, or has ended.
         return
 
 
@@ -191,6 +195,6 @@ def _assert_one_thread() -> None:
     try:
         count = len(os.listdir("/proc/self/task"))
     except OSError:
-        # No such file system.
+        # This system has no `/proc`, so the threads cannot be counted.
         return
     assert count == 1, f"{count} threads"

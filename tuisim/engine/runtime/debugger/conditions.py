@@ -56,7 +56,7 @@ class LineCondition:
     It is evaluated in this process if that cannot run code of the program, otherwise in a copy of the process.
 
     Args:
-        text: A syntactically valid expression.
+        text: An expression without syntax errors.
     """
 
     def __init__(self, text: str) -> None:
@@ -69,7 +69,7 @@ class LineCondition:
         self._plain = all(isinstance(node, _PLAIN_NODES) for node in nodes)
 
     def holds(self, frame: types.FrameType, apart: Apart) -> str:
-        """Return why the run has to pause; empty if the condition is false.
+        """Return the reason for a pause, such as `is true`; empty if the condition is false.
 
         Args:
             frame: Where the expression is evaluated.
@@ -108,7 +108,9 @@ Value = Callable[[], float]
 
 
 class Watcher:
-    """Checks the breakpoints of a run that have no line. It costs nothing while there are none.
+    """Checks the breakpoints of a run that are not on a line: conditions on values, times, stalls and printed rows.
+
+    Without such breakpoints, it takes no time.
 
     Args:
         session: The run.
@@ -122,16 +124,16 @@ class Watcher:
 
     @property
     def ticks(self) -> bool:
-        """Whether each tick must be checked."""
+        """Whether a breakpoint must be checked after each tick."""
         return bool(self._after_tick)
 
     @property
     def rows(self) -> bool:
-        """Whether each printed row must be checked."""
+        """Whether a breakpoint must be checked at each printed row."""
         return bool(self._on_row)
 
     def set(self, breaks: Iterable[Breakpoint]) -> None:
-        """Replace the breakpoints; those that were set before keep their state."""
+        """Replace the breakpoints; those that were set before keep what they know of earlier values."""
         ticks = self._after_tick
         rows = self._on_row
         self._after_tick = {}
@@ -150,11 +152,11 @@ class Watcher:
                         self._after_tick[break_point.text] = check
 
     def match_tick(self) -> tuple[str, str] | None:
-        """Return text and value of a breakpoint that matches after this tick; None if none does."""
+        """Return a breakpoint that matches after this tick, as its text and the matching value; None without one."""
         return _find_first((text, check()) for text, check in self._after_tick.items())
 
     def match_row(self, row: str, stream: Stream) -> tuple[str, str] | None:
-        """Return text and value of a breakpoint that matches this printed row; None if none does."""
+        """Return a breakpoint that matches a printed row, as its text and the matching value; None without one."""
         if stream not in SAMPLE_STREAMS:
             return None
         return _find_first((text, check(row)) for text, check in self._on_row.items())
@@ -182,7 +184,7 @@ class Watcher:
             return None
         edge = Edge(condition)
         if isinstance(rule, TimeBreak) and self._time_s() >= rule.time_s:
-            # The time has passed already, and does not come again.
+            # The time has passed already: the condition must not become true at the next tick.
             edge.update(rule.time_s)
 
         def check() -> str:
@@ -210,7 +212,7 @@ class Watcher:
 
 
 def _find_first(matches: Iterator[tuple[str, str]]) -> tuple[str, str] | None:
-    """Return the first match, but make all checks: each has to follow its value."""
+    """Return the first match, or None. All checks are made, because each check follows its value over time."""
     met = [(text, value) for text, value in matches if value]
     return met[0] if met else None
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A step in progress."""
+    """A step over lines of the program that is not complete yet."""
 
     task: ScheduledThread | None
     """Thread that is stepped; None: the next line of any thread completes the step."""
@@ -52,10 +52,10 @@ ENDLESS_DEPTH = 1 << 30
 
 
 def build_step(how: LineStep, task: ScheduledThread, depth: int) -> Step:
-    """Return the step that starts at a line.
+    """Return the step that starts at the line where a thread is paused.
 
     Args:
-        how: The way to step.
+        how: Whether to step into calls, over them, or out of the function.
         task: The thread that is paused at the line.
         depth: Number of open calls of the program's own code.
     """
@@ -75,7 +75,7 @@ NEXT_LINE = Step(None, ENDLESS_DEPTH)
 
 
 def find_code_line(program: types.CodeType | None, line: int) -> int:
-    """Return `line`, or the next line that has code in the program: a breakpoint on any other line would never be hit.
+    """Return `line`, or the next line that has code: the program would never pause at a line without code.
 
     After the last line with code, and for 0, return `line`.
     """
@@ -100,7 +100,7 @@ Instant = tuple[int, int]
 
 
 class Debugger:
-    """The debugger's state for one run.
+    """The debugger of one run: it processes the user's commands, and pauses the run.
 
     Args:
         session: The run.
@@ -133,7 +133,7 @@ class Debugger:
         self._looks: list[Message] = []
 
     def begin(self, options: RunOptions) -> None:
-        """Apply the settings that are known before the program's first line."""
+        """Apply the debugger's options before the program's first line."""
         self._set_breaks(parse_breakpoints(options.breaks))
         self._trace_from = options.trace_from_tick
         if options.hold_at is not None:
@@ -147,12 +147,12 @@ class Debugger:
     # Commands
 
     def take(self, command: Message) -> None:
-        """Process a command; the caller handles pausing and resuming."""
+        """Process a command of the user to the debugger; the caller handles pausing and resuming."""
         steering = self._session.steering
         match command:
             case protocol.StepLine(how=how):
                 self._forget_goals()
-                # A paused run waits for commands in the thread that was paused.
+                # A paused run waits for commands in the paused thread, so this frame belongs to that thread.
                 depth = self._tracer.count_depth(_getframe())
                 self._step = (
                     build_step(how, self._scheduler.current, depth)
@@ -178,13 +178,13 @@ class Debugger:
             self._update_session()
 
     def go_on(self) -> None:
-        """Prepare for resuming from a pause."""
+        """Update tracing before the run resumes from a pause."""
         # When paused between ticks, lines of the next tick are counted from its start.
         self._trace(at_tick=self._session.steering.between_ticks)
         self._update_session()
 
     def answer(self) -> None:
-        """Answer the requests received while paused."""
+        """Answer the requests that have arrived while the run is paused."""
         looks = self._looks
         self._looks = []
         for request in looks:
@@ -195,12 +195,12 @@ class Debugger:
                 self._session.channel.send(protocol.LineHistory(lines))
 
     def _take_more(self) -> bool:
-        """Process commands that arrive during an inspection; return False if its result is no longer needed."""
+        """Process commands that arrive during an inspection; return False if the run stops and needs no result."""
         self._session.steering.receive(self._session)
         return self._session.stop_reason is None
 
     def forget_goals(self) -> None:
-        """Cancel steps and goals: the user has requested something else."""
+        """Cancel steps and requested lines and instants, because the user has requested something else."""
         self._forget_goals()
         if not self._session.steering.holding:
             self._trace(at_tick=False)
@@ -252,7 +252,7 @@ class Debugger:
         tracer.switch(bool(self._by_line) or line_goal or counting, at_tick)
 
     def _update_session(self) -> None:
-        """Let the session call the debugger at ticks only when needed."""
+        """Make the session call the debugger at ticks only if breakpoints or requested instants need it."""
         session = self._session
         goals = self._list_goal_ticks()
         session.steering.debugged = self._watcher.ticks or bool(goals)
@@ -281,7 +281,7 @@ class Debugger:
         return min([most, *(goal - tick for goal in self._list_goal_ticks() if goal > tick)])
 
     def check_goal(self) -> None:
-        """Pause if the goal is reached. Called right before a tick, after user actions."""
+        """Pause if the run has reached the requested instant; called right before a tick, after user actions."""
         tick = self._session.sim.tick
         if self._instant is not None and self._instant <= (tick, BEFORE_NEXT_TICK):
             self._hold_at_tick(PauseReason.INSTANT, BEFORE_NEXT_TICK)

@@ -28,7 +28,10 @@ BLOCKED_LIMIT_S = 2.0
 
 
 class TooLong(BaseException):
-    """Evaluating a value takes too long. Not an `Exception`, so that the program's handlers do not catch it."""
+    """Raised when evaluating a value takes too long.
+
+    It is not an `Exception`, so that handlers of the program do not catch it.
+    """
 
 
 def run_apart(
@@ -45,7 +48,7 @@ def run_apart(
         scheduler: The program's threads.
         work: The function to call in the copy.
         limit_s: CPU seconds after which the copy is killed: load on the machine changes no result.
-        go_on: Called when a command has arrived; False cancels.
+        go_on: Called when a command has arrived; returns whether to wait on for the result.
 
     Returns:
         The result; None if it did not come in time.
@@ -97,7 +100,7 @@ def _run_copy(
     limit_s: float,
 ) -> NoReturn:
     try:
-        # These end the copy in any case, even inside a long C call.
+        # These timers end the copy in any case, even during a long call of C code.
         for number, timer, seconds in (
             (signal.SIGPROF, signal.ITIMER_PROF, limit_s),
             (signal.SIGALRM, signal.ITIMER_REAL, 2 * BLOCKED_LIMIT_S),
@@ -116,7 +119,7 @@ def _run_copy(
 
 
 def _freeze(session: Session, scheduler: Scheduler) -> None:
-    """Disable motion and writing in the copy; reading devices is free of charge there."""
+    """Disable everything in the copy that lets time pass, moves motors or writes; reading takes no time there."""
     frozen: Any = session
     threads: Any = scheduler
     session.free = 1
@@ -143,7 +146,10 @@ def _refuse(*_args: object, **_kwargs: object) -> NoReturn:
 
 @contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
-    """Raise `TooLong` in the body after `seconds` of real time, repeatedly; only for use in a copy."""
+    """Return a context in whose body `TooLong` is raised after `seconds` of CPU time, and then repeatedly.
+
+    It may only be used in a copy of the process.
+    """
 
     def raise_too_long(_number: int, _frame: object) -> None:
         raise TooLong

@@ -32,7 +32,7 @@ _ADVANCING = (Session._pass.__code__, Session.advance.__code__)
 
 
 def describe_wait(session: Session, task: ScheduledThread, frame: types.FrameType | None) -> str:
-    """Return what a thread waits for and until when; empty if it is ready to run.
+    """Return a text that says what a thread waits for and until when; empty if the thread is ready to run.
 
     Args:
         session: The run.
@@ -71,7 +71,7 @@ def _is_library(file: str) -> bool:
 def _find_end_ns(
     session: Session, task: ScheduledThread, frames: list[types.FrameType]
 ) -> int | None:
-    """Return when the wait ends; None if it has no end time, or there is no wait."""
+    """Return the simulated time in ns at which a thread's wait ends; None without an end time or a wait."""
     if task.order:
         return None if task.wake_ns == FOREVER else task.wake_ns
     for frame in frames:
@@ -84,7 +84,7 @@ def _find_end_ns(
 def _describe_call(
     session: Session, frame: types.FrameType, outer: list[types.FrameType], until: str
 ) -> str:
-    """Return what a call of the runtime or the library waits for; empty if the call itself does not wait."""
+    """Return a text that says what a call of the runtime or the library waits for; empty if it does not wait."""
     match wait_of(frame.f_code):
         case None:
             return ""
@@ -115,9 +115,9 @@ def _describe_call(
 
 
 def _describe_reading(read: types.FrameType, outer: list[types.FrameType]) -> str:
-    """Return what the program reads, in its own names, such as `gyro.angle`.
+    """Return what the program reads, by its own names, such as `gyro.angle`.
 
-    Without a property of the library in the frames `outer`, it is the driver's attribute, such as `value0`.
+    If no frame in `outer` is a property of the library, it is the driver's attribute, such as `value0`.
     """
     properties = [frame for frame in outer if _is_property(frame)]
     if not properties:
@@ -214,7 +214,7 @@ Names = list[tuple[str, str, str]]
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """The thread and frame to inspect."""
+    """A thread and one of its frames, to be inspected."""
 
     task: ScheduledThread
     top: types.FrameType | None
@@ -229,7 +229,7 @@ class _Place:
 
 
 class Inspector:
-    """Inspects a paused run.
+    """Reads the state of a paused run: its threads, stack, variables and watched expressions.
 
     Args:
         session: The run.
@@ -256,11 +256,11 @@ class Inspector:
         """Texts of the names at the last inspection, by scope."""
 
     def look(self, wanted: Inspect, go_on: Callable[[], bool]) -> Inspected:
-        """Return the state of the run.
+        """Return the state of the run at a pause.
 
         Args:
-            wanted: The request.
-            go_on: Called when a command arrives during the inspection; False cancels reading the values.
+            wanted: The request, which names a thread, a frame and watched expressions.
+            go_on: Called when a command arrives during the inspection; returns whether to go on reading the values.
         """
         tops = sys._current_frames()
         place = self._place(wanted, tops)
@@ -359,7 +359,7 @@ class Inspector:
         watches: tuple[str, ...],
         seconds: float,
     ) -> dict[str, Any]:
-        """Return variables and watches as plain data. Runs in the copy."""
+        """Return variables and watched expressions as data for JSON; called in the copy of the process."""
         inside = self._module if frame is None else frame.f_globals
         if frame is None:
             names = inside
@@ -384,7 +384,7 @@ class Inspector:
         }
 
     def _read_columns(self, watches: tuple[str, ...]) -> dict[str, float]:
-        """Return the values of those columns of the recording that watches name."""
+        """Return the present values of those columns of the recording that watched expressions name."""
         sim = self._session.sim
         field = self._session.field
         readers = {
@@ -422,7 +422,7 @@ def _find_names(expression: str) -> set[str]:
 
 
 def _copy_names(names: Mapping[str, Any]) -> dict[str, Any]:
-    """Return names as a dict; a class body may use a mapping of the program."""
+    """Return a namespace as a dict, empty if that fails: a class body may use a mapping of the program."""
     try:
         return dict(names)
     except Exception:  # the mapping's own code may raise anything
@@ -430,7 +430,10 @@ def _copy_names(names: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _render_names(renderer: Renderer, names: Mapping[str, Any], whole: bool) -> Names:
-    """Return names with their values as text, without hidden names and, unless `whole`, modules and functions."""
+    """Return names with the types and texts of their values, without hidden names.
+
+    Modules, functions and classes are left out, too, unless `whole` is set.
+    """
     texts: Names = []
     for name, value in list(names.items()):
         if not isinstance(name, str) or name.startswith(("__", ".")):

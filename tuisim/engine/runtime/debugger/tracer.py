@@ -26,7 +26,7 @@ LineCheck = Callable[[types.FrameType, int], None]
 
 
 class Tracer:
-    """The trace functions of one run.
+    """The trace functions of one run, which count the program's lines and check some of them.
 
     Args:
         session: The run.
@@ -62,7 +62,7 @@ class Tracer:
 
         Args:
             on: Whether to trace.
-            at_tick: Whether a tick has just been run or is about to run.
+            at_tick: Whether a tick has just been run or is about to run, so that lines can be counted from its start.
         """
         if on == self.on:
             return
@@ -75,10 +75,10 @@ class Tracer:
         self.enter()
 
     def enter(self) -> None:
-        """Switch tracing on or off in the thread that starts to run, as needed."""
+        """Switch tracing on or off in the thread that starts to run."""
         trace_function = wallclock.gettrace()
         if trace_function is not None and getattr(trace_function, "__self__", None) is not self:
-            # The program traces itself: keep its trace function.
+            # The program has its own trace function, which stays.
             return
         self._frame_id = 0
         if not self.on:
@@ -94,7 +94,7 @@ class Tracer:
             wallclock.settrace(self._on_call)
 
     def is_own(self, frame: types.FrameType) -> bool:
-        """Whether a frame belongs to the program's own files."""
+        """Return whether a frame belongs to the program's own files."""
         file = frame.f_code.co_filename
         own = self._own_by_file.get(file)
         if own is None:
@@ -107,7 +107,7 @@ class Tracer:
     # Events
 
     def _on_call(self, frame: types.FrameType, _event: str, _arg: Any) -> Any:
-        # Called for every call in the library, too: inlined look-up, without another call.
+        # The look-up of `is_own` is inlined here, because this is called for every call in the library, too.
         own = self._own_by_file.get(frame.f_code.co_filename)
         if own or (own is None and self.is_own(frame)):
             self._frame_id = 0
@@ -123,7 +123,7 @@ class Tracer:
                 self._ordinal = 0
             self._ordinal += 1
             if id(frame) != self._frame_id:
-                # Every call and return clears it, so that no frame is mistaken for another.
+                # Every call and return resets `_frame_id`, so that no frame is mistaken for another with the same id.
                 self._frame_id, self._depth = id(frame), self.count_depth(frame)
             self._met.append((tick, self._ordinal, line, self._scheduler.current, self._depth))
             if self.closely or line in self.lines:
@@ -136,7 +136,7 @@ class Tracer:
 
     @property
     def ordinal(self) -> int:
-        """Number of lines since the last tick."""
+        """Number of the program's lines since the last tick; `UNKNOWN_ORDINAL` if they were not all counted."""
         tick = self._session.sim.tick
         if not self.on or tick == self._uncounted_tick:
             return UNKNOWN_ORDINAL
@@ -162,7 +162,7 @@ class Tracer:
     def history(
         self, count: int, name_of: Callable[[ScheduledThread], str]
     ) -> tuple[ExecutedLine, ...]:
-        """Return the last lines whose position in their tick is known."""
+        """Return the last executed lines, up to `count`, whose position in their tick is known."""
         met = [row for row in self._met if row[0] != self._uncounted_tick]
         return tuple(
             ExecutedLine(tick, ordinal, line, name_of(task), depth)

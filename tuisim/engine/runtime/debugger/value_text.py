@@ -37,12 +37,12 @@ def name_type(value: object) -> str:
 
 
 def cut(text: str, most: int = MAX_CHARACTERS) -> str:
-    """Return a text on one line, truncated."""
+    """Return a text as one line, cut off after `most` characters."""
     return text if len(text) <= most else text[: most - 1] + "…"
 
 
 class Renderer:
-    """Turns values into short texts until the time limit is reached.
+    """Converts values to short texts until the time limit is reached.
 
     Args:
         seconds: CPU time for the program's own code, for all values together.
@@ -116,13 +116,13 @@ def _own_text(value: Any) -> str:
     kind: Any = type(value)
     if kind.__module__ == "numpy" and kind.__name__ == "ndarray":
         return cut(f"array(shape={value.shape}, dtype={value.dtype})")
-    # An exact str, even if the program returned a subclass.
+    # `str.__str__` makes an exact `str`, even if the program's `__repr__` returned an object of a subclass.
     text = _ADDRESS.sub("", str.__str__(repr(value))[: 2 * MAX_CHARACTERS])
     return cut(text[:MAX_CHARACTERS] + ("…" if len(text) > MAX_CHARACTERS else ""))
 
 
 def describe(error: BaseException) -> str:
-    """Return type and message of an error; never raises."""
+    """Return type and message of an error as a text; never raises."""
     try:
         with time_limit(VALUE_LIMIT_S):
             message = str(error)
@@ -134,10 +134,10 @@ def describe(error: BaseException) -> str:
 def evaluate(
     renderer: Renderer, text: str, names: Mapping[str, Any], builtin: Any
 ) -> tuple[str, str]:
-    """Return value and error of an expression as texts, one of them empty.
+    """Return the value and the error of an expression as texts; one of the two is empty.
 
     Args:
-        renderer: Renders the value.
+        renderer: Converts the value to a text.
         text: The expression.
         names: The variables that the expression can use.
         builtin: The program's builtins.
@@ -153,9 +153,9 @@ def evaluate(
 
 
 def evaluate_truth(text: str, names: Mapping[str, Any], builtin: Any) -> str:
-    """Return `.`, followed by a reason to pause if an expression is true or cannot be evaluated.
+    """Return `.`, followed by a reason for a pause if an expression is true or cannot be evaluated.
 
-    An expression with an undefined name is not true.
+    An expression with an undefined name is not a reason.
     """
     code = compile(text.strip(), "<break>", "eval", dont_inherit=True)
     try:

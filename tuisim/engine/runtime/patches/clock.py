@@ -28,7 +28,7 @@ MAX_SLEEP_S = 9_000_000_000
 
 
 def patch_time(session: Session) -> None:
-    """Replace the functions of `time` in place; names imported from it before keep the real functions."""
+    """Replace the functions of `time` by simulated ones; modules that have imported them before keep the real ones."""
     profile = session.sim.spec.profile
     cost = profile.clock_read_ns
     real_sleep = time.sleep
@@ -53,7 +53,7 @@ def patch_time(session: Session) -> None:
     def sleep(seconds: Any) -> None:
         length = seconds if isinstance(seconds, float) else operator.index(seconds)
         if not 0 <= length < MAX_SLEEP_S:
-            # Raises the proper error.
+            # The real function raises the proper error for such a length.
             real_sleep(seconds)
         session.spend(round(length * NS_PER_S))
 
@@ -63,7 +63,7 @@ def patch_time(session: Session) -> None:
     for name in ("monotonic", "perf_counter", "process_time", "thread_time"):
         replace(time, name, clock, (0, 0))
         replace(time, f"{name}_ns", clock_ns, (0, 0))
-    # The real functions check whether the clock exists.
+    # The real functions are called, too, because they check whether the clock exists.
     gettime = time.clock_gettime
     gettime_ns = time.clock_gettime_ns
     replace(time, "clock_gettime", lambda clock: (gettime(clock), wall())[1], (1, 1))
@@ -99,8 +99,8 @@ def _patch_calendar(wall: Callable[[], float]) -> None:
 def patch_datetime(session: Session, folder: Callable[[], str]) -> None:
     """Give the program, its own modules and the library a `datetime` with simulated time.
 
-    All other modules keep the real one: compiled code, such as that of pandas, relies on
-    the real classes and crashes on others.
+    All other modules keep the real one: compiled code, such as that of pandas, relies on the real classes, and crashes
+    with others.
 
     Args:
         session: The program's clock.
@@ -187,7 +187,7 @@ def _build_simulated_datetime(session: Session, module: types.ModuleType) -> typ
         setattr(shadow, replaced.__name__, replacement)
 
     def reduce_class(one: Any) -> Any:
-        # Pickled as the real classes: the data can be loaded without this program.
+        # The class is pickled as the real one, so that the data can be loaded without tuisim.
         return (type, (one.min,)) if one in real_of else one.__qualname__
 
     copyreg.pickle(LikeTheReal, reduce_class)
@@ -195,7 +195,7 @@ def _build_simulated_datetime(session: Session, module: types.ModuleType) -> typ
 
 
 def _copy_looks(replacement: Any, real: Any) -> None:
-    """Give a replaced class and its instances the `repr` and the pickled form of the real class."""
+    """Give a replaced class and its objects the `repr` and the pickled form that the real class has."""
     replacement.__module__ = "datetime"
     replacement.__qualname__ = real.__name__
     replacement.__doc__ = real.__doc__
@@ -205,7 +205,7 @@ def _copy_looks(replacement: Any, real: Any) -> None:
 
     def show(self: Any) -> str:
         text = real.__repr__(self)
-        # The repr of the real class contains its module, that of derived classes does not.
+        # The `repr` of the real class begins with its module, that of derived classes does not.
         return f"datetime.{text}" if type(self) is replacement else str(text)
 
     def reduce(self: Any, protocol: Any) -> Any:
@@ -217,7 +217,7 @@ def _copy_looks(replacement: Any, real: Any) -> None:
 
 
 def patch_process_times(session: Session) -> None:
-    """Make process times equal to the elapsed simulated time."""
+    """Patch `os.times`, so that the process time is the simulated time since the start."""
     real_times = os.times
 
     def times() -> Any:
@@ -228,7 +228,7 @@ def patch_process_times(session: Session) -> None:
 
 
 def finish_resource(session: Session, module: types.ModuleType) -> None:
-    """Make `resource` report the same process times as `os.times`."""
+    """Patch `resource` after its import, so that it reports the same process times as `os.times`."""
     real_usage = module.getrusage
 
     def getrusage(who: Any) -> Any:
@@ -240,7 +240,7 @@ def finish_resource(session: Session, module: types.ModuleType) -> None:
 
 
 def finish_pandas(session: Session, module: types.ModuleType) -> None:
-    """Make the present time of pandas simulated; its compiled code does not call `time`."""
+    """Patch pandas after its import: its present time is simulated, although its compiled code does not call `time`."""
     cost = session.sim.spec.profile.clock_read_ns
     stamp = module.Timestamp
     period = module.Period
@@ -282,7 +282,7 @@ LONG_NS = 5 * NS_PER_S
 
 
 def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:
-    """Return the function called at the start of each loop body.
+    """Return the function that the program calls at the start of each loop body.
 
     Args:
         session: The run.

@@ -33,12 +33,12 @@ _MODES = frozenset("rwxabt+")
 
 
 def _get_argument(index: int, name: str, given: Sequence[Any], named: Mapping[str, Any]) -> Any:
-    """Return an argument of a call; None if it is missing, which the real function then reports."""
+    """Return an argument of a call by position or name; None if it is missing, which the real function then reports."""
     return given[index] if index < len(given) else named.get(name)
 
 
 class FileReads:
-    """Follows which files a program opens, and notes those that it reads."""
+    """Records which files a program reads, by following the files that it opens."""
 
     def __init__(self) -> None:
         self._folder: Path | None = None
@@ -53,7 +53,7 @@ class FileReads:
         self._noted = self._left_out = 0
 
     def patch(self) -> None:
-        """Replace the functions that open and rename files."""
+        """Replace the functions that open and rename files by ones that also record this."""
         real_open = builtins.open
         real_os_open = os.open
 
@@ -97,12 +97,12 @@ class FileReads:
         return move
 
     def begin(self, folder: Path, own_folder: str, program_file: str) -> None:
-        """Note from now on which files the program reads.
+        """Begin to record which files the program reads.
 
         Args:
             folder: The run folder.
             own_folder: The folder of the program.
-            program_file: The program itself, which does not count as a file that it reads.
+            program_file: The program itself, which is not recorded as a file that it reads.
         """
         self._program_file = os.path.abspath(program_file)
         around = {
@@ -115,9 +115,9 @@ class FileReads:
         self._folder = folder
 
     def end(self) -> None:
-        """Note how many files were read beyond those that are listed."""
+        """Record how many more files were read than are listed."""
         if self._folder is not None and self._left_out:
-            # If it cannot be written, the listed files stay as they are.
+            # If the number cannot be written, the list of files is still valid.
             with suppress(OSError):
                 note_reads_left_out(self._folder, self._left_out)
 
@@ -185,6 +185,6 @@ class FileReads:
             self._left_out += 1
             return
         self._noted += 1
-        # Without space the run ends by itself, and says so.
+        # If the disk is full, the recordings of the run end it and report that.
         with suppress(OSError):
             note_read(self._folder, read)

@@ -45,7 +45,7 @@ _WRITES = ("send", "sendto")
 
 
 class FileWaits:
-    """Waits for sockets and the brick's files in simulated time: it polls them without blocking.
+    """Waits in simulated time for sockets and the brick's files, which it polls without blocking.
 
     Args:
         session: The run.
@@ -63,7 +63,7 @@ class FileWaits:
     def poll_files(
         self, look: Callable[[], Found], timeout_ns: int | None, devices: bool = False
     ) -> Found:
-        """Poll until something is found or the timeout is over; return the last result.
+        """Poll until files are ready or the timeout is over; return the result of the last poll.
 
         Args:
             look: Polls without blocking; returns something falsy if nothing is ready.
@@ -89,7 +89,7 @@ class FileWaits:
     # select
 
     def patch_select(self) -> None:
-        """Replace the blocking functions of `select`."""
+        """Replace the blocking functions of `select` by ones that wait in simulated time."""
 
         def simulated(readers: Any, writers: Any, others: Any, timeout: Any = None) -> Any:
             groups = [list(group) for group in (readers, writers, others)]
@@ -138,7 +138,7 @@ class FileWaits:
     # selectors
 
     def finish_selectors(self, module: types.ModuleType) -> None:
-        """Let every selector wait in simulated time; they poll the files with the real functions."""
+        """Patch `selectors` after its import: selectors wait in simulated time; the real functions poll the files."""
         selector: Any = module
         selector.SelectSelector._select = staticmethod(self._select)
         for name in ("SelectSelector", *_SELECTORS):
@@ -150,7 +150,7 @@ class FileWaits:
             selector_class.select = self._build_select(selector_class.select)
 
     def _build_selector_class(self, name: str) -> Any:
-        """Return a replacement for the class with which a selector polls; it does not wait, the selector does."""
+        """Return a replacement for the class with which a selector polls; it never waits, because the selector does."""
         real: Any = self._classes[name]
         return staticmethod(lambda: _AtOnce(self, real())) if name in ("poll", "epoll") else real
 
@@ -169,7 +169,10 @@ class FileWaits:
     def _build_noting(
         self, look: Callable[[], Found], descriptors: Iterable[int]
     ) -> Callable[[], Found]:
-        """Return a look that, if some files are sockets of servers, records each time that nobody has connected."""
+        """Return a function that polls as `look` does, and records each poll that finds no new connection.
+
+        If none of the descriptors is the socket of a server, it is `look` itself.
+        """
         if not any(map(_is_server, descriptors)):
             return look
 
@@ -184,7 +187,7 @@ class FileWaits:
     # socket
 
     def finish_socket(self, module: types.ModuleType) -> None:
-        """Let blocking sockets wait in simulated time, and refuse those for Bluetooth."""
+        """Patch `socket` after its import: blocking sockets wait in simulated time; those for Bluetooth are refused."""
         refuse_bluetooth(module, self._session.sim.spec.profile.motor_law.library)
         sockets: Any = module.socket
         for names, writes in ((_READS, False), (_WRITES, True)):
@@ -197,7 +200,7 @@ class FileWaits:
         sockets.connect = self._connect(sockets.connect, sockets.connect_ex)
 
     def _wait_for_socket(self, socket: Any, writes: bool, code: int | None = None) -> None:
-        """Wait until a socket is ready; with a `code`, record under it each time that the socket was not."""
+        """Wait until a socket is ready; with a `code`, record a reading at each poll that finds it not ready."""
         timeout_s = socket.gettimeout()
         if timeout_s == 0.0:
             return
@@ -227,7 +230,8 @@ class FileWaits:
         @wraps(real)
         def sendall(socket: Any, data: Any, flags: int = 0) -> None:
             rest = memoryview(data).cast("B")
-            # In parts, as many bytes as fit: the reader may be another thread of the program.
+            # The data is sent in parts of as many bytes as fit, because the reader may be another thread of the
+            # program.
             while len(rest):
                 rest = rest[send(socket, rest, flags | _get_dont_wait()) :]
 
@@ -262,12 +266,12 @@ def _is_socket(file: Any) -> bool:
     try:
         return stat.S_ISSOCK(os.fstat(_find_descriptor(file)).st_mode)
     except (AttributeError, OSError, TypeError, ValueError):
-        # The real function raises its error.
+        # For such a value the real function raises its own error later.
         return True
 
 
 def _is_server(descriptor: int) -> bool:
-    """Return whether a file is a socket that listens for connections."""
+    """Return whether a descriptor is that of a socket that listens for connections."""
     import socket as module
 
     try:
@@ -284,7 +288,7 @@ class _RefusedEpoll:
         pass
 
     def close(self) -> None:
-        """Do nothing."""
+        """Do nothing; only `selectors` calls this."""
 
     def __getattr__(self, _name: str) -> NoReturn:
         raise NotSimulated("select.epoll is not part of the simulated brick", "use select.poll")
@@ -307,11 +311,11 @@ def _convert_to_ns(timeout: Any, per_unit: int) -> int | None:
 
 
 class _Polling:
-    """Wraps an object that polls files: it polls as that does, but waits in simulated time.
+    """Replaces an object of `select.poll`: it polls in the same way, but waits in simulated time.
 
     Args:
         waits: How to wait.
-        real: The wrapped object.
+        real: The object that it replaces.
     """
 
     def __init__(self, waits: FileWaits, real: Any) -> None:
@@ -329,7 +333,7 @@ class _Polling:
         return bool(self._polled)
 
     def register(self, file: Any, *events: int) -> None:
-        """Add a file; on a hub, nobody types at the program's input."""
+        """Add a file to those polled; on a hub, the program's input is ignored, because nobody types there."""
         if file is sys.stdin and self._waits.is_on_hub:
             return
         opened = self._waits.find_device(file)
@@ -346,12 +350,12 @@ class _Polling:
             self.register(file, events)
 
     def unregister(self, file: Any) -> None:
-        """Remove a file."""
+        """Remove a file from those polled."""
         if self._polled.pop(_find_descriptor(file), None) is None:
             self._real.unregister(file)
 
     def poll(self, timeout_ms: Any = None) -> Any:
-        """Return the events; blocks in simulated time."""
+        """Return the events that have happened; blocks in simulated time until there is one."""
         # A negative timeout has no limit, as in the real function.
         unlimited = timeout_ms is None or timeout_ms < 0
         limit = None if unlimited else _convert_to_ns(timeout_ms, _NS_PER_MS)
@@ -366,7 +370,7 @@ class _Polling:
 
 
 class _AtOnce(_Polling):
-    """A `_Polling` that never waits."""
+    """A `_Polling` that returns immediately, without waiting."""
 
     def poll(self, timeout_ms: Any = None, *more: Any) -> Any:
         """Return the events that have happened."""
@@ -379,7 +383,7 @@ def _has_devices(selector: Any) -> bool:
 
 
 def _join_parts(real: Any) -> Callable[..., int]:
-    """Return a `sendmsg` that sends its parts as one, as `send` does: an isolated program may only use `send`.
+    """Return a `sendmsg` that sends its parts with `send`, because an isolated program may only use that.
 
     With ancillary data, such as descriptors, it calls the real `sendmsg`, which is refused there.
     """

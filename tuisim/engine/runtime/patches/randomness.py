@@ -15,7 +15,10 @@ from tuisim.engine.runtime.patches.replacement import replace
 
 
 def patch_urandom(seed: Callable[[], int]) -> None:
-    """Derive the system's random bytes, which uuid4, secrets and numpy use, from the seed that a function returns."""
+    """Patch the system's random bytes, which uuid4, secrets and numpy use, so that they depend on the run's seed.
+
+    `seed` returns the seed.
+    """
     draws = count()
     real_urandom = os.urandom
 
@@ -30,12 +33,12 @@ def patch_urandom(seed: Callable[[], int]) -> None:
 
     replace(os, "urandom", urandom, (1, 1))
     if hasattr(os, "getrandom"):
-        # Its flags select a source of the real function.
+        # The flags are ignored: they select a source of the real function.
         replace(os, "getrandom", lambda size, flags=0: urandom(size), (1, 2))
 
 
 def finish_uuid(seed: int, module: types.ModuleType) -> None:
-    """Make `uuid1` and `getnode` depend on simulated time and the seed, not on the machine."""
+    """Patch `uuid` after its import: `uuid1` and `getnode` depend on simulated time and the seed alone."""
     made_up: Any = module
     made_up._generate_time_safe = made_up._UuidCreate = None
     # RFC 9562, 6.10: in a node number without a network card the lowest bit of the first byte is set.
@@ -43,7 +46,7 @@ def finish_uuid(seed: int, module: types.ModuleType) -> None:
 
 
 def finish_random(seed: int, module: types.ModuleType) -> None:
-    """Make random generators that are created without a seed take one from the run's seed."""
+    """Patch `random` after its import: generators that are created without a seed derive one from the run's seed."""
     generator: Any = module.Random
     seeds = count()
     real_seed: Callable[..., None] = generator.seed
@@ -52,7 +55,7 @@ def finish_random(seed: int, module: types.ModuleType) -> None:
     def seed_from_run(self: Any, a: Any = None, version: int = 2) -> None:
         real_seed(self, f"{seed}/{next(seeds)}" if a is None else a, version)
 
-    # The module's own functions belong to a generator that exists already.
+    # The module's own functions use a generator that exists already, so it gets its seed here.
     module.seed(seed)
     generator.seed = seed_from_run
     vars(module)["seed"] = vars(module)["_inst"].seed

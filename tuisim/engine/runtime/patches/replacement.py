@@ -16,7 +16,7 @@ _SAME = ("__name__", "__qualname__", "__module__", "__doc__", "__self__", "__tex
 
 
 class Replacement:
-    """A callable that, like a builtin and unlike a function, does not become a method in a class body.
+    """Base class of callables that replace builtins. Like a builtin, they do not become methods in a class body.
 
     Args:
         real: The builtin that it replaces.
@@ -30,7 +30,7 @@ class Replacement:
 
     @property
     def __class__(self) -> Any:
-        # Not `type`: the replaced function may itself be a replacement.
+        # `__class__` instead of `type`, because the replaced function may itself be a replacement.
         return self._real.__class__
 
     @__class__.setter
@@ -43,20 +43,20 @@ class Replacement:
         return repr(self._real)
 
     def __reduce_ex__(self, _protocol: object) -> str:
-        # Pickled by its name, as builtins are: unpickling gives the same object.
+        # It is pickled by its name, as builtins are, so that unpickling gives the same object.
         return str(self._real.__qualname__)
 
 
 def build_replacement(
     real: Any, does: Callable[..., Any], takes: tuple[int, int] | None = None
 ) -> Any:
-    """Return a replacement for a builtin function.
+    """Return a callable that replaces a builtin function.
 
     Args:
         real: The builtin.
         does: The function to call instead.
-        takes: Smallest and largest number of positional arguments; for any others the builtin raises its error.
-            Without it, `does` has a signature of its own.
+        takes: Smallest and largest number of positional arguments; with any others, the builtin is called and raises
+            its error. None if `does` checks its arguments itself.
     """
     if takes is None:
         does.__qualname__ = real.__qualname__
@@ -78,7 +78,7 @@ def replace(
     does: Callable[..., Any],
     takes: tuple[int, int] | None = None,
 ) -> None:
-    """Replace a function of a module, and of the module that it comes from.
+    """Replace a function in a module, and in the module that defines it.
 
     Args:
         module: A module such as `os`, most of whose functions come from `posix`.
@@ -98,10 +98,13 @@ def replace(
 
 
 class PatchedModules:
-    """Finds a patched module after a program has removed it from `sys.modules`: a new one would have the real clock."""
+    """Module finder for patched modules that a program has removed from `sys.modules`.
+
+    Otherwise the program would import a new module without patches, such as one with the real clock.
+    """
 
     def find_spec(self, fullname: str, *_: object) -> ModuleSpec | None:
-        """Return how to load a patched module; None for any other module."""
+        """Return the spec of a patched module; None for any other module."""
         loader: Any = self
         return ModuleSpec(fullname, loader) if fullname in _patched else None
 

@@ -19,9 +19,11 @@ ALARMS = ("alarm", "setitimer", "getitimer")
 
 
 class Interrupt:
-    """The interrupt that a program sends to itself, as a terminal does: it reaches the main thread at a fixed instant.
+    """The interrupt that a program sends to itself, such as with `os.kill`.
 
-    The signal itself belongs to the runtime: the program's handler is only stored here.
+    It reaches the main thread at an instant that is the same in every run.
+
+    The runtime uses the signal itself, so the program's handler is only stored here.
 
     Args:
         session: Knows the program's lines.
@@ -35,7 +37,7 @@ class Interrupt:
         """The program's handler, or the number of a standard action."""
 
     def send(self) -> None:
-        """Call the handler: at once if the main thread sends it, otherwise as soon as the main thread waits."""
+        """Call the handler: immediately in the main thread, or from another thread when the main thread next waits."""
         if self.handler in (signal.SIG_IGN, None):
             return
         if self._scheduler.current is self._scheduler.main:
@@ -57,7 +59,7 @@ class Interrupt:
 
 
 def patch_signals(session: Session, scheduler: Scheduler) -> None:
-    """Replace the functions of `signal`, `os` and `_thread` for alarms and interrupts."""
+    """Replace the functions of `signal`, `os` and `_thread` that send interrupts, handle signals or set alarms."""
     interrupt = Interrupt(session, scheduler)
     for name in ALARMS:
         replace(signal, name, lambda *_: _refuse_alarm())
@@ -112,7 +114,7 @@ def _patch_handlers(interrupt: Interrupt) -> None:
         before = real_signal(number, handler)
         if number != signal.SIGINT:
             return before
-        # The handler was valid for the signal, which the runtime itself uses.
+        # The real function has checked the handler. The signal goes back to the runtime, which uses it itself.
         real_signal(number, before)
         before = interrupt.handler
         interrupt.handler = handler

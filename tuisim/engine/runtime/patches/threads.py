@@ -20,7 +20,7 @@ EndedBy = Callable[[Callable[..., object], BaseException], None]
 def patch_threads(scheduler: Scheduler, ended_by: EndedBy) -> None:
     """Replace the functions for locks and for starting threads, then import `threading`, which uses them.
 
-    Must run before anything imports `threading`.
+    It must be called before anything imports `threading`.
 
     Args:
         scheduler: Runs the threads.
@@ -63,7 +63,7 @@ def patch_threads(scheduler: Scheduler, ended_by: EndedBy) -> None:
 
 
 def _build_starter(scheduler: Scheduler, ended_by: EndedBy) -> Callable[..., int]:
-    """Return the function that starts a thread of `_thread`."""
+    """Return the function that replaces `_thread.start_new_thread`."""
 
     def start_new_thread(function: Any, args: Any, kwargs: Any = None) -> int:
         if not callable(function):
@@ -77,10 +77,10 @@ def _build_starter(scheduler: Scheduler, ended_by: EndedBy) -> Callable[..., int
             try:
                 function(*args, **kwargs or {})
             except (SystemExit, StopProgram):
-                # As in Python: it ends the thread silently.
+                # As in Python, such an exception ends the thread without a message.
                 raise
             except BaseException as error:
-                # As in Python, the thread ends and the program continues.
+                # As in Python, an error ends only this thread, and is shown.
                 ended_by(function, error)
 
         task = scheduler.spawn(run_bare, daemon=True)
