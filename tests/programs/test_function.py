@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from importlib import import_module, invalidate_caches
 from pathlib import Path
 from types import ModuleType
@@ -13,6 +14,7 @@ from typing import Any
 import pytest
 from ev3dev2.motor import OUTPUT_B, OUTPUT_C, MoveTank
 from ev3dev2.motor import SpeedPercent as Speed
+from numpy import mean
 
 import tuisim
 from tests.cases import cases
@@ -48,6 +50,10 @@ def build_inner(number: int) -> Callable[[], None]:
 
 def use_world() -> None:
     print(WORLD)
+
+
+def use_numpy() -> None:
+    print(mean([1, 2]))
 
 
 def use_module() -> None:
@@ -227,8 +233,8 @@ def test_instances_of_plain_values_go_along_with_their_class(load: Import) -> No
     for program in (alone, other):
         run = tuisim.simulate(program)
         assert run.output == "Gains(p=0.5, base=3) (1, 2) True left\n", run.error
-    with pytest.raises(ConfigError, match="GAINS has been computed from KP"):
-        tuisim.experiment(alone, constants={"KP": [1, 2]})
+    frame = tuisim.experiment(alone, constants={"KP": [1, 2]}, expressions={}, jobs=1)
+    assert frame["end"].tolist() == ["finished"] * 2
 
 
 def test_a_member_of_an_enum_of_python_imports_it(load: Import) -> None:
@@ -237,15 +243,78 @@ def test_a_member_of_an_enum_of_python_imports_it(load: Import) -> None:
     assert tuisim.simulate(load(states=text + shown).go).output == "410 True\n"
 
 
-@pytest.mark.parametrize(
-    "slip", ["x: int = field(init=False, default=1)", "def __post_init__(self): 0"]
-)
-def test_instances_that_their_fields_do_not_make_are_refused(load: Import, slip: str) -> None:
-    text = (
-        f"from dataclasses import dataclass, field\n@dataclass\nclass A:\n    y: int\n    {slip}\n"
+OBJECTS = """\
+import logging
+from collections import defaultdict, deque, namedtuple
+from dataclasses import dataclass, field
+from pathlib import Path
+from values import Gains, Side, Step
+LOG = logging.getLogger("own")
+Point = namedtuple("Point", "x_mm y_mm")
+@dataclass
+class Leg:
+    point: Point
+    side: Side
+    length_mm: float = field(init=False)
+    def __post_init__(self): self.length_mm = self.point.x_mm
+class Controller:
+    def __init__(self, gains): self.gains, self.last = gains, 0
+def beep(): return "beep"
+LEGS = [Leg(Point(n, 2), Side.RIGHT) for n in (1, 5)]
+LEGS[0].length_mm = 7
+CONTROL = {Side.LEFT: Controller(Gains(2)), "act": beep}
+KEPT = deque([1, 2], maxlen=2), defaultdict(int, a=1), frozenset([3]), Path("a/b")
+def go():
+    LOG.info("here")
+    print(LEGS[0].length_mm, LEGS[1], CONTROL[Side.LEFT].gains, CONTROL["act"]())
+    print(*KEPT)
+"""
+OBJECTS_SHOWN = """\
+7 Leg(point=Point(x_mm=5, y_mm=2), side=<Side.RIGHT: 'right'>, length_mm=5) Gains(p=2, base=3) beep
+deque([1, 2], maxlen=2) defaultdict(<class 'int'>, {'a': 1}) frozenset({3}) a/b
+"""
+
+
+def test_objects_of_any_depth_go_along_with_their_state(load: Import) -> None:
+    run = tuisim.simulate(load(values=VALUES, objects=OBJECTS).go)
+    assert run.output == OBJECTS_SHOWN, run.error
+
+
+def test_an_object_that_would_be_there_twice_is_refused(load: Import) -> None:
+    text = "class A:\n    def __init__(self): self.n = 1\nONE = A()\nBOTH = [ONE, ONE]\ndef go(): print(BOTH)\n"
+    with pytest.raises(ConfigError, match="go uses BOTH, a list, which cannot go along"):
+        read_function(load(twice=text).go)
+
+
+def test_what_is_used_of_a_module_of_ones_own_goes_along(load: Import) -> None:
+    text = "import own_helpers as own\ndef go(n=own.STEP): print('A:', n + own.count())\n"
+    helpers = "STEP = 2\ndef count(): return STEP * 2\n"
+    frame = tuisim.experiment(
+        load(own_helpers=helpers, own_main=text).go, constants={"STEP": [2, 3]}, jobs=1
     )
-    with pytest.raises(ConfigError, match="go uses GAINS, a A, which cannot go along"):
-        read_function(load(slips=f"{text}GAINS = A(1)\ndef go(): print(GAINS)\n").go)
+    assert frame["A_last"].tolist() == [6, 9]
+
+
+def test_constants_have_values_of_classes_of_the_program(load: Import) -> None:
+    text = "def go(): print('P:', GAINS.p + START.value.count('t'))\n"
+    module = load(own=VALUES + text)
+    constants = {"GAINS": [module.Gains(1), module.Gains(2)], "START": [*module.Side]}
+    frame = tuisim.experiment(module.go, constants=constants, jobs=1)
+    assert frame["P_last"].tolist() == [2, 2, 3, 3]
+    assert frame["GAINS"].tolist()[1:3] == ["Gains(p=1, base=3)", "Gains(p=2, base=3)"]
+
+
+def test_a_function_has_its_arguments_by_partial(load: Import) -> None:
+    text = "def go(side, n, *, more): print(side.name, n, more)\n"
+    module = load(own=VALUES + text)
+    assert (
+        tuisim.simulate(partial(module.go, module.Side.LEFT, 2, more=[3])).output == "LEFT 2 [3]\n"
+    )
+
+
+def test_a_coroutine_of_pybricks_is_a_program() -> None:
+    run = tuisim.simulate(wait_for_a_second)
+    assert (run.output, run.time_s) == ("Done: 1\n", pytest.approx(1, abs=0.1))
 
 
 DECORATORS = """\
@@ -298,6 +367,13 @@ async def wait_for_nothing() -> None:
     pass
 
 
+async def wait_for_a_second() -> None:
+    from pybricks.tools import wait  # type: ignore[import-not-found]
+
+    await wait(1000)
+    print("Done: 1")
+
+
 def _without_source() -> Any:
     names: dict[str, Any] = {}
     exec("def typed():\n    print(1)\n", names)
@@ -308,9 +384,16 @@ def _without_source() -> Any:
     "program, words",
     {
         "a value that cannot go along": (use_world, "use_world uses WORLD, a World, which cannot"),
-        "a module": (use_module, "a module, which cannot go along .import it inside"),
+        "a module": (use_module, "a module, which cannot go along .import or make it inside"),
         "a lambda": (lambda: None, "<lambda> .* is not a program"),
-        "parameters": (build_inner, "build_inner as a program takes no arguments: number"),
+        "parameters": (
+            build_inner,
+            "build_inner as a program takes no arguments: missing a required argument: 'number'",
+        ),
+        "a function of NumPy": (
+            use_numpy,
+            "use_numpy uses mean, a .*, which cannot go along",
+        ),
         "no source": (_without_source(), "the function typed has no source"),
         "a coroutine": (wait_for_nothing, "wait_for_nothing does nothing when it is called"),
         "no function": (3, "3 is not a program"),

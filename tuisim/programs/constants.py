@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import ast
 import builtins
-import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 from tuisim.base.errors import ConfigError, nearest
 from tuisim.base.syntax_tree import parse_module
 from tuisim.programs.program_file import ProgramSource
+from tuisim.programs.robot.course import list_global_names
+from tuisim.programs.values import write_value
 
 
 def set_constants(source: ProgramSource, values: Mapping[str, object]) -> ProgramSource:
@@ -35,10 +35,11 @@ def set_constants(source: ProgramSource, values: Mapping[str, object]) -> Progra
             f"{source.program.name} is not Python: {error}", key="constants"
         ) from None
     lines = [line.encode() for line in text.split("\n")]
+    defined = list_global_names(text)[1]
     # From the end, so that what is before stays where it is.
     for node, name in sorted(nodes, key=lambda pair: (pair[0].lineno, pair[0].col_offset))[::-1]:
         if name in values:
-            replace_node(lines, node, write_literal(values[name]))
+            replace_node(lines, node, write_value(values[name], defined))
     counts = {name: sum(name == other for _, other in nodes) for name in values}
     for name, count in counts.items():
         if not count:
@@ -63,34 +64,6 @@ def _list_values(module: ast.Module) -> list[tuple[ast.expr, str]]:
             case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value):
                 pairs.append((value, name))
     return pairs
-
-
-def write_literal(value: Any) -> str:
-    """Return the expression that has a value: number, text, truth value, None, or a list, tuple, set or dict of these.
-
-    A number of NumPy becomes one of Python.
-
-    Raises:
-        ConfigError: it is something else.
-    """
-    if getattr(value, "shape", None) == ():
-        value = value.item()
-    kind = type(value)
-    if kind is float and not math.isfinite(value):
-        return f"float('{value}')"
-    if kind in (bool, int, float, complex, str, bytes, type(None)):
-        return repr(value)
-    if kind is dict:
-        pairs = (f"{write_literal(key)}: {write_literal(each)}" for key, each in value.items())
-        return f"{{{', '.join(pairs)}}}"
-    if kind not in (list, tuple, set):
-        text = repr(value).partition("\n")[0]
-        hint = "such as a number, text or list"
-        raise ConfigError(f"{text} cannot go along", hint, key="constants")
-    items = [write_literal(each) for each in value]
-    if kind is tuple:
-        return f"({', '.join(items)}{',' * (len(items) == 1)})"
-    return f"[{', '.join(items)}]" if kind is list else f"set([{', '.join(sorted(items))}])"
 
 
 def quote_annotations(text: str) -> str:

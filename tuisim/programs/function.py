@@ -6,61 +6,61 @@ import ast
 import inspect
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from textwrap import dedent
-from types import FunctionType
+from types import FunctionType, ModuleType, SimpleNamespace
 from typing import Any, NamedTuple
 
 from tuisim.base.errors import ConfigError
-from tuisim.base.source import PRELUDE_TEXTS, source_lines
+from tuisim.base.source import PRELUDE_TEXTS, PYBRICKS, source_lines
 from tuisim.base.syntax_tree import parse_module
-from tuisim.programs.constants import quote_annotations, write_literal
+from tuisim.programs.constants import quote_annotations
 from tuisim.programs.program_file import ProgramSource, parse_program
 from tuisim.programs.robot.course import list_global_names
-from tuisim.programs.surroundings import (
-    Surroundings,
-    compute,
-    is_plain,
-    write_import,
-    write_instance,
-)
+from tuisim.programs.surroundings import Surroundings, compute
+from tuisim.programs.values import ValueWriter, is_own, is_plain, write_import
 
 
-def read_function(function: Callable[[], object]) -> ProgramSource:
-    """Return a program that calls a function.
+def read_function(function: Callable[..., object]) -> ProgramSource:
+    """Return a program that calls a function, or a coroutine of Pybricks; `partial` gives it arguments.
 
     Each line has the number that it has in the file of the function. Imports of libraries for a brick and of Python's
-    own, plain constants, functions and classes that it uses are copied as they are written, and instances with plain
-    values as calls of their class; names without a definition are those of the prelude.
+    own, values, functions and classes that it uses are copied as they are written, or values as expressions that have
+    them; names without a definition are those of the prelude.
 
     Raises:
         ConfigError: it is no function with a name and a source, takes arguments, uses something else, or its file has
             changed since.
     """
-    function = inspect.unwrap(function)
+    plain = SimpleNamespace(func=function, args=(), keywords={})
+    called: Any = function if isinstance(function, partial) else plain
+    function = inspect.unwrap(called.func)
     if not isinstance(function, FunctionType) or function.__name__ == "<lambda>":
         raise ConfigError(
             f"{function!r} is not a program", "give the name of a file, or a function made by def"
         )
-    if inspect.iscoroutinefunction(function) or inspect.isgeneratorfunction(function):
-        message = f"{function.__name__} does nothing when it is called"
-        raise ConfigError(message, "call it from a function without async or yield")
-    needed = [
-        parameter.name
-        for parameter in inspect.signature(function).parameters.values()
-        if parameter.default is parameter.empty
-        and parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD)
-    ]
-    if needed:
-        message = f"{function.__name__} as a program takes no arguments: {', '.join(needed)}"
-        raise ConfigError(message, "give them defaults")
+    name = function.__name__
+    try:
+        inspect.signature(function).bind(*called.args, **called.keywords)
+    except TypeError as error:
+        message = f"{name} as a program takes no arguments: {error}"
+        raise ConfigError(message, "give them defaults, or functools.partial") from None
     reader = _Reader()
-    reader.add_function(function.__name__, function, "the script")
+    call = f"{name}({reader.write_arguments(called.args, called.keywords)})"
+    reader.add_function(name, function, "the script")
+    if inspect.iscoroutinefunction(function) and f"from {PYBRICKS}." in inspect.getsource(function):
+        call = f"from {PYBRICKS}.tools import run_task; run_task({call})"
+    elif inspect.iscoroutinefunction(function) or inspect.isgeneratorfunction(function):
+        raise ConfigError(
+            f"{name} does nothing when it is called",
+            "call it from a function without async or yield",
+        )
     file = inspect.getsourcefile(function) or ""
     path = file if os.path.isfile(file) else ""
-    name = ":".join(filter(None, (os.path.basename(path), function.__name__)))
-    source = replace(parse_program(reader.write(function.__name__), name, path), fixed=reader.fixed)
+    label = ":".join(filter(None, (os.path.basename(path), name)))
+    source = replace(parse_program(reader.write(call), label, path), fixed=reader.fixed)
     if reader.unknown.isdisjoint(list_global_names(PRELUDE_TEXTS["preloaded"])[1]):
         return source
     return replace(source, program=replace(source.program, prelude="preloaded"))
@@ -99,10 +99,23 @@ class _Reader:
         self._blocks: list[_Block] = []
         """Each after those that it uses."""
         self._aliases: list[str] = []
+        self._attributes: dict[str, set[str]] = {}
+        """What is used of each module."""
+        self._writer = ValueWriter()
         self.unknown: set[str] = set()
         """Names that are known from nowhere."""
         self.fixed: dict[str, str] = {}
         """Constants of which another one has been computed outside the program, with the name of that one."""
+
+    def write_arguments(self, values: Sequence[object], named: Mapping[str, object]) -> str:
+        """Return the arguments of a call, after what they use has been added."""
+        try:
+            texts = [self._writer.write(value) for value in values]
+            texts += [f"{name}={self._writer.write(value)}" for name, value in named.items()]
+        except RecursionError:
+            raise ConfigError("an argument of the function cannot go along") from None
+        self._add_names(Surroundings({}, "", "", {}), "the script")
+        return ", ".join(texts)
 
     def add_function(self, name: str, function: FunctionType, user: str) -> None:
         """Add a function that is used by a name, and what it uses.
@@ -136,13 +149,14 @@ class _Reader:
         if kind.__module__ != around.values.get("__name__"):
             around = Surroundings.read_module(sys.modules[kind.__module__])
         node, text = around.find(own)
-        if not isinstance(node, ast.ClassDef):
+        if not isinstance(node, ast.ClassDef | ast.Assign):
             raise build_refusal(name, "type", user)
         if not self._claim(name, id(kind), user) or not self._claim_own(name, own, user):
             return
         methods = [each for each in vars(kind).values() if isinstance(each, FunctionType)]
         around.check_source(methods, own)
-        first = min([node.lineno, *(each.lineno for each in node.decorator_list)])
+        decorators = getattr(node, "decorator_list", ())
+        first = min([node.lineno, *(each.lineno for each in decorators)])
         lines = [f"{line}\n" for line in source_lines(text)[first - 1 : node.end_lineno]]
         self._add_block(_Block(own, around.name_file(text), first, lines), around, own)
 
@@ -151,8 +165,22 @@ class _Reader:
         used, defined = list_global_names(text)
         self.unknown |= used - defined - around.values.keys()
         for name in sorted(used & around.values.keys()):
-            self._add(name, around, user)
+            if names := around.list_attributes(name, text):
+                self._add_module(name, around.values[name], names, user)
+            else:
+                self._add(name, around, user)
         self._blocks.append(block._replace(lines=text.split("\n")))
+
+    def _add_module(self, name: str, module: ModuleType, names: set[str], user: str) -> None:
+        """Add what is used of a module of one's own, and an object that has it in its place."""
+        self._claim(name, id(module), user)
+        around = Surroundings.read_module(module)
+        self._attributes.setdefault(name, set()).update(names)
+        for each in sorted(names & around.values.keys()):
+            self._add(each, around, name)
+        self._add_named("SimpleNamespace", SimpleNamespace, around, user)
+        values = ", ".join(f"{each}={each}" for each in sorted(self._attributes[name]))
+        self._blocks.append(_Block(name, "", 0, [f"{name} = SimpleNamespace({values})"]))
 
     def _claim_own(self, name: str, own: str, user: str) -> bool:
         """Return whether what a new name stands for, a function or class, is new under its own name, too."""
@@ -174,60 +202,70 @@ class _Reader:
 
     def _add(self, name: str, around: Surroundings, user: str) -> None:
         """Add the object that a function or a class uses by a name."""
-        value = around.values[name]
-        if statement := around.find_import(name) or write_import(name, value):
-            if self._claim(name, statement, user):
-                self._statements.append(statement)
-        elif is_plain(value):
-            self._add_constant(name, around, user)
-        elif isinstance(value, type):
+        if statement := around.find_import(name):
+            self._add_import(name, statement, user)
+        elif not self._add_named(name, around.values[name], around, user):
+            self._add_value(name, around, user)
+
+    def _add_import(self, name: str, statement: str, user: str) -> None:
+        if self._claim(name, statement, user):
+            self._statements.append(statement)
+
+    def _add_named(self, name: str, value: Any, around: Surroundings, user: str) -> bool:
+        """Add a module, a class or a function; return whether it is one."""
+        function = inspect.unwrap(value)
+        if statement := write_import(name, value):
+            self._add_import(name, statement, user)
+        elif not isinstance(function, ModuleType | type | FunctionType):
+            return False
+        elif isinstance(value, type) and is_own(value.__module__):
             self._add_class(name, value, around, user)
-        elif isinstance(function := inspect.unwrap(value), FunctionType):
+        elif isinstance(function, FunctionType) and is_own(function.__module__):
             self.add_function(name, function, user)
-        elif expression := write_instance(value):
-            self._add_instance(name, expression, around, user)
         else:
             raise build_refusal(name, type(value).__name__, user)
+        return True
 
-    def _add_constant(self, name: str, around: Surroundings, user: str) -> None:
-        """Add a constant as it is written, if this gives the value that it has, else its value."""
+    def _add_value(self, name: str, around: Surroundings, user: str) -> None:
+        """Add a value as it is written, if this gives the value that it has, else by an expression that has it."""
         origin, source = around.find_origin(name)
-        if origin != name:
-            self._add_constant(origin, source, user)
-            if self._claim(name, around.get_owner(name), user):
-                self._statements.append(f"{name} = {origin}")
-            return
-        if not self._claim(name, source.get_owner(name), user):
-            return
-        value = source.values[name]
-        expression = source.find_expression(name)
-        if expression is not None and compute(expression, source.values) == write_literal(value):
-            for other in sorted(source.list_used(expression)):
-                self._add(other, source, user)
-            self._statements.append(f"{name} = {ast.unparse(expression)}")
+        if origin == name:
+            around = source
         else:
-            self._statements.append(f"{name} = {write_literal(value)}")
-            self.fixed |= dict.fromkeys(source.list_sources(name), name)
+            self._add(origin, source, user)
+        if not self._claim(name, around.get_owner(name), user):
+            return
+        text = origin if origin != name else self._write_value(name, around, user)
+        if is_plain(around.values[name]):
+            self._statements.append(f"{name} = {text}")
+        else:
+            node, of_node = around.find(name)
+            place = around.name_file(of_node), getattr(node, "lineno", 0)
+            self._blocks.append(_Block(name, *place, [f"{name} = {text}"]))
 
-    def _add_instance(self, name: str, expression: str, around: Surroundings, user: str) -> None:
-        """Add a value that a class gives, after its class."""
+    def _write_value(self, name: str, around: Surroundings, user: str) -> str:
+        """Return the expression for a value, after what it uses has been added."""
         value = around.values[name]
-        if not self._claim(name, id(value), user):
-            return
-        origin, source = around.find_origin(name)
-        kind = type(value)
-        if statement := write_import(kind.__name__, kind):
-            if self._claim(kind.__name__, statement, user):
-                self._statements.append(statement)
-        else:
-            self._add_class(kind.__name__, kind, source, name)
-        node, text = around.find(name)
-        place = around.name_file(text), getattr(node, "lineno", 0)
-        self._blocks.append(_Block(name, *place, [f"{name} = {expression}"]))
-        self.fixed |= dict.fromkeys(source.list_sources(origin), name)
+        try:
+            text = self._writer.write(value)
+        except (ConfigError, RecursionError):
+            raise build_refusal(name, type(value).__name__, user) from None
+        expression = around.find_expression(name)
+        if expression is not None and compute(expression, around.values) == text:
+            for other in sorted(around.list_used(expression)):
+                self._add(other, around, user)
+            return ast.unparse(expression)
+        self._add_names(around, name)
+        self.fixed |= dict.fromkeys(around.list_sources(name), name)
+        return text
 
-    def write(self, name: str) -> str:
-        """Return the program that calls a function."""
+    def _add_names(self, around: Surroundings, user: str) -> None:
+        """Add the classes and functions that values use."""
+        for name, value in [*self._writer.names.items()]:
+            self._add_named(name, value, around, user)
+
+    def write(self, call: str) -> str:
+        """Return the program that ends with a call of the last function."""
         own = self._blocks[-1].file
         reserved = {
             number for block in self._blocks if block.file == own for number in block.numbered
@@ -252,12 +290,11 @@ class _Reader:
                 defined = max(numbered)
             lines |= numbered
         last = max(lines)
-        lines[last + 2] = "; ".join([*self._aliases, f"{name}()"])
+        lines[last + 2] = "; ".join([*self._aliases, call])
         return "\n".join(lines.get(number, "") for number in range(1, last + 3)) + "\n"
 
 
 def build_refusal(name: str, kind: str, user: str) -> ConfigError:
     """Return the error for an object of a kind that cannot go along with its user."""
     message = f"{user} uses {name}, a {kind}, which cannot go along"
-    verb = "import" if kind == "module" else "make"
-    return ConfigError(message, f"{verb} it inside the function")
+    return ConfigError(message, "import or make it inside the function")

@@ -10,19 +10,14 @@ import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import fields, is_dataclass
-from enum import Enum
 from importlib.util import resolve_name
 from types import CellType, CodeType, FunctionType, ModuleType
 from typing import Any, Self
 
 from tuisim.base.errors import ConfigError
-from tuisim.base.source import LIBRARIES
 from tuisim.base.syntax_tree import parse_module
-from tuisim.programs.constants import write_literal
+from tuisim.programs.values import ValueWriter, is_imported, is_own, is_plain, list_parts
 
-_IMPORTED = {*LIBRARIES, *sys.stdlib_module_names}
-"""Packages that a program imports, as the function's own file does."""
 _PURE = (abs, bool, dict, float, int, len, list, max, min, pow, round, set, sorted, str, sum, tuple)
 """Functions that give the same value each time, and do nothing else."""
 _UNKNOWN = ast.Pass()
@@ -119,7 +114,7 @@ class Surroundings:
     def find_import(self, name: str) -> str:
         """Return a statement that imports a name from a library for a brick or from Python's own; empty for none."""
         module, original = self._find_module(name)
-        return f"from {module} import {original} as {name}" if _is_imported(module) else ""
+        return f"from {module} import {original} as {name}" if is_imported(module) else ""
 
     def find_origin(self, name: str) -> tuple[str, Surroundings]:
         """Return the name of a value where it has been made, and what is around it there."""
@@ -141,6 +136,23 @@ class Surroundings:
                     return module, original
         return "", ""
 
+    def list_attributes(self, name: str, text: str) -> set[str]:
+        """Return what a text reads of a module of one's own; empty for another one, or if it does more with it."""
+        module = self.values[name]
+        if not isinstance(module, ModuleType) or not is_own(module.__name__):
+            return set()
+        nodes = [*ast.walk(parse_module(text))]
+        read = [
+            node.attr
+            for node in nodes
+            if isinstance(node, ast.Attribute)
+            and isinstance(node.ctx, ast.Load)
+            and isinstance(node.value, ast.Name)
+            and node.value.id == name
+        ]
+        has_more = sum(isinstance(node, ast.Name) and node.id == name for node in nodes) > len(read)
+        return set() if has_more else set(read)
+
     def list_used(self, expression: ast.AST) -> set[str]:
         """Return the names around it that an expression uses."""
         names = {node.id for node in ast.walk(expression) if isinstance(node, ast.Name)}
@@ -161,7 +173,8 @@ class Surroundings:
 
 
 def compute(expression: ast.expr, values: Mapping[str, Any]) -> str | None:
-    """Return the value of an expression as `write_literal` has it; None if it uses more than constants and `math`."""
+    """Return the value of an expression as `ValueWriter` has it; None if it uses more than constants, `math`,
+    and classes that only hold their values."""
     for node in ast.walk(expression):
         match node:
             case ast.Name(id=name):
@@ -174,59 +187,16 @@ def compute(expression: ast.expr, values: Mapping[str, Any]) -> str | None:
             return None
     code = compile(ast.Expression(expression), "", "eval")
     try:
-        return write_literal(eval(code, {**values}))
+        return ValueWriter().write(eval(code, {**values}))
     except Exception:  # Whatever it is, the value has come about in another way.
         return None
 
 
 def _is_pure(value: object) -> bool:
     is_known = any(value is each for each in (math, *_PURE))
-    return is_known or getattr(value, "__module__", None) == "math" or is_plain(value)
-
-
-def is_plain(value: object) -> bool:
-    """Return whether a value can be written in a program."""
-    try:
-        write_literal(value)
-    except ConfigError:
-        return False
-    return True
-
-
-def write_instance(value: Any) -> str:
-    """Return an expression that has an equal value by its class: a member of an Enum, or a NamedTuple or dataclass of
-    constants. It is empty for anything else.
-    """
-    kind = type(value)
-    if isinstance(value, Enum):
-        return f"{kind.__name__}.{value.name}" if value.name in kind.__members__ else ""
-    if is_dataclass(kind):
-        of_kind = fields(kind)
-        is_direct = "__init__" in vars(kind) and not hasattr(kind, "__post_init__")
-        names = [field.name for field in of_kind if field.init and is_direct]
-        has_all = len(names) == len(of_kind)
-    else:
-        names = [*getattr(kind, "_fields", ())]
-        has_all = isinstance(value, tuple) and bool(names)
-    parts = {name: getattr(value, name) for name in names}
-    if not has_all or not all(map(is_plain, parts.values())):
-        return ""
-    return f"{kind.__name__}({', '.join(f'{name}={write_literal(part)}' for name, part in parts.items())})"
-
-
-def write_import(name: str, value: Any) -> str:
-    """Return a statement that imports a module, or what a library defines; empty if the program cannot import it."""
-    if isinstance(value, ModuleType):
-        return f"import {value.__name__} as {name}" if _is_imported(value.__name__) else ""
-    module = getattr(value, "__module__", None) or ""
-    own = getattr(value, "__qualname__", None) or ""
-    if isinstance(module, str) and _is_imported(module) and own.isidentifier():
-        return f"from {module} import {own} as {name}"
-    return ""
-
-
-def _is_imported(module: str) -> bool:
-    return module != "__main__" and module.partition(".")[0] in _IMPORTED
+    is_known |= isinstance(value, type) and bool(list_parts(value))
+    is_known |= getattr(value, "__module__", None) == "math"
+    return is_known or (is_plain(value) and not callable(value))
 
 
 def _parse(text: str) -> list[ast.stmt]:
