@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 import pandas as pd
@@ -103,10 +104,9 @@ def test_a_run_is_judged_by_the_goals_of_its_world(tmp_path: Path) -> None:
     assert run.stored.spec.world.background == "Loop" and judged["reason"][0]
 
 
-def test_samples_in_a_file_are_read_back(tmp_path: Path) -> None:
-    samples = tuisim.simulate(
-        "print('A: 1')\ntank_drive.on_for_seconds(1, 1, 0.5)\nprint('A: 2')\n"
-    ).samples
+@pytest.mark.parametrize("wait", ["", "tank_drive.on_for_seconds(1, 1, 0.5)\n"])
+def test_samples_in_a_file_are_read_back(tmp_path: Path, wait: str) -> None:
+    samples = tuisim.simulate(f"print('A: 1')\n{wait}print('A: 2')\n").samples
     samples.to_csv(tmp_path / "samples.csv", index=False)
     assert tuisim.read_log(tmp_path / "samples.csv")["index"].tolist() == samples["index"].tolist()
 
@@ -151,9 +151,8 @@ def test_an_interrupted_experiment_goes_on(
         with pytest.raises(KeyboardInterrupt) as stop:
             tuisim.experiment(PROGRAM, **how, out=out)
     assert stop.value.__notes__ == [f"2 runs done, in {out}.part; the same call goes on"]
-    for metrics in ({}, {"end_mm": lambda run: run.pose.y_mm}):
-        with pytest.raises(ConfigError, match="is of another batch"):
-            tuisim.experiment(PROGRAM, **how | {"metrics": metrics}, out=out)
+    with pytest.raises(ConfigError, match="is of another batch"):
+        tuisim.experiment(PROGRAM, **how | {"seeds": range(6)}, out=out)
     frame = tuisim.experiment(PROGRAM, **how, out=out)
     assert (measured.total(), frame["run"].nunique()) == (5, 5)
     assert (
@@ -162,6 +161,35 @@ def test_an_interrupted_experiment_goes_on(
     )
     pd.testing.assert_frame_equal(frame, tuisim.experiment(PROGRAM, **how), check_exact=True)
     pd.testing.assert_frame_equal(frame, tuisim.read_log(out), check_exact=True)
+
+
+def test_an_experiment_with_a_mended_metric_begins_anew(tmp_path: Path) -> None:
+    out = tmp_path / "runs.csv"
+    how: dict[str, Any] = {"seeds": [0, 1], "out": out, "jobs": 1}
+    with pytest.raises(ZeroDivisionError):
+        tuisim.experiment(PROGRAM, metrics={"y": lambda run: 1 / 0}, **how)
+    with pytest.warns(UserWarning, match="of other metrics or columns: the experiment begins anew"):
+        frame = tuisim.experiment(PROGRAM, metrics={"y": lambda run: 1}, **how)
+    assert frame["y"].tolist() == [1, 1]
+
+
+def test_a_table_that_is_replaced_is_told(tmp_path: Path) -> None:
+    out = tmp_path / "runs.csv"
+    how: dict[str, Any] = {"out": out, "jobs": 1}
+    tuisim.experiment(PROGRAM, **how)
+    with catch_warnings():
+        simplefilter("error")
+        tuisim.experiment(PROGRAM, **how)
+    with pytest.warns(UserWarning, match="runs.csv has another table, which is replaced"):
+        tuisim.experiment(PROGRAM, seeds=[0, 1], **how)
+
+
+def test_what_is_chosen_has_a_column_also_with_one_value() -> None:
+    how: dict[str, Any] = {"constants": {"A": 3}, "motornoise": [20], "background": "Loop"}
+    program = "A = 1\nprint('A:', A)\n"
+    frame = tuisim.experiment([program, f"{program}#"], **how, jobs=1)
+    assert [*frame][:4] == ["run", "motornoise", "A", "program"]
+    assert frame["program"].tolist() == ["program", "program 2"]
 
 
 @pytest.mark.slow

@@ -20,6 +20,9 @@ from tuisim.programs.program_settings import ProgramSettings, build_program_sett
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.presses import press_actions
 
+_NO_NAME = frozenset("\n(=:")
+"""What a text has that is no name of a program, but one."""
+
 
 def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:
     """Return a program.
@@ -30,7 +33,8 @@ def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:
     Raises:
         ConfigError: there is no such program, or its first line is wrong.
     """
-    if isinstance(program, str) and ("\n" in program or program.endswith(")")):
+    is_text = isinstance(program, str) and not program.endswith((".py", ".ipynb"))
+    if is_text and not _NO_NAME.isdisjoint(program):
         return build_program(program, None, "program")
     if not isinstance(program, str | Path):
         return read_function(program)

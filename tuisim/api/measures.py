@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from base64 import b64decode, b64encode
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from hashlib import sha256
@@ -57,16 +57,21 @@ class Measures:
         """Whether workers must return the recorded files of each run."""
         return bool(self._metrics or self._columns)
 
-    def check(self, plan: Plan) -> None:
+    def check(self, plan: Plan, chosen: Collection[str]) -> None:
         """Check names before anything is run.
 
+        Args:
+            plan: The runs.
+            chosen: The constants and options that have a column.
+
         Raises:
-            ConfigError: a run has no such column, or a metric is called like a column.
+            ConfigError: a run has no such column, or two columns would have the same name.
         """
         usual = list_usual_columns(plan.names, [goal.name for goal in plan.goals])
-        for name in self._metrics:
-            if name in usual:
-                raise ConfigError(f"{name!r} is a column already", key="metrics")
+        for key, names in (("constants", chosen), ("metrics", self._metrics)):
+            if twice := [name for name in names if name in usual]:
+                raise ConfigError(f"{twice[0]!r} is a column already", key=key)
+            usual += names
         for subject in plan.subjects:
             spec = plan.build_spec(subject, {})
             names = read_columns([name for name in self._columns if name != LINE], spec)

@@ -58,18 +58,10 @@ def run_experiment(
     measures = Measures(metrics, columns)
     plan = study.build_plan(seeds, keep, returns_files=measures.needs_files)
     plan.check_expressions(expressions)
-    measures.check(plan)
+    measures.check(plan, study.columns)
     own = *metrics, *expressions
     precision = parse_precision(until, "until", plan, own) if until else None
-    target = check_target(user_path(str(out))) if out is not None else None
-    sweep = Sweep(
-        plan,
-        expressions,
-        target,
-        version("tuisim"),
-        resumes=target is not None and is_interrupted(target),
-        measured=measures.identity,
-    )
+    sweep = open_sweep(plan, expressions, out, measures)
     rounds = Rounds(plan, sweep, precision) if precision else None
     with show_progress(len(plan) - len(sweep.rows)) as tell:
         sweep.run(workers, tell, measures.measure, rounds)
@@ -82,6 +74,27 @@ def run_experiment(
     sweep.export(frame)
     sweep.finish()
     return frame
+
+
+def open_sweep(
+    plan: Plan, expressions: Mapping[str, str], out: str | Path | None, measures: Measures
+) -> Sweep:
+    """Return the runs of a plan, without those that an interrupted experiment has finished; warn of what is lost.
+
+    Raises:
+        ConfigError: an interrupted experiment has had other runs.
+        ExportError: the table cannot be written.
+    """
+    target = check_target(user_path(str(out))) if out is not None else None
+    resumes = target is not None and is_interrupted(target)
+    sweep = Sweep(
+        plan, expressions, target, version("tuisim"), resumes=resumes, measured=measures.identity
+    )
+    if resumes and not sweep.rows:
+        warn(f"{out}.part is of other metrics or columns: the experiment begins anew", stacklevel=5)
+    elif sweep.replaces and not resumes:
+        warn(f"{out} has another table, which is replaced", stacklevel=5)
+    return sweep
 
 
 def build_workers(jobs: int, scheduler: str) -> Workers:
@@ -149,6 +162,7 @@ class Study:
         if not named:
             raise ConfigError("no program is named", key="program")
         self._programs = [read_source(each) for each in named]
+        self._names = number_repeated([source.program.name for source in self._programs])
         self._constants = constants
         self._arguments = arguments
         self._parameters = {
@@ -162,6 +176,9 @@ class Study:
             timeout_s, answers or (self._task.answers if self._task else ())
         )
         self._variants = list_variants({**options, **constants})
+        several = [name for name, value in options.items() if _is_varied(name, value)]
+        self.columns = {*constants, *several}
+        """The constants and options that have a column."""
 
     def build_plan(self, seeds: Iterable[int] | None, keep: str, *, returns_files: bool) -> Plan:
         """Return the plan of all runs.
@@ -178,8 +195,8 @@ class Study:
             raise ConfigError(f"no such value {keep!r}", f"one of {', '.join(Keep)}", key="keep")
         self._plan = Plan(
             tuple(
-                self._build_subject(program, variant)
-                for program in self._programs
+                self._build_subject(program, name, variant)
+                for program, name in zip(self._programs, self._names, strict=True)
                 for variant in self._variants
             ),
             {**self._parameters, **({} if seeds is None else {SEED: read_seeds(seeds)})},
@@ -191,7 +208,9 @@ class Study:
         )
         return self._plan
 
-    def _build_subject(self, source: ProgramSource, variant: Mapping[str, Any]) -> Subject:
+    def _build_subject(
+        self, source: ProgramSource, name: str, variant: Mapping[str, Any]
+    ) -> Subject:
         """Return a program with its settings for one combination of constants and options."""
         options = {name: value for name, value in variant.items() if name not in self._constants}
         values = {name: plain(value) for name, value in variant.items() if name not in options}
@@ -201,12 +220,12 @@ class Study:
             in_world = task.settings if self._world is None else {**in_world, **task.presses}
         changed = set_constants(source, values)
         started, settings = prepare_program(changed, self._arguments, in_world, chosen)
-        return Subject(started, settings.settings, frozenset(chosen))
+        return Subject(started, settings.settings, frozenset(chosen), name)
 
     def add_variants(self, frame: pd.DataFrame) -> pd.DataFrame:
-        """Return the table of the runs with a column for each constant and option that varies."""
+        """Return the table of the runs with a column for each constant, and for each option that has several values."""
         variants = self._variants
-        names = [name for name in variants[0] if len({repr(one[name]) for one in variants}) > 1]
+        names = [name for name in variants[0] if name in self.columns]
         runs_of_each = len(self._plan.grid)
         numbers = [(run - 1) // runs_of_each % len(variants) for run in frame["run"]]
         for place, name in enumerate(names, start=1):
@@ -244,6 +263,14 @@ def number_stored(frame: pd.DataFrame) -> pd.DataFrame:
     numbers = {info.id: info.number for info in RunStore().runs()}
     stored = [numbers.get(run_id, 0) for run_id in frame[RUN_ID]]
     return frame.assign(run=stored) if all(stored) else frame
+
+
+def number_repeated(names: Sequence[str]) -> list[str]:
+    """Return names with a number behind all that have been there before, such as those of functions made by one."""
+    counts = [names[: place + 1].count(name) for place, name in enumerate(names)]
+    return [
+        name if count == 1 else f"{name} {count}" for name, count in zip(names, counts, strict=True)
+    ]
 
 
 def list_variants(options: Mapping[str, Any]) -> list[dict[str, Any]]:

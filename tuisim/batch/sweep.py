@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 SUFFIX = ".part"
+MEASURED = "measured"
+"""What identifies metrics and columns of a batch."""
 
 
 def find_partial(target: Path) -> Path:
@@ -57,7 +59,8 @@ class PartialTable:
         self._file: BinaryIO | None = None
 
     def rows(self) -> dict[int, Row]:
-        """Return the rows of an earlier batch by the index of their task; empty if there is no file.
+        """Return the rows of an earlier batch by the index of their task; empty if there is no file, or if it has other
+        metrics, since no run can be measured again.
 
         Raises:
             ConfigError: the file is of another batch, or cannot be read.
@@ -68,9 +71,13 @@ class PartialTable:
             return {}
         except OSError as error:
             raise ConfigError(f"cannot be read: {error.strerror}", file=str(self._path)) from None
-        if _decode_line(head) != self._identity:
-            hint = "programs, parameters, goals, limits, metrics or columns differ; to start again, remove it"
+        stored = _decode_line(head)
+        unmeasured = {**self._identity, MEASURED: None}
+        if not isinstance(stored, dict) or {**stored, MEASURED: None} != unmeasured:
+            hint = "programs, parameters, goals or limits differ; to start again, remove it"
             raise ConfigError("is of another batch", hint, file=str(self._path))
+        if stored != self._identity:
+            return {}
         # The last line of a killed process may be incomplete.
         rows = [row for line in lines if isinstance(row := _decode_line(line), dict) and RUN in row]
         return _select_started(rows)
@@ -123,6 +130,16 @@ class PartialTable:
             raise ExportError(f"cannot remove {self._path}: {error.strerror or error}") from error
 
 
+def has_batch(path: Path, identity: Mapping[str, Any]) -> bool:
+    """Return whether a file has the table of a batch."""
+    from tuisim.logs.reader import open_log
+
+    try:
+        return open_log(path).metadata.get("batch") == identity
+    except TuisimError:
+        return False
+
+
 def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -> dict[int, Row]:
     """Return the rows of a complete table by the index of their task; empty if the table is not that of the batch.
 
@@ -131,11 +148,9 @@ def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -
         columns: The columns of rows besides those of sample variables; further columns of the table are left out.
     """
     from tuisim.logs.frames import read_log
-    from tuisim.logs.reader import open_log
 
     try:
-        metadata = open_log(path).metadata.get("batch")
-        frame = read_log(path) if metadata == identity else None
+        frame = read_log(path) if has_batch(path, identity) else None
     except TuisimError:
         return {}
     if frame is None or len(frame) != identity["runs"]:
@@ -243,7 +258,7 @@ class Sweep:
         if out is not None:
             self._identity = plan.build_identity()
             if measured:
-                self._identity["measured"] = [*measured]
+                self._identity[MEASURED] = [*measured]
             self._partial = self._open_partial(out, version, resumes)
 
     def _open_partial(self, out: Path, version: str, resumes: bool) -> PartialTable:
@@ -311,6 +326,12 @@ class Sweep:
         """
         rows = [self.rows[index] for index in (self.rows if indices is None else indices)]
         return build_frame(rows, self._expressions if rows else {})
+
+    @property
+    def replaces(self) -> bool:
+        """Whether the table will replace another file."""
+        out = self._out
+        return out is not None and os.path.exists(out) and not has_batch(out, self._identity)
 
     def export(self, frame: pd.DataFrame) -> None:
         """Write the table.

@@ -122,7 +122,8 @@ def _find_unit_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm 
     usual = max(units.to_pylist(), key=lambda unit: unit["counts"])
     unit = str(usual["values"])
     inner = _choose_form(pc.struct_field(parts, "number").drop_null(), forms)
-    if inner is None or 2 * usual["counts"] <= len(texts):
+    # Spans of pandas are times, also if all of them are `0 days`.
+    if inner is None or unit == "days" or 2 * usual["counts"] <= len(texts):
         return None
     # Labels such as 1a and 2a are no numbers.
     if not is_unit(unit) and not all(pc.struct_field(parts, "gap").to_pylist()):

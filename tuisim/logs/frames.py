@@ -47,8 +47,8 @@ def read_log(
     """Return the table in a file. Without choices, an export of tuisim is as it was written, to the last
     bit, except that empty texts of a CSV file are no values.
 
-    Of another file, or with choices, the index is the time in seconds, if there is one; warnings say what was guessed
-    or left out, and name the argument that decides.
+    Of another file, or with choices, the index is the time in seconds, if there is one: dates count from the first row,
+    times of day from midnight. Warnings say what was guessed or left out, and name the argument that decides.
 
     Args:
         path: A CSV, Parquet, JSON, JSONL, Arrow or text file.

@@ -6,6 +6,7 @@ import copy
 import math
 import sys
 from collections.abc import Collection, Sequence
+from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from inspect import unwrap
@@ -105,10 +106,11 @@ def write_value(value: object, known: Collection[str] = ()) -> str:
         ConfigError: as of `ValueWriter.write`; or it uses other names.
     """
     writer = ValueWriter()
-    text = writer.write(value)
-    if not writer.names.keys() <= {*known}:
-        raise build_value_error(value)
-    return text
+    with suppress(ConfigError, RecursionError):
+        text = writer.write(value)
+        if writer.names.keys() <= {*known}:
+            return text
+    raise build_value_error(value)
 
 
 def is_plain(value: object) -> bool:
