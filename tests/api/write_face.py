@@ -105,8 +105,8 @@ def simulate(
     An exception in the program is not raised here: see `Run.state` and `Run.error`.
 
     Args:
-        program: A file, the name of an example, source text of several lines or a single call, or a function: its
-            source is the program, and what it uses of its file goes along.
+        program: A file, the name of an example, source text, or a function: its source is the program, and what it uses
+            of its file goes along.
         arguments: The program's `sys.argv[1:]`.
         answers: The return values of successive `input()` calls.
         timeout_s: Limit in simulated seconds.
@@ -114,7 +114,8 @@ def simulate(
 {help}
 
     Raises:
-        ConfigError: the program, its first line, the world or an option is wrong; nothing was run.
+        ConfigError: the program, its first line, the world or an option is wrong; nothing was run. All errors of
+            `tuisim.base.errors` are a `TuisimError`.
         KeyboardInterrupt: ctrl-C; the run has been stopped, and its log is stored.
     """
     return run_program(**locals())
@@ -174,8 +175,8 @@ def experiment(
 
     Returns:
         One row for each run: the seed varies fastest, before it `parameters`, constants, options and programs. Columns
-        as in `tuisim batch`, and one for each constant and option that varies. With `columns`, one row for each tick:
-        `run`, what varies, `seed`, metrics, expressions, `time` in s, and the columns.
+        as in `tuisim batch`, and one for each constant, and for each option that is given as several values. With
+        `columns`, one row for each tick: `run`, these, `seed`, metrics, expressions, `time` in s, and the columns.
 
     Raises:
         ConfigError: a program, an option, a parameter, an expression or a goal is wrong; nothing was run.
