@@ -14,6 +14,8 @@ from contextlib import contextmanager
 from threading import RLock
 
 _lock = RLock()
+NOT_PYTHON = (SyntaxError, ValueError, RecursionError, MemoryError)
+"""The errors of a text that is not Python."""
 
 
 @contextmanager
@@ -33,7 +35,7 @@ def parse_module(text: str) -> ast.Module:
     """Return the syntax tree of a module.
 
     Raises:
-        SyntaxError, ValueError, RecursionError, MemoryError: it is not Python.
+        One of `NOT_PYTHON`: it is not Python.
     """
     with _collect_later():
         return ast.parse(text)

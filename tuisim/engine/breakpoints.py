@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, counted, see_page
 from tuisim.base.source import find_code_line
-from tuisim.base.syntax_tree import parse_expression
+from tuisim.base.syntax_tree import NOT_PYTHON, parse_expression
 from tuisim.engine.core.conditions import (
     ValueCondition,
     ValueSource,
@@ -178,7 +178,7 @@ def _why_no_expression(text: str) -> str:
     """Return why Python cannot parse a text as an expression; empty if it can."""
     try:
         parse_expression(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+    except NOT_PYTHON as error:
         return f"{text!r} is not an expression: {getattr(error, 'msg', None) or error}"
     return ""
 

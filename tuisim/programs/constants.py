@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from tuisim.base.errors import ConfigError, nearest
-from tuisim.base.syntax_tree import parse_module
+from tuisim.base.syntax_tree import NOT_PYTHON, parse_module
 from tuisim.programs.program_file import ProgramSource
 from tuisim.programs.robot.course import list_global_names
 from tuisim.programs.values import write_value
@@ -30,7 +30,7 @@ def set_constants(source: ProgramSource, values: Mapping[str, object]) -> Progra
     text = source.program.text
     try:
         nodes = _list_values(parse_module(text))
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+    except NOT_PYTHON as error:
         raise ConfigError(
             f"{source.program.name} is not Python: {error}", key="constants"
         ) from None

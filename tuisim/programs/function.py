@@ -109,13 +109,16 @@ class _Reader:
 
     def write_arguments(self, values: Sequence[object], named: Mapping[str, object]) -> str:
         """Return the arguments of a call, after what they use has been added."""
-        try:
-            texts = [self._writer.write(value) for value in values]
-            texts += [f"{name}={self._writer.write(value)}" for name, value in named.items()]
-        except RecursionError:
-            raise ConfigError("an argument of the function cannot go along") from None
-        self._add_names(Surroundings({}, "", "", {}), "the script")
+        texts = [self._write(value, "an argument", "partial") for value in values]
+        texts += [f"{name}={self._write(value, name, 'partial')}" for name, value in named.items()]
+        self._add_names(Surroundings({}, "", "", {}), "partial")
         return ", ".join(texts)
+
+    def _write(self, value: object, name: str, user: str) -> str:
+        try:
+            return self._writer.write(value)
+        except (ConfigError, RecursionError):
+            raise build_refusal(name, type(value).__name__, user) from None
 
     def add_function(self, name: str, function: FunctionType, user: str) -> None:
         """Add a function that is used by a name, and what it uses.
@@ -178,7 +181,7 @@ class _Reader:
         self._attributes.setdefault(name, set()).update(names)
         for each in sorted(names & around.values.keys()):
             self._add(each, around, name)
-        self._add_named("SimpleNamespace", SimpleNamespace, around, user)
+        self._add_import("SimpleNamespace", "from types import SimpleNamespace", user)
         values = ", ".join(f"{each}={each}" for each in sorted(self._attributes[name]))
         self._blocks.append(_Block(name, "", 0, [f"{name} = SimpleNamespace({values})"]))
 
@@ -245,11 +248,7 @@ class _Reader:
 
     def _write_value(self, name: str, around: Surroundings, user: str) -> str:
         """Return the expression for a value, after what it uses has been added."""
-        value = around.values[name]
-        try:
-            text = self._writer.write(value)
-        except (ConfigError, RecursionError):
-            raise build_refusal(name, type(value).__name__, user) from None
+        text = self._write(around.values[name], name, user)
         expression = around.find_expression(name)
         if expression is not None and compute(expression, around.values) == text:
             for other in sorted(around.list_used(expression)):

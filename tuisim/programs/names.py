@@ -18,7 +18,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import closest, did_you_mean
 from tuisim.base.meant import find_meant_names, map_functions, map_modules
 from tuisim.base.source import PRELUDE_TEXTS, source_lines
-from tuisim.base.syntax_tree import parse_module
+from tuisim.base.syntax_tree import NOT_PYTHON, parse_module
 from tuisim.programs.mistakes import find_fault
 from tuisim.programs.program_file import parse_unfinished
 from tuisim.programs.robot.course import list_global_names
@@ -226,7 +226,7 @@ def find_unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
         warnings.simplefilter("ignore")
         try:
             _search(compile(tree, name, "exec", dont_inherit=True), seen)
-        except (SyntaxError, ValueError, RecursionError, MemoryError):
+        except NOT_PYTHON:
             return None
     own = seen.defined | guessed | _list_prelude_names(program.prelude)
     lines = program.text.split("\n")

@@ -32,7 +32,7 @@ from tuisim.base.source import (
     decode_source,
     source_lines,
 )
-from tuisim.base.syntax_tree import parse_module
+from tuisim.base.syntax_tree import NOT_PYTHON, parse_module
 from tuisim.engine.files import close_beside, read_bytes
 from tuisim.engine.mats import find_mat
 from tuisim.programs.mistakes import find_fault
@@ -297,7 +297,7 @@ def _find_docstring_end(lines: list[str]) -> int:
     try:
         first = parse_module("\n".join(lines)).body[:1]
     # The program is being edited, and cannot be parsed.
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+    except NOT_PYTHON:
         first = []
     match first:
         case [ast.Expr(value=ast.Constant(value=str()), end_lineno=int(last))]:
@@ -320,7 +320,7 @@ def choose_prelude(text: str, path: str = "") -> str:
     try:
         used, defined = list_global_names(text)
     # Errors of the program are reported when it runs.
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+    except NOT_PYTHON:
         return "preloaded"
     _, ready = list_global_names(PRELUDE_TEXTS["preloaded"])
     if not (used - defined) & (ready | _READS_ANY_NAME):
@@ -338,7 +338,7 @@ def has_library_import(text: str) -> bool:
     try:
         tree = parse_module(text)
     # The program cannot be parsed, so a search has to suffice.
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+    except NOT_PYTHON:
         return _IMPORT.search(text) is not None
     for node in ast.walk(tree):
         match node:
@@ -426,7 +426,7 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
 def _is_python(text: str) -> bool:
     try:
         parse_module(text)
-    except (SyntaxError, ValueError, MemoryError, RecursionError):
+    except NOT_PYTHON:
         return False
     return True
 

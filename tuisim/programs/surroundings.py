@@ -15,7 +15,7 @@ from types import CellType, CodeType, FunctionType, ModuleType
 from typing import Any, Self
 
 from tuisim.base.errors import ConfigError
-from tuisim.base.syntax_tree import parse_module
+from tuisim.base.syntax_tree import NOT_PYTHON, parse_module
 from tuisim.programs.values import ValueWriter, is_imported, is_own, is_plain, list_parts
 
 _PURE = (abs, bool, dict, float, int, len, list, max, min, pow, round, set, sorted, str, sum, tuple)
@@ -203,7 +203,7 @@ def _parse(text: str) -> list[ast.stmt]:
     """Return the statements of a text outside functions and classes, those of blocks after the block."""
     try:
         return [*_list_statements(parse_module(text).body)]
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+    except NOT_PYTHON:
         return []
 
 

@@ -24,7 +24,7 @@ from tuisim.base.source import (
     decode_source,
     user_python_path,
 )
-from tuisim.base.syntax_tree import parse_module
+from tuisim.base.syntax_tree import NOT_PYTHON, parse_module
 from tuisim.engine.brick_home import place_folder
 from tuisim.engine.core.hub_spec import HUBS
 from tuisim.engine.core.profile import Library
@@ -85,7 +85,7 @@ def parse(text: str) -> ast.Module | None:
             warnings.simplefilter("ignore")
             return parse_module(text)
     # When the program runs, Python reports what is wrong with it.
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+    except NOT_PYTHON:
         return None
 
 
