@@ -312,6 +312,27 @@ def test_a_function_has_its_arguments_by_partial(load: Import) -> None:
     )
 
 
+MADE_AGAIN = """\
+import threading
+from dataclasses import dataclass
+from typing import ClassVar, Generic, TypeVar
+T = TypeVar("T")
+LOCK = threading.Lock()
+@dataclass
+class Mission(Generic[T]):
+    turns: T
+    table: ClassVar[dict] = {2: "two"}
+    def go(self):
+        with LOCK: print(self.table[self.turns], threading.active_count())
+"""
+
+
+def test_the_method_of_an_object_is_a_program_and_locks_are_made_again(load: Import) -> None:
+    mission = load(made=MADE_AGAIN).Mission(2)
+    run = tuisim.simulate(mission.go)
+    assert run.output == "two 1\n", run.error
+
+
 def test_a_coroutine_of_pybricks_is_a_program() -> None:
     run = tuisim.simulate(wait_for_a_second)
     assert (run.output, run.time_s) == ("Done: 1\n", pytest.approx(1, abs=0.1))

@@ -13,6 +13,9 @@ from tuisim.programs.program_file import ProgramSource
 from tuisim.programs.robot.course import list_global_names
 from tuisim.programs.values import write_value
 
+_EVALUATED = ("ClassVar", "InitVar", "KW_ONLY")
+"""What dataclasses look for in annotations."""
+
 
 def set_constants(source: ProgramSource, values: Mapping[str, object]) -> ProgramSource:
     """Return a program with other values of some constants; its lines keep their numbers.
@@ -75,7 +78,7 @@ def quote_annotations(text: str) -> str:
         nodes += filter(None, (getattr(node, name, None) for name in names))
     for node in sorted(nodes, key=lambda each: (each.lineno, each.col_offset), reverse=True):
         used = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)}
-        if not used <= vars(builtins).keys():
+        if not used <= vars(builtins).keys() and used.isdisjoint(_EVALUATED):
             replace_node(lines, node, repr(ast.unparse(node)))
     return b"\n".join(lines).decode()
 

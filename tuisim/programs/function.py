@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from textwrap import dedent
-from types import FunctionType, ModuleType, SimpleNamespace
+from types import FunctionType, MethodType, ModuleType, SimpleNamespace
 from typing import Any, NamedTuple
 
 from tuisim.base.errors import ConfigError
@@ -20,7 +20,7 @@ from tuisim.programs.constants import quote_annotations
 from tuisim.programs.program_file import ProgramSource, parse_program
 from tuisim.programs.robot.course import list_global_names
 from tuisim.programs.surroundings import Surroundings, compute
-from tuisim.programs.values import ValueWriter, is_own, is_plain, write_import
+from tuisim.programs.values import ValueWriter, is_library, is_own, is_plain, write_import
 
 
 def read_function(function: Callable[..., object]) -> ProgramSource:
@@ -36,20 +36,21 @@ def read_function(function: Callable[..., object]) -> ProgramSource:
     """
     plain = SimpleNamespace(func=function, args=(), keywords={})
     called: Any = function if isinstance(function, partial) else plain
-    function = inspect.unwrap(called.func)
+    method = inspect.unwrap(called.func)
+    function = method.__func__ if isinstance(method, MethodType) else method
     if not isinstance(function, FunctionType) or function.__name__ == "<lambda>":
         raise ConfigError(
             f"{function!r} is not a program", "give the name of a file, or a function made by def"
         )
     name = function.__name__
     try:
-        inspect.signature(function).bind(*called.args, **called.keywords)
+        inspect.signature(method).bind(*called.args, **called.keywords)
     except TypeError as error:
         message = f"{name} as a program takes no arguments: {error}"
         raise ConfigError(message, "give them defaults, or functools.partial") from None
     reader = _Reader()
-    call = f"{name}({reader.write_arguments(called.args, called.keywords)})"
-    reader.add_function(name, function, "the script")
+    arguments = reader.write_arguments(called.args, called.keywords)
+    call = f"{reader.write_called(method)}({arguments})"
     if inspect.iscoroutinefunction(function) and f"from {PYBRICKS}." in inspect.getsource(function):
         call = f"from {PYBRICKS}.tools import run_task; run_task({call})"
     elif inspect.iscoroutinefunction(function) or inspect.isgeneratorfunction(function):
@@ -113,6 +114,16 @@ class _Reader:
         texts += [f"{name}={self._write(value, name, 'partial')}" for name, value in named.items()]
         self._add_names(Surroundings({}, "", "", {}), "partial")
         return ", ".join(texts)
+
+    def write_called(self, function: FunctionType | MethodType) -> str:
+        """Return the expression for a function, or for the method of an object, after it has been added."""
+        name = function.__name__
+        if isinstance(function, FunctionType):
+            self.add_function(name, function, "the script")
+            return name
+        owner = self._write(function.__self__, name, "the script")
+        self._add_names(Surroundings({}, "", "", {}), name)
+        return f"{owner}.{name}"
 
     def _write(self, value: object, name: str, user: str) -> str:
         try:
@@ -248,9 +259,17 @@ class _Reader:
 
     def _write_value(self, name: str, around: Surroundings, user: str) -> str:
         """Return the expression for a value, after what it uses has been added."""
-        text = self._write(around.values[name], name, user)
+        value = around.values[name]
         expression = around.find_expression(name)
-        if expression is not None and compute(expression, around.values) == text:
+        kind = type(value)
+        try:
+            text = self._writer.write(value)
+        except (ConfigError, RecursionError):
+            # What Python itself cannot copy, such as a lock, is made again.
+            if expression is None or not is_library(kind.__module__):
+                raise build_refusal(name, kind.__name__, user) from None
+            text = ""
+        if expression and (not text or compute(expression, around.values) == text):
             for other in sorted(around.list_used(expression)):
                 self._add(other, around, user)
             return ast.unparse(expression)

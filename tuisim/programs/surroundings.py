@@ -16,7 +16,7 @@ from typing import Any, Self
 
 from tuisim.base.errors import ConfigError
 from tuisim.base.syntax_tree import NOT_PYTHON, parse_module
-from tuisim.programs.values import ValueWriter, is_imported, is_own, is_plain, list_parts
+from tuisim.programs.values import ValueWriter, is_library, is_own, is_plain, list_parts
 
 _PURE = (abs, bool, dict, float, int, len, list, max, min, pow, round, set, sorted, str, sum, tuple)
 """Functions that give the same value each time, and do nothing else."""
@@ -114,7 +114,7 @@ class Surroundings:
     def find_import(self, name: str) -> str:
         """Return a statement that imports a name from a library for a brick or from Python's own; empty for none."""
         module, original = self._find_module(name)
-        return f"from {module} import {original} as {name}" if is_imported(module) else ""
+        return f"from {module} import {original} as {name}" if is_library(module) else ""
 
     def find_origin(self, name: str) -> tuple[str, Surroundings]:
         """Return the name of a value where it has been made, and what is around it there."""

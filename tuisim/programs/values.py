@@ -132,25 +132,26 @@ def list_parts(kind: type) -> Sequence[str]:
 
 
 def is_own(module: str) -> bool:
-    """Return whether a module is one of the user's: neither installed nor of this package."""
+    """Return whether a module is one of the user's: neither a library, nor installed, nor of this package."""
     if module == "__main__":
         return True
     file = getattr(sys.modules.get(module), "__file__", None)
-    is_here = module.partition(".")[0] == __name__.partition(".")[0]
-    return file is not None and not is_here and _INSTALLED.isdisjoint(Path(file).parts)
+    if file is None or is_library(module) or module.startswith("tuisim."):
+        return False
+    return _INSTALLED.isdisjoint(Path(file).parts)
 
 
 def write_import(name: str, value: Any) -> str:
     """Return a statement that imports a module, or what a library defines; empty if the program cannot import it."""
     if isinstance(value, ModuleType):
-        return f"import {value.__name__} as {name}" if is_imported(value.__name__) else ""
+        return f"import {value.__name__} as {name}" if is_library(value.__name__) else ""
     module = getattr(value, "__module__", None) or ""
     own = getattr(value, "__qualname__", None) or ""
-    if isinstance(module, str) and is_imported(module) and own.isidentifier():
+    if isinstance(module, str) and is_library(module) and own.isidentifier():
         return f"from {module} import {own} as {name}"
     return ""
 
 
-def is_imported(module: str) -> bool:
-    """Return whether a program imports a module as its user's file does."""
-    return module != "__main__" and module.partition(".")[0] in _IMPORTED
+def is_library(module: str) -> bool:
+    """Return whether a module is of a library for a brick, or of Python."""
+    return module not in ("__main__", "builtins") and module.partition(".")[0] in _IMPORTED
