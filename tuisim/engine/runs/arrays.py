@@ -16,7 +16,7 @@ IntArray = NDArray[np.int64]
 
 
 def find_spans(is_so: NDArray[np.bool_]) -> IntArray:
-    """Return the first index of each stretch of true values, and the one after its last, shape (n, 2)."""
+    """Return the first index of each stretch of true values and the index after its last, shape (n, 2)."""
     edges: IntArray = np.flatnonzero(np.diff(is_so, prepend=False, append=False))
     return edges.reshape(-1, 2)
 
@@ -24,20 +24,20 @@ def find_spans(is_so: NDArray[np.bool_]) -> IntArray:
 def compute_world_points_mm(
     records: NDArray[Any], x_mm: float, y_mm: float
 ) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return x and y in the world of a point of the robot at every tick, as `engine.core.geometry.world_point`; shape
-    (n,).
+    """Return x and y in the world of a point of the robot at every tick, each of shape (n,).
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
-        x_mm: To the right of the midpoint between the wheels.
-        y_mm: Forward of it.
+        x_mm: How far the point is to the right of the midpoint between the wheels.
+        y_mm: How far it is forward of that.
     """
     cos, sin = compute_cos_and_sin(records["heading_deg"] - 90.0)
     return records["x_mm"] + cos * x_mm - sin * y_mm, records["y_mm"] + sin * x_mm + cos * y_mm
 
 
 def compute_cos_and_sin(angles_deg: NDArray[Any]) -> tuple[FloatArray, FloatArray]:
-    """Return cosine and sine of angles, shape (n,), bit by bit those of `math`; NaN where there is no angle."""
-    # numpy's results may differ in the last bit, which can change a pixel. A damaged record may have no valid heading.
+    """Return cosine and sine of angles, each of shape (n,), exactly as `math` computes them; NaN for no number."""
+    # The results of NumPy may differ from those of `math` in the last bit, which can change a pixel. NaN stands for the
+    # heading of a damaged record.
     turns = list(map(math.radians, np.where(np.isfinite(angles_deg), angles_deg, np.nan).tolist()))
     return np.array(list(map(math.cos, turns))), np.array(list(map(math.sin, turns)))

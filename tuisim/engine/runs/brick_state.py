@@ -47,7 +47,7 @@ _MAX_NUMBER = 1e12
 
 @dataclass(frozen=True, slots=True)
 class TextScreen:
-    """Contents of the text screen."""
+    """The text that the brick's screen shows."""
 
     columns: int
     rows: int
@@ -59,7 +59,7 @@ class TextScreen:
 
 @dataclass(frozen=True, slots=True)
 class BrickState:
-    """All that the brick shows at one time: LEDs, display, text screen, further motors, sound."""
+    """Everything that the brick shows at one time: LEDs, display, text screen, further motors and sound."""
 
     leds: Mapping[str, int] = field(default_factory=dict)
     """Brightness by name, as in `LED_NAMES`, 0 to 255. Empty until the program sets an LED: then they are green."""
@@ -80,7 +80,7 @@ class BrickState:
 
     @property
     def matrix(self) -> list[list[int]]:
-        """Brightness of the pixels of a hub's matrix, by rows."""
+        """Brightness of the pixels of a hub's matrix of lights, row by row."""
         levels = [self.leds.get(name, 0) for name in PIXEL_NAMES]
         return [levels[start : start + SIDE_PIXELS] for start in range(0, len(levels), SIDE_PIXELS)]
 
@@ -94,7 +94,7 @@ class BrickState:
         }
 
     def find_light(self, controller: str = "") -> tuple[int, ...]:
-        """Return red, green and blue of a hub's status light, or of that of a controller; empty if it is not connected.
+        """Return red, green and blue of the status light of a hub or a controller; empty if it is not connected.
 
         Args:
             controller: A key of `CONTROLLERS`; empty for the hub.
@@ -104,12 +104,12 @@ class BrickState:
         return tuple(self.leds.get(name, 0) for name in names if is_shown)
 
     def extrapolate_turns(self, time_s: float, tick_hz: int) -> tuple[tuple[float, float], ...]:
-        """Return `turns` extrapolated to a later time."""
+        """Return `turns` with the positions that the motors have at a later time if their speeds stay the same."""
         since_s = time_s - self.turns_tick / tick_hz
         return tuple((position_deg + dps * since_s, dps) for position_deg, dps in self.turns)
 
     def update_face(self, rows: Iterable[OutputRow]) -> BrickState:
-        """Return the brick's state after further output; rows of streams that do not show the brick are ignored."""
+        """Return the brick's state after further rows of output; rows of other streams than the brick's are ignored."""
         for row in rows:
             match row.stream:
                 case Stream.LED:
@@ -142,7 +142,7 @@ class BrickState:
 
 
 def build_led_row(brightness: Mapping[str, int]) -> str:
-    """Return the text of an output row for the LEDs.
+    """Return the text of an output row that stores the brightness of the LEDs.
 
     Args:
         brightness: 0 to 255 by name, as in `LED_NAMES`.
@@ -151,22 +151,22 @@ def build_led_row(brightness: Mapping[str, int]) -> str:
 
 
 def display_row(picture: bytes) -> str:
-    """Return the text of an output row for a picture in the format of `BrickState.picture`."""
+    """Return the text of an output row that stores a picture in the format of `BrickState.picture`."""
     return base64.b85encode(zlib.compress(picture, 6)).decode()
 
 
 def build_console_row(screen: TextScreen) -> str:
-    """Return the text of an output row for the text screen."""
+    """Return the text of an output row that stores the contents of the text screen."""
     return json.dumps([screen.columns, screen.rows, screen.lines, screen.inverse])
 
 
 def build_motors_row(turns: Iterable[tuple[float, float]]) -> str:
-    """Return the text of an output row for the motors: `BrickState.turns`, valid from the row's tick on."""
+    """Return the text of an output row that stores `BrickState.turns`, as they are from the row's tick on."""
     return json.dumps(list(turns))
 
 
 def unpack_display(picture: bytes) -> NDArray[np.uint8]:
-    """Return a picture in the format of `BrickState.picture` as an array: 1 is dark, shape (height, width)."""
+    """Return a picture in the format of `BrickState.picture` as an array, shape (height, width), 1 is dark."""
     import numpy as np
 
     bits = np.unpackbits(np.frombuffer(picture, np.uint8))
@@ -178,7 +178,7 @@ DRAWN_STREAMS = frozenset({Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MO
 
 
 def is_sound(stream: Stream, text: bytes) -> bool:
-    """Return whether a row of one of `DRAWN_STREAMS` has a text that the functions of this module can have written."""
+    """Return whether the functions of this module can have written the text of a row of one of `DRAWN_STREAMS`."""
     try:
         face = BrickState().update_face([OutputRow(text.decode(), 0, 0, 0, stream)])
     except (ValueError, TypeError, AttributeError, RecursionError, zlib.error):
@@ -210,5 +210,5 @@ def _is_screen(screen: TextScreen) -> bool:
 
 
 def _unpack_picture(text: str) -> bytes:
-    """Return the picture in a row's text; a longer one is cut off one byte after the size of a picture."""
+    """Return the picture in a row's text; at most one byte more than a picture has."""
     return zlib.decompressobj().decompress(base64.b85decode(text), len(BLANK) + 1)

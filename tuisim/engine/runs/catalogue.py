@@ -54,7 +54,7 @@ CREATE TABLE runs (
 
 @dataclass(frozen=True, slots=True)
 class RunInfo:
-    """One row of the catalogue."""
+    """One row of the catalogue, which describes a run."""
 
     number: int
     """Sequential number of the run, from 1; 0 requests the next number."""
@@ -87,11 +87,11 @@ _SELECT = f"SELECT {_COLUMNS} FROM runs ORDER BY number"
 
 
 class _ForeignFile(sqlite3.DatabaseError):
-    """A database of another application or version."""
+    """Raised for a database of another application or version."""
 
 
 class Catalogue:
-    """The catalogue in one home folder.
+    """The database in a home folder that lists all runs.
 
     Args:
         home: The folder; it need not exist.
@@ -107,14 +107,14 @@ class Catalogue:
         self._scan = scan
 
     def add(self, info: RunInfo) -> int:
-        """Add a run and return its number; a number in use is replaced by the next free one.
+        """Add a run and return its number; if its number is already in use, the run gets the next free one.
 
         A run that is already listed keeps its row and number.
         """
         return self._write(lambda connection: _insert(connection, info))
 
     def update(self, run_id: str, **values: str | int | float | None) -> None:
-        """Change columns of a run, by name; a run that is not listed is ignored.
+        """Change columns of a run's row, by their names; a run that is not listed is ignored.
 
         Raises:
             ValueError: a column does not exist.
@@ -125,7 +125,7 @@ class Catalogue:
     def update_all(
         self, changes: Sequence[tuple[str, Mapping[str, str | int | float | None]]]
     ) -> None:
-        """Change columns of many runs as `update` does, in one transaction."""
+        """Change columns of the rows of many runs as `update` does, in one transaction."""
         unknown = {name for _, values in changes for name in values} - set(_NAMES)
         if unknown:
             raise ValueError(f"no such column: {', '.join(sorted(unknown))}")
@@ -149,7 +149,8 @@ class Catalogue:
         try:
             return self._do(_fetch_rows)
         except LogError:
-            # SQLite must write even to read. If that is impossible, the folders provide the same data.
+            # SQLite must be able to write even to read. If it cannot, the rows are built from the run folders in
+            # memory.
             with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
                 self._fill(connection)
                 return _fetch_rows(connection)
@@ -173,7 +174,7 @@ class Catalogue:
             with closing(_open(self._path)) as connection:
                 return operation(connection)
         except (sqlite3.Error, OSError) as error:
-            # SQLite says "disk I/O error" where a file beside its own has no room.
+            # On a full disk, SQLite's message may only be "disk I/O error".
             reason, hint = (
                 (_FULL, "free some space, or " + HOME_HINT)
                 if _is_full(self._home)
@@ -186,7 +187,7 @@ class Catalogue:
     def _make_again(self) -> None:
         """Replace an invalid catalogue by a new one, filled from the run folders."""
         with lock_home(self._home):
-            # Another process may have done it in the meantime.
+            # Another process may have replaced the catalogue while this one waited for the lock.
             if _is_sound(self._path):
                 return
             sweep(self._path.parent, CATALOGUE_FILE)
@@ -202,7 +203,7 @@ class Catalogue:
                     self._path.with_name(CATALOGUE_FILE + suffix).unlink(missing_ok=True)
                 os.replace(fresh, self._path)
             finally:
-                # Where SQLite could not write to the end, it leaves its own files.
+                # If SQLite could not finish writing, its files are still there: remove them.
                 for suffix in ("", *_SIDE_FILES):
                     fresh.with_name(fresh.name + suffix).unlink(missing_ok=True)
 
@@ -228,7 +229,9 @@ def _is_full(folder: Path) -> bool:
 
 @contextmanager
 def lock_home(home: Path) -> Iterator[None]:
-    """Hold the lock of a home folder, for changes to several files. Blocks while another process holds it.
+    """Return a context that holds the lock of a home folder, for changes to several of its files.
+
+    It blocks while another process holds the lock.
 
     Raises:
         LogError: the folder, or the lock in it, cannot be used.
@@ -255,19 +258,19 @@ def lock_home(home: Path) -> Iterator[None]:
 
 @contextmanager
 def _begin_transaction(connection: sqlite3.Connection) -> Iterator[None]:
-    # Immediate: a lock requested only at the first write would fail at once instead of waiting.
+    # The lock is requested now, and waited for: if it is requested only at the first write, SQLite fails immediately.
     connection.execute("BEGIN IMMEDIATE")
     with connection:
         yield
 
 
 def _open(path: Path) -> sqlite3.Connection:
-    # Read-write without create: a missing file is created under the lock and filled from the folders.
+    # SQLite must not create a missing file: it is created under the lock, and filled from the run folders.
     connection = sqlite3.connect(
         f"{path.absolute().as_uri()}?mode=rw", uri=True, timeout=_BUSY_S, isolation_level=None
     )
     try:
-        # Waiting for the disk would delay the end of every run; damage by a power failure is repaired.
+        # Waiting for the disk would delay the end of every run. After a power failure, a damaged catalogue is rebuilt.
         connection.execute("PRAGMA synchronous = OFF")
         version = connection.execute("PRAGMA user_version").fetchone()[0]
         if version != _SCHEMA_VERSION:
@@ -283,11 +286,11 @@ def _open(path: Path) -> sqlite3.Connection:
 
 
 def _must_be_made_again(error: sqlite3.DatabaseError) -> bool:
-    """Return whether an error means that the catalogue's file is missing, damaged or foreign."""
+    """Return whether an error means that the catalogue's file is missing, damaged or of another application."""
     if isinstance(error, _ForeignFile):
         return True
     code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_OK) & 0xFF
-    # A plain error comes from a missing table or column: the SQL is constant, so there is no other reason.
+    # SQLITE_ERROR means a missing table or column: the SQL is constant, so nothing else can be wrong with it.
     return code in (
         sqlite3.SQLITE_CANTOPEN,
         sqlite3.SQLITE_CORRUPT,
@@ -320,19 +323,19 @@ def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
         and connection.execute("SELECT 1 FROM runs WHERE number = ?", (info.number,)).fetchone()
     )
     number = info.number if is_sound and not taken else None
-    # A seed may exceed the integers of SQLite.
+    # The seed is stored as text, because it may exceed the integers of SQLite.
     changed = {"number": number, "seed": str(info.seed), "end": info.end or ""}
     row = [_make_storable(changed.get(name, getattr(info, name))) for name in _NAMES]
     return int(connection.execute(_INSERT, row).lastrowid or 0)
 
 
 def _make_storable(value: object) -> object:
-    """Return a value without lone surrogates, which stand for bytes of a file name and are not valid UTF-8."""
+    """Return a value without lone surrogates, which stand for invalid bytes of a file name, and are not valid UTF-8."""
     return value.encode("utf-8", "replace").decode() if isinstance(value, str) else value
 
 
 def _fetch_rows(connection: sqlite3.Connection) -> list[RunInfo]:
-    # Text that is not valid UTF-8 counts as damage, like a cell of a wrong type.
+    # Texts are read as bytes, and decoded later: invalid UTF-8 is then reported as damage, like a wrong type.
     connection.text_factory = bytes
     try:
         return [_build_info(row) for row in connection.execute(_SELECT)]
@@ -353,7 +356,7 @@ def _build_info(row: tuple[Any, ...]) -> RunInfo:
         or {os.sep, "\0"} & set(run_id)
         or len(os.fsencode(run_id)) > _MAX_ID
     ):
-        # It must name a folder beside the others: the user may have it removed.
+        # The id must be the name of a folder among the run folders, because the user may delete that.
         raise ValueError(f"{shortened(run_id)} is not an id")
     state = RUN_STATES[end] if end else None
     return RunInfo(

@@ -47,7 +47,7 @@ _BASE_AIMS = (Aim.BASE_SPEED, Aim.BASE_WAY)
 
 
 class CommandedRun(Protocol):
-    """A run whose program may have given commands, running or stored."""
+    """A run whose program may have given commands, either running or stored."""
 
     @property
     def first_spec(self) -> RunSpec: ...
@@ -59,7 +59,7 @@ class CommandedRun(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class CommandEvent:
-    """A command that a program gave to a part of the robot, once or repeatedly."""
+    """A command that a program gave to a part of the robot, once or several times in a row."""
 
     time_s: float
     """Simulated time of the first command."""
@@ -76,7 +76,7 @@ class CommandEvent:
 
     @property
     def words(self) -> str:
-        """The command, how often it was given, and its result, in one line."""
+        """The command, how often it was given, and what it led to, in one line."""
         repeats = f", {self.count:,} times" if self.count > 1 else ""
         if self.last_s - self.time_s >= 0.01:
             repeats += f" until {self.last_s:.2f} s"
@@ -85,13 +85,18 @@ class CommandEvent:
 
 
 def parse_command_search(text: str) -> str | None:
-    """Return the words in a text such as `command left run`, empty for `command` alone; None if it is another text."""
+    """Return the words after `command` in a text such as `command left run`; None if the text has no such form.
+
+    They are empty for `command` alone.
+    """
     match = _WORDS.fullmatch(text.strip())
     return (match["words"] or "").strip() if match else None
 
 
 class CommandIndex:
-    """The commands of a run as events, in the order in which they came; repetitions are one event. The run may go on.
+    """The commands of a run as events, in their order. A command and its repetitions are one event.
+
+    The run may still be running.
 
     Args:
         run: The run; without a record of commands there are no events.
@@ -103,7 +108,7 @@ class CommandIndex:
         self._robots: list[RobotSpec] = [run.first_spec.robot]
         """The robot at the start, and after each time that parts were plugged in."""
         self._end = self._newest_ns = 0
-        # 48 bytes an event: a program may give two million commands.
+        # Arrays take 48 bytes for each event; objects would take too much memory, as there may be two million commands.
         self._starts, self._counts, self._codes = array("I"), array("I"), array("Q")
         """Row of the first command, number of commands, and robot, call and part of each event."""
         self._firsts, self._lasts = array("q"), array("q")
@@ -125,7 +130,7 @@ class CommandIndex:
     # Reading
 
     def read_piece(self) -> bool:
-        """Read the next piece of the record; return whether there was one."""
+        """Read further commands from the record; return whether there were any."""
         rows = read_command_rows(self._run.folder, self._end, _PIECE)
         if len(rows):
             self._take(rows)
@@ -138,7 +143,7 @@ class CommandIndex:
             pass
 
     def _take(self, rows: Array) -> None:
-        """Group commands into events and add these: a command that repeats another belongs to its event."""
+        """Group recorded commands into events, and add the events; a repeated command belongs to the event before."""
         import numpy as np
 
         times = np.maximum.accumulate(np.maximum(rows["time_ns"], self._newest_ns))
@@ -183,7 +188,7 @@ class CommandIndex:
                 self._scales.append((self._find_tick(time_ns), port, factor))
 
     def _read_codes(self, rows: Array) -> Array:
-        """Return a code of robot, call and part for each command; take note of parts that were plugged in."""
+        """Return a code of robot, call and part for each command; add a robot each time that parts were plugged in."""
         import numpy as np
 
         plugs = rows["call"] == Call.PLUG
@@ -229,11 +234,11 @@ class CommandIndex:
     # Finding
 
     def find_scales(self, tick: int) -> dict[str, float]:
-        """Return how many degrees a program counted for one of a motor at a tick, by port; 1 where it is missing."""
+        """Return the program's degrees per degree of a motor at a tick, by port; 1 for a port without a value."""
         return {port: factor for when, port, factor in self._scales if when <= tick}
 
     def find_events(self, text: str = "") -> list[int]:
-        """Return the numbers of the events whose part and call contain all words of a text; of all without a text."""
+        """Return the numbers of the events whose part and command contain all words of a text; all if it is empty."""
         words = text.lower().split()
         names = {
             code: f"{self._name_part(code)} {_name_call(code)} {CALL_WORDS[_find_call(code)].text}".lower()
@@ -243,18 +248,18 @@ class CommandIndex:
         return [number for number, code in enumerate(self._codes) if code in matching]
 
     def tick(self, number: int) -> int:
-        """Return the tick of an event."""
+        """Return the tick at which an event began."""
         return self._find_tick(self._firsts[number])
 
     def time_s(self, number: int) -> float:
-        """Return the time of an event."""
+        """Return the simulated time in seconds at which an event began."""
         return self._firsts[number] / NS_PER_S
 
     def event(self, number: int) -> CommandEvent:
-        """Return an event."""
+        """Return the event with a number, with its command in words."""
         code = self._codes[number]
         rows = read_command_rows(self._run.folder, self._starts[number], 1)
-        # The program may have changed its record meanwhile.
+        # There is no such row if the program has changed the record meanwhile.
         values = rows["values"][0].tolist() if len(rows) else [0.0] * MAX_VALUES
         call = _find_call(code)
         text = _name_call(code)
@@ -270,7 +275,7 @@ class CommandIndex:
         )
 
     def _name_part(self, code: int) -> str:
-        """Return the part that an event is for."""
+        """Return the name of the part to which an event's command was given, such as `left motor B`."""
         call = _find_call(code)
         number = code & 0xFF
         if CALL_WORDS[call].part:
@@ -284,7 +289,7 @@ class CommandIndex:
     # What came
 
     def _measure(self, number: int, aim: Aim) -> str:
-        """Return in words what a command to the wheels led to, by telemetry; empty for other commands."""
+        """Return a text with what a command to the wheels led to, from telemetry; empty for other commands."""
         import numpy as np
 
         part = self._codes[number] & 0xFF
@@ -322,13 +327,13 @@ class CommandIndex:
         return f"turned {_round(speeds[:count].sum() / self._hz)}° {when}"
 
     def _find_end(self, number: int) -> int:
-        """Return the tick at which the part of an event got its next command to move; the newest tick without one."""
+        """Return the tick at which the part of an event got its next command to move; without one, the newest tick."""
         if len(self._ends) != len(self):
             self._ends = self._list_ends()
         return self._ends[number]
 
     def _list_ends(self) -> list[int]:
-        """Return for each event the tick at which its part got its next command to move."""
+        """Return for each event the tick at which its part got its next command to move, or else the newest tick."""
         newest = self._run.telemetry.count - 1
         ends = [0] * len(self)
         following: dict[tuple[bool, int], int] = {}
@@ -351,7 +356,7 @@ def _find_call(code: int) -> Call:
 
 
 def _find_aim(call: Call, values: Sequence[float]) -> Aim:
-    """Return the kind of motion that a call with these values asks for."""
+    """Return the kind of motion that a command with these values asks for."""
     is_to_position = call is Call.MOVE and not values[3]
     return Aim.POSITION if is_to_position else CALL_WORDS[call].aim
 
@@ -361,7 +366,7 @@ def _name_call(code: int) -> str:
 
 
 def _find_mains() -> Array:
-    """Return the index of each call's main value, by the number of the call."""
+    """Return for each number of a call the index of the value that describes the command best, such as its speed."""
     import numpy as np
 
     mains = np.zeros(256, np.int64)

@@ -46,7 +46,7 @@ _CALLS = {call.value: call for call in Call}
 
 
 class CommandsWriter(MappedWriter):
-    """Appends commands and publishes each at once."""
+    """Appends commands to the record of a run; readers can see each one immediately."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__(
@@ -65,7 +65,7 @@ class CommandsWriter(MappedWriter):
         self._count = self._length[0] = count + 1
 
     def _extend(self, count: int) -> bool:
-        """Make room for one more command than `count`; return whether that was possible."""
+        """Make space for one more command than `count`; return whether there was space."""
         if count >= MAX_COMMANDS or self._is_full:
             return False
         self._make_room(HEADER_BYTES + (count + 1) * COMMAND_RECORD.size)
@@ -73,7 +73,7 @@ class CommandsWriter(MappedWriter):
         return True
 
     def close(self) -> None:
-        """Close the file, truncated to its true size."""
+        """Close the file, and cut off its unused space."""
         self._close(HEADER_BYTES + min(self._count, self._room) * COMMAND_RECORD.size)
 
 
@@ -87,10 +87,10 @@ class RecordedCommands:
     """Number of commands that the file had no room for."""
 
     def unpack(self) -> Iterator[SimulationCommand]:
-        """Yield the commands, each with as many values as a record has.
+        """Yield the commands; each has the number of values of a record, including values that its call does not use.
 
         Raises:
-            ValueError: one has a number that stands for no call.
+            ValueError: a record has a number that stands for no call.
         """
         for time_ns, part, call, *values in COMMAND_RECORD.iter_unpack(self.rows.tobytes()):
             yield SimulationCommand(time_ns, part, _CALLS.get(call) or Call(call), tuple(values))
@@ -104,7 +104,7 @@ def _find_kind() -> np.dtype[Any]:
 
 
 def read_commands(folder: Path) -> RecordedCommands:
-    """Return what the program of a run has changed in the simulation so far.
+    """Return the commands that the program of a run has given so far.
 
     Raises:
         LogError: the file is missing, damaged or of another version, or this machine cannot read it.
@@ -131,7 +131,7 @@ def read_commands(folder: Path) -> RecordedCommands:
 
 
 def read_command_rows(folder: Path, first: int, count: int) -> Array:
-    """Return at most `count` rows of `COMMAND_FIELDS` from row `first` on; none beyond its end or if it is invalid."""
+    """Return at most `count` rows of `COMMAND_FIELDS` from row `first` on; none if the file is invalid."""
     import numpy as np
 
     kind = _find_kind()

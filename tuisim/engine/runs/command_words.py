@@ -19,7 +19,7 @@ from tuisim.engine.core.servo.trajectory import MILLI
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """How one value of a call is written: as a number with a unit, or as a name."""
+    """How one value of a command is shown: as a number with a unit, or as a name."""
 
     unit: str = ""
     share: float = 1.0
@@ -28,7 +28,7 @@ class Quantity:
     """What the values 0, 1, … stand for; empty for a number."""
 
     def write(self, low: float, high: float) -> str:
-        """Return a value in words, or a range if `low` and `high` differ."""
+        """Return a value as text, or a range of values if `low` and `high` differ."""
         if self.names:
             return self.names[int(low)] if 0 <= low < len(self.names) else f"{low:g}"
         ends = dict.fromkeys(f"{value * self.share:.5g}" for value in sorted((low, high)))
@@ -47,7 +47,7 @@ _SETTING = Quantity(names=[name.replace("_", " ") for name in SETTINGS])
 
 
 class Aim(Enum):
-    """What a call asks for, which decides how its result is described."""
+    """What kind of motion a command asks for, which decides how its result is described."""
 
     NONE = auto()
     """Nothing that telemetry records."""
@@ -65,7 +65,7 @@ class Aim(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CallWords:
-    """How a call is written in words."""
+    """How a kind of command is described in words."""
 
     text: str
     """The words, with the index of each value in braces, such as `run {0}`."""
@@ -79,7 +79,7 @@ class CallWords:
 
 
 def _name_driver_calls() -> dict[Call, CallWords]:
-    """Return the words of the commands of the kernel's driver, which all have the same values."""
+    """Return the descriptions of the commands of the kernel's driver, which all have the same values."""
     action = Quantity(names=STOP_ACTIONS)
     points = _DPS, _DEG, _PERCENT, _MS, _MS, _MS, action
     texts = {

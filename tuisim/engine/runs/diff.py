@@ -43,7 +43,7 @@ class TickDifference:
 
 @dataclass(frozen=True, slots=True)
 class RowDifference:
-    """The first position at which two runs' rows differ; None for a run that has no more rows."""
+    """The first position at which the output rows of two runs differ; None stands for a run that has no more rows."""
 
     row: int
     """Number from 1 among the readable rows; a row of a motor gets the number of the next readable one."""
@@ -55,7 +55,7 @@ class RowDifference:
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
-    """Distance between the robots over the time that both runs cover."""
+    """The distance between the robots of two runs over the time that both runs cover."""
 
     max_mm: float
     max_at_s: float
@@ -87,7 +87,7 @@ class RunDiff:
 
     @property
     def same(self) -> bool:
-        """Whether recording and output are identical bit by bit."""
+        """Whether recording and output of the two runs are identical bit by bit."""
         return not self.by_time and self.tick is None and self.output is None
 
     def to_plain(self) -> dict[str, Any]:
@@ -128,7 +128,10 @@ class RunDiff:
                 yield f"over {limit:g} mm", "never" if since_s is None else f"from {since_s:.2f} s"
 
     def describe_setup(self) -> Iterator[tuple[str, str]]:
-        """Yield a label and a text per difference of the setup, then the lines of the programs' diff without labels."""
+        """Yield a label and a text for each difference of the settings, then lines of the programs' diff.
+
+        The lines of the diff have an empty label.
+        """
         for name, left, right in self.setup:
             yield f"settings, {name}", f"{left} | {right}"
         for line in self.program:
@@ -138,9 +141,10 @@ class RunDiff:
 def diff_runs(
     first: StoredRun, second: StoredRun, *, prefix: bool = False, until: int | None = None
 ) -> RunDiff:
-    """Compare two runs.
+    """Return the differences between two runs.
 
     Args:
+        first, second: The runs.
         prefix: Whether the first run was cut off: anything in the second after its last record is ignored.
         until: Last tick to compare; None for all.
 
@@ -173,11 +177,14 @@ def diff_runs(
 def find_first_tick(
     left: np.ndarray[Any, Any], right: np.ndarray[Any, Any], tick_hz: int
 ) -> TickDifference | None:
-    """Return the first tick at which two `TelemetryView.array` of one tick rate differ; None if they are equal."""
+    """Return the first tick at which two recordings with the same tick rate differ; None if they are equal.
+
+    `left` and `right` are results of `TelemetryView.array`.
+    """
     import numpy as np
 
     count = min(len(left), len(right))
-    # Compare bytes, not numbers: NaN equals itself, and 0.0 differs from -0.0.
+    # Bytes are compared, not numbers, so that NaN equals itself, and 0.0 differs from -0.0.
     size = left.dtype.itemsize
     raw = [
         np.ascontiguousarray(records[:count]).view(np.uint8).reshape(count, size)
@@ -227,9 +234,9 @@ def measure_divergence(
 def find_first_difference_s(
     left: np.ndarray[Any, Any], right: np.ndarray[Any, Any], tick_hz: tuple[int, int]
 ) -> float | None:
-    """Return the time at which the robots were first over 1 mm or 1 degree apart; arguments as of `measure_divergence`.
+    """Return the time in s at which the robots were first more than 1 mm or 1 degree apart; None if they never were.
 
-    None if they never were: one run may still have ended before the other.
+    Even then, one run may have ended before the other. Arguments as of `measure_divergence`.
     """
     times, distance, turned = _measure_apart(left, right, tick_hz)
     is_apart = (distance > PARTED_MM) | (abs(turned) > PARTED_DEG)
@@ -274,12 +281,12 @@ _Row = tuple[Any, str, float]
 
 
 def _read_output(run: StoredRun, until: int | None) -> Iterator[OutputRow]:
-    # Rows of the last tick itself may have been written after the end.
+    # Rows of the tick `until` itself are left out: they may have been written after the instant to compare up to.
     return takewhile(lambda row: until is None or row.tick < until, run.output.rows())
 
 
 def _describe_row(row: OutputRow) -> str:
-    """Return a row as text, also one of the brick's state."""
+    """Return a row of output as text; a row of the brick's state is described, such as `[lights]`."""
     match row.stream:
         case (
             Stream.STDOUT | Stream.STDERR | Stream.SPEECH | Stream.INPUT | Stream.NOTE | Stream.DATA
@@ -361,7 +368,7 @@ def _flatten(plain: Any, name: str = "") -> dict[str, Any]:
 def is_repeat(run: StoredRun | Recording, earlier: StoredRun | Recording) -> bool:
     """Return whether a run has the same program text, arguments and settings as an earlier one.
 
-    Only then a difference between them is a fault: with another text the robot should drive another way.
+    Only then is a difference between them a fault: with another program, another motion is expected.
     """
     program = run.program
     before = earlier.program

@@ -42,14 +42,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class DeadReckoning:
-    """Poses from wheel counts, each array of shape (n,)."""
+    """Poses of the robot that follow from the counts of its wheels' encoders, each array of shape (n,)."""
 
     x_mm: FloatArray
     y_mm: FloatArray
     heading_deg: FloatArray
 
     def compute_error_mm(self, x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
-        """Return the distances from the true positions in mm, shape (n,)."""
+        """Return the distances between these positions and the true ones in mm, shape (n,)."""
         import numpy as np
 
         return np.hypot(self.x_mm - x_mm, self.y_mm - y_mm)
@@ -58,15 +58,15 @@ class DeadReckoning:
 def compute_dead_reckoning(
     left_position_deg: FloatArray, right_position_deg: FloatArray, start: Pose, robot: RobotSpec
 ) -> DeadReckoning:
-    """Return the poses of the robot if its wheels do not slip.
+    """Return the poses that the robot would have if its wheels did not slip.
 
-    Between two counts the robot drives an arc, whose chord points halfway between the
-    headings at both ends.
+    Between two counts the robot drives an arc, whose chord points halfway between the headings at both ends.
 
     Args:
         left_position_deg: Position of the left wheel's motor since the start, shape (n,).
         right_position_deg: Position of the right wheel's motor.
         start: Pose at the first count.
+        robot: The robot, with the sizes of its wheels.
     """
     import numpy as np
 
@@ -90,7 +90,7 @@ FieldAt: TypeAlias = Callable[[tuple[float, ...]], Field]
 
 
 class RecordedRun(Protocol):
-    """A run with its folder, running or stored."""
+    """A run with a folder, either running or stored."""
 
     @property
     def spec(self) -> RunSpec: ...
@@ -113,7 +113,7 @@ _MOST = 1e15
 
 
 def build_samples_frame(runs: Iterable[StoredRun]) -> pd.DataFrame:
-    """Return the samples of one or more runs as a frame, see `sample_columns`.
+    """Return the samples of one or more runs as a pandas frame, with the columns of `sample_columns`.
 
     Raises:
         LogError: a recording is damaged.
@@ -125,12 +125,12 @@ def build_samples_frame(runs: Iterable[StoredRun]) -> pd.DataFrame:
 
 
 def sample_columns(runs: Iterable[StoredRun]) -> dict[str, Any]:
-    """Return the samples of one or more runs, in the order of the runs and of printing.
+    """Return the samples of one or more runs as columns by name, in the order of the runs and of printing.
 
-    Columns, as SAMPLE_COLUMNS: `index` timedelta64[ns] since the first sample of its run was
-    printed; `variable` the name; `value`; `time` in s, simulated, of the print or as printed;
-    `run` numbers the runs of this frame from 1; `x_mm`, `y_mm`, `heading_deg` the pose of the robot
-    at the tick of the print, NaN if that tick was lost; `line` in the program.
+    Columns, as SAMPLE_COLUMNS: `index` timedelta64[ns] since the first sample of its run was printed; `variable` the
+    name; `value`; `time` in s, simulated, of the print or as printed; `run` numbers the runs of this frame from 1;
+    `x_mm`, `y_mm`, `heading_deg` the pose of the robot at the tick of the print, NaN if that tick was lost; `line` in
+    the program.
 
     Raises:
         LogError: a recording is damaged.
@@ -177,7 +177,7 @@ def _list_samples(run: StoredRun, ordinal: int) -> dict[str, Any]:
 
 
 def build_telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
-    """Return the telemetry of a run as a frame, see `build_telemetry_columns`.
+    """Return the telemetry of a run as a pandas frame, with the columns of `build_telemetry_columns`.
 
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.
@@ -190,13 +190,14 @@ def build_telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.Data
 def build_telemetry_columns(
     run: StoredRun, field: Field | None = None, names: Sequence[str] = ()
 ) -> dict[str, Array]:
-    """Return one row per tick, including tick 0 (the start); damaged records are omitted, see `describe_damage`.
+    """Return the telemetry of a run as columns by name, with one row per tick, including tick 0 (the start).
 
-    Columns: `time` in s, simulated; MOTION_COLUMNS; those of every mounted sensor, such as
-    `left_red` (0 … 255), `ultrasonic_mm`, `gyro_deg`, `gyro_rate_dps`; those of every motor with
-    a driver, such as `left_asked_dps`; `line`, the source line that spent the time, 0 for none.
+    Damaged records are omitted, see `describe_damage`. Columns: `time` in s, simulated; MOTION_COLUMNS; those of every
+    mounted sensor, such as `left_red` (0 … 255), `ultrasonic_mm`, `gyro_deg`, `gyro_rate_dps`; those of every motor
+    with a driver, such as `left_asked_dps`; `line`, the source line that spent the time, 0 for none.
 
     Args:
+        run: The run.
         field: The mat; by default that of the run.
         names: `line`, and names of columns from `list_columns`, which replace all columns after `time`.
 
@@ -220,7 +221,7 @@ def compute_column_values(
     field: Field,
     field_at: FieldAt | None = None,
 ) -> dict[str, Array]:
-    """Return columns at every tick by name: float64, shape (n,).
+    """Return the values of columns at every tick, by the names of the columns: float64, shape (n,).
 
     Args:
         names: Names of columns from `list_columns`.
@@ -266,12 +267,13 @@ def _compute_column(
     measured: Mapping[str, Array],
     spec: RunSpec,
 ) -> Array:
-    """Return a column that is computed from measured ones, at every tick, shape (n,).
+    """Return a column that is computed from measured ones: its value at every tick, shape (n,).
 
     Args:
         of: Computes its values from one row of measured values for each tick.
         columns: The columns of its owner, such as a sensor.
         measured: The measured columns by name.
+        spec: The run.
     """
     import numpy as np
 
@@ -282,7 +284,7 @@ def _compute_column(
 def find_lacking_columns(
     spec: RunSpec, names: Collection[str], read: Callable[[str], Array]
 ) -> dict[str, Callable[[], Array]]:
-    """Return functions that compute the columns which the telemetry of a run lacks, by the names of the columns.
+    """Return functions that compute the columns that the given telemetry of a run lacks, by the names of the columns.
 
     Args:
         spec: The run.
@@ -307,10 +309,10 @@ def find_lacking_columns(
 
 
 def evaluate_condition(condition: ValueCondition, values: Array) -> Array:
-    """Return whether a condition is true at each tick; `values` are those of its column.
+    """Return a boolean array: whether a condition is true at each tick; `values` are those of its column.
 
     Raises:
-        ValueError: the condition compares with something that is no number.
+        ValueError: the condition compares with something that is not a number.
     """
     import numpy as np
 
@@ -334,12 +336,12 @@ def describe_damage(run: StoredRun) -> str:
 
 
 def _select_sound(records: Array) -> Array:
-    """Return the records that contain only plausible numbers."""
+    """Return those records that contain only plausible numbers."""
     import numpy as np
 
     whole = np.ones(len(records), np.bool_)
     for name in (*MOTION_COLUMNS, "gyro_zero_deg"):
-        # Also false for NaN.
+        # This comparison is false for NaN, too.
         whole &= np.abs(records[name]) < _MOST
     return records if whole.all() else records[whole]
 
@@ -354,12 +356,12 @@ def tick_times_s(records: Array, spec: RunSpec) -> Array:
 def _list_noises(
     records: Array, spec: RunSpec, actions: Sequence[UserAction]
 ) -> list[tuple[NoiseSpec, int]]:
-    """Return the noises in order of time, each with its number of ticks."""
+    """Return the noise settings of a run in order of time, each with its number of ticks."""
     import numpy as np
 
     if not any(isinstance(action.command, SetNoise) for action in actions):
         return [(spec.world.noise, len(records))]
-    # The noise can change only where the count of actions does.
+    # The noise can change only at ticks at which the count of the user's actions changes.
     starts = [0, *(np.flatnonzero(np.diff(records["actions"])) + 1).tolist(), len(records)]
     return [
         (find_noise(spec, actions, TickRecord(*records[start].item())), end - start)
@@ -376,7 +378,7 @@ def _measure_columns(
     field: Field,
     field_at: FieldAt | None,
 ) -> dict[str, Array]:
-    """Return the measured columns of sensors: at once where that is possible, else tick by tick."""
+    """Return the measured columns of sensors by name, computed with arrays where possible, else tick by tick."""
     import numpy as np
 
     from tuisim.engine.runs.sensor_arrays import measure_array
@@ -396,7 +398,7 @@ def _measure_columns(
     rows = np.empty((len(records), len(names)))
     field_at = field_at or _field_with_marks(field, spec)
     every = chain.from_iterable(repeat(noise, count) for noise, count in noises)
-    # One by one: all records of a long run at once would take much memory as objects.
+    # The records are unpacked one by one: as objects, all records of a long run would take much memory.
     for index, (record, noise) in enumerate(
         zip(TICK_RECORD.iter_unpack(records.data), every, strict=True)
     ):
@@ -411,7 +413,7 @@ def _measure_columns(
 
 
 def _field_with_marks(field: Field, spec: RunSpec) -> FieldAt:
-    """Return a function that takes every record in turn, from tick 0 on, and returns the mat with the marks by then."""
+    """Return a function that takes every record in turn, from tick 0 on, and returns the mat with its marks."""
     if not spec.world.pen_marks:
         return lambda _: field
     pen = PenMarks(field, spec)

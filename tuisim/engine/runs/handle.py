@@ -83,7 +83,7 @@ STALL_FACTOR = 2.0
 
 
 class RunFolders(Protocol):
-    """Where a handle stores its run: a `RunStore`, or a `TemporaryRun`."""
+    """Where the folder of a new run is created: a `RunStore`, or a `TemporaryRun`."""
 
     def create_run(
         self,
@@ -104,14 +104,14 @@ class RunFolders(Protocol):
 
 
 def _build_template_key(program: Program, spec: RunSpec, field: FieldFiles) -> Hashable:
-    """Return what a template is prepared for: all of a run except its program, its options, seed, noise and start."""
+    """Return what a template has to be prepared for: a whole run except its program, options, seed, noise and start."""
     world = replace(spec.world, noise=NoiseSpec(), start=Pose(0.0, 0.0, 0.0))
-    # With identities: a file of the mat that was made again does not count as the old one.
+    # The identities of the mat's files are part of the key, so that a template never uses files that were replaced.
     return program.prelude, field, field.identities(), replace(spec, seed=0, world=world)
 
 
 def _list_needs(program: Program, field: FieldFiles) -> list[Path]:
-    """Return the files and folders that a program reads besides its run folder and its working directory."""
+    """Return the files and folders that a program needs besides its run folder and its working directory."""
     own = [program.module_folder or os.path.dirname(program.path), *program.python_path]
     return [
         *(Path(os.path.abspath(folder)) for folder in own if folder),
@@ -120,10 +120,11 @@ def _list_needs(program: Program, field: FieldFiles) -> list[Path]:
 
 
 class RunHandle:
-    """One run: its child process, pipes and recording. Create it with `start_run`.
+    """Controls one run: its child process, its pipes and its recording. Create it with `start_run`.
 
-    Its process is forked from a template for runs of the same robot and world, if there is one. With `of_many` one is
-    made; `prepare_next` makes one for later runs. With `isolated` the process is started through bubblewrap instead.
+    The child is forked from a template for runs of the same robot and world, if there is one. With `of_many` a template
+    is made first; `prepare_next` makes one for later runs. With `isolated` the child is started through bubblewrap
+    instead.
     """
 
     def __init__(
@@ -171,7 +172,7 @@ class RunHandle:
         self._announced: Ended | None = None
         self.unstored = ""
         """Why the run or its end is not stored; empty if it is."""
-        # Held beyond the end of the process: until its end is stored, nobody else may remove the run.
+        # The lock is held until the end of the run is stored, so that nobody else removes the run before.
         self._lock_fd = os.dup(run.lock_fd)
         self._start(of_many=of_many, isolated=isolated)
         self._mark = mark(self._process.pid)
@@ -184,7 +185,7 @@ class RunHandle:
         """Which limit an isolated program has exceeded; why what the child does is not what the simulation does."""
 
     def _start(self, *, of_many: bool, isolated: bool) -> None:
-        """Start the child; arguments as of the class."""
+        """Start the child process; arguments as of the class."""
         program = self.program
         run = self._run
         try:
@@ -229,12 +230,12 @@ class RunHandle:
     def pump(self) -> list[Message]:
         """Return the events that have arrived, without blocking; `Ended` comes once, as the last.
 
-        Must be called regularly while the run is active. It also kills a child that does not stop, and one that sends
-        or records something that the simulation never sends or records: such a run ends as falsified.
+        It must be called regularly while the run is active. It also kills a child that does not stop, and one that
+        sends or records something that the simulation never sends or records: such a run ends as falsified.
         """
         if self.ended is not None:
             return []
-        # Checked before reading: all output of a child that has exited is in the pipe then.
+        # This is checked before reading: if the child has exited, all its events are in the pipe by now.
         exited = self._process.poll() is not None
         events = self._events.read()
         for event in events:
@@ -260,7 +261,7 @@ class RunHandle:
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
         now_s = time.monotonic()
-        # A view that holds is followed by somebody: only this check lets it read on.
+        # If a view has `holds` set, somebody follows the run, and the view reads on only in this check.
         is_due = now_s >= self._look_at_s or self.telemetry.holds or self.output.holds
         if is_due or self._events.falsified or (exited and self._is_followed):
             self._look_for_falsified()
@@ -289,7 +290,7 @@ class RunHandle:
 
     def _look_for_falsified(self) -> None:
         """Kill a child that has sent or recorded something that cannot come from the simulation."""
-        # In a folder that was deleted there is nothing to look at: such a run is stopped.
+        # A folder that was deleted need not be checked: its run is stopped.
         if not self._falsified and self.folder.is_dir():
             damages = self.telemetry.read_new(), self.output.read_new()
             self._falsified = (
@@ -307,13 +308,13 @@ class RunHandle:
                 end_group(self._process.pid)
 
     def _find_excess(self, telemetry: TelemetryView) -> str:
-        """Return, in words, what is larger than the run can have made it; empty if nothing is."""
+        """Return a text that says which recording is larger than the run can have made it; empty if none is."""
         with suppress(OSError):
             if (self.folder / LOG_FILE).stat().st_size > MAX_BYTES:
                 return f"it has written more than {MAX_BYTES >> 20} MiB to {LOG_FILE}"
         limit_s = self._options.time_limit_s
         hz = self.spec.profile.tick_hz
-        # The host reads what is recorded: it must not grow beyond what the run can record.
+        # The host reads the recording into memory, so a program must not make it larger than the run can.
         if limit_s and telemetry.count > (limit_s + _BEYOND_LIMIT_S) * hz:
             return f"it has recorded more than {limit_s:g} s"
         return ""
@@ -359,13 +360,13 @@ class RunHandle:
         )
 
     def _find_falsified(self) -> str:
-        """Return, in words, what an ended run has left that cannot come from the simulation; empty if nothing."""
+        """Return a text that says what in the folder of an ended run the simulation cannot write; empty if nothing."""
         end = self._announced
-        # A run that could not begin, or found no room on the disk, may leave incomplete files.
+        # A run that could not begin, or had no space on the disk, may have incomplete files.
         is_whole = end is not None and end.end not in (End.CRASHED, End.DISK_FULL)
-        # Opened anew, as anyone who opens the run later does: data that this host has read may be gone.
+        # New views read the files as anyone does who opens the run later: they may differ from what was read before.
         telemetry, output = open_views(self.folder, is_checked=True)
-        # Each is read once: the process has ended.
+        # Reading each file once is enough, because the process has ended.
         damages = telemetry.read_new(), output.read_new()
         telemetry.holds = output.holds = True
         if wrong := next(filter(None, damages), "") or self._find_excess(telemetry):
@@ -402,7 +403,7 @@ class RunHandle:
         end_descendants(self._process.pid, self._mark)
         for name in (LOG_FILE, STACK_FILE):
             path = self.folder / name
-            # The folder may be about to be deleted.
+            # The folder may be deleted by another process at this time.
             with suppress(OSError):
                 if not path.stat().st_size:
                     path.unlink()
@@ -416,7 +417,7 @@ class RunHandle:
             os.close(self._lock_fd)
 
     def stored(self) -> StoredRun:
-        """Return the stored run, including its end even if that could not be written.
+        """Return the run as it is stored, with its end even if that could not be written.
 
         Raises:
             LogError: it no longer exists, or is damaged.
@@ -431,7 +432,7 @@ class RunHandle:
         return run
 
     def _describe_damage(self, error: LogError) -> str:
-        # A folder that is being deleted loses its files one by one.
+        # If `run.json` is missing, the folder is being deleted, which is the reason for the error.
         return (
             str(error)
             if (self.folder / RUN_FILE).exists()
@@ -454,7 +455,7 @@ class RunHandle:
                 self._stop_at is not None
                 and (left := self._stop_at + STUCK_AFTER_S - self._clock.read_s()) > 0
             ):
-                # A stuck child is killed on time.
+                # Wait no longer than until a stuck child has to be killed.
                 rest = min(rest, left)
             self.wait_for_event(rest)
             self.pump()
@@ -473,13 +474,13 @@ class RunHandle:
     # Commands
 
     def send(self, command: Message) -> None:
-        """Send a command; after the end of the run it is ignored.
+        """Send a command to the child; after the end of the run it is ignored.
 
         Raises:
             ConfigError: a breakpoint in it is invalid.
         """
         if isinstance(command, SetBreaks):
-            # Rejected here: the child could not tell the user.
+            # Invalid breakpoints are rejected here, because the child could not report them to the user.
             parse_breakpoints(command.breaks)
         if self.ended is not None or self._announced is not None:
             return
@@ -494,25 +495,25 @@ class RunHandle:
             case _ if not self._options.can_pause:
                 # The command may pause a run that could not pause so far: accept a debugger's events from now on.
                 self._events.allow(DEBUGGED)
-        # If it cannot be written completely, the child is gone or stuck: pump() handles that.
+        # If the command cannot be written completely, the child has ended or is stuck: `pump` handles that.
         if write_command(self._command_fd, command.encode()):
             self._send_signal(COMMAND_SIGNAL)
 
     def stop(self) -> None:
-        """Ask the program to stop; `pump` or `wait` kill the child if it does not."""
+        """Ask the program to stop; if it does not, `pump` or `wait` kill its process."""
         if self._stop_at is None:
             self._stop_at = self._clock.read_s()
         self._asked_at = time.monotonic()
         self.send(Stop())
 
     def kill(self) -> None:
-        """Kill the child immediately; what it has written is kept."""
+        """Kill the child immediately; what it has recorded is kept."""
         if self._stop_at is None:
             self._stop_at = self._clock.read_s()
         end_group(self._process.pid)
 
     def prepare_next(self) -> None:
-        """Prepare a process for later runs of this robot and world, which then start sooner. Does not block."""
+        """Prepare a template for later runs of this robot and world, which then start sooner. Does not block."""
         prepare_template(
             _build_template_key(self.program, self.first_spec, self.field),
             self.folder,
@@ -520,7 +521,7 @@ class RunHandle:
         )
 
     def close(self) -> None:
-        """Make sure that the child is gone and the end of the run is recorded."""
+        """Make sure that the child has ended, and that the end of the run is recorded."""
         if self.ended is None:
             self.kill()
             self._process.wait()
@@ -528,11 +529,11 @@ class RunHandle:
                 self.pump()
 
     def _repeat_stop(self) -> None:
-        """Repeat a stop that has had no effect, and kill a child that is stuck."""
+        """Send a stop again that has had no effect, and kill a child that is stuck."""
         if self._announced is not None:
             return
         if self._stop_at is None and not self.folder.is_dir():
-            # Deleted while it runs: nobody can see its results.
+            # The folder was deleted while the run goes on: nobody can see its results, so the run is stopped.
             self.stop()
         if self._stop_at is not None:
             if self._clock.read_s() - self._stop_at > STUCK_AFTER_S:
@@ -542,7 +543,7 @@ class RunHandle:
                 self._send_signal(COMMAND_SIGNAL)
 
     def _look_for_stall(self) -> None:
-        """Kill a child that has made no progress for too long."""
+        """Kill the child if it has made no progress for too long."""
         if (
             self._announced is not None
             or self._stop_at is not None
@@ -563,12 +564,12 @@ class RunHandle:
 
     @property
     def time_used_s(self) -> float:
-        """Real seconds since the start without those in which the child waited for a processor."""
+        """Real seconds since the start, without those in which the child waited for a processor."""
         return self._clock.read_s()
 
     def _read_stack_and_kill(self) -> None:
         if not self._stack_asked:
-            # faulthandler writes the stack even from inside a C call, within this one signal.
+            # At this signal, `faulthandler` writes the stack even during a call of C code.
             self._stack_asked = self._stop_at is None
             self._send_signal(STACK_SIGNAL)
             await_stack(self.folder, self._process.pid)
@@ -580,7 +581,7 @@ class RunHandle:
 
 
 def describe_falsified(what: str) -> str:
-    """Return the summary of a falsified run; `what` is what in it cannot come from the simulation."""
+    """Return the summary of a falsified run; `what` names the thing in it that cannot come from the simulation."""
     return f"the program has falsified its recording: {what}"
 
 
@@ -588,12 +589,12 @@ def _find_here() -> str:
     try:
         return os.getcwd()
     except FileNotFoundError:
-        # It has been deleted.
+        # The working directory has been deleted.
         return ""
 
 
 def set_surroundings(program: Program) -> Program:
-    """Return a program with this process's working directory and PYTHONPATH, unless it has a working directory."""
+    """Return a program with this process's working directory and PYTHONPATH, if it has no working directory."""
     if program.working_directory:
         return program
     return replace(program, python_path=user_python_path(), working_directory=_find_here())
@@ -602,7 +603,7 @@ def set_surroundings(program: Program) -> Program:
 def start_run(
     program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None
 ) -> RunHandle:
-    """Start a program, by default in the user's store. Does not block.
+    """Start a program, and store its run, by default in the user's store. Does not block.
 
     Raises:
         BackgroundError: the mat does not exist.

@@ -38,7 +38,7 @@ MAX_MOTORS = 2 + len(OUTPUT_PORTS)
 
 
 class MotorsWriter(MappedWriter):
-    """Writes the records of all motors. Until it is closed, readers take the number of ticks from telemetry.
+    """Writes the records of all motors. Until it is closed, readers take the number of ticks from the telemetry.
 
     Args:
         folder: The run folder.
@@ -51,17 +51,17 @@ class MotorsWriter(MappedWriter):
         super().__init__(self._path, MOTORS_MAGIC, self._size, _FIRST_BYTES)
 
     def extend_buffer(self, ticks: int) -> mmap.mmap:
-        """Return the map, with space for the records of `ticks` ticks."""
+        """Return the memory map of the file, with space for the records of `ticks` ticks."""
         if (need := HEADER_BYTES + ticks * self._size) > self._capacity:
             self._make_room(need)
         return self._map
 
     def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
-        """Write the records of the first `ticks` ticks again, for other motors; see `MotorSink.arrange`."""
+        """Rewrite the records of the first `ticks` ticks for another set of motors; see `MotorSink.arrange`."""
         before, after = self._size // MOTOR_RECORD.size, len(sources)
         recorded = self._map[HEADER_BYTES : HEADER_BYTES + ticks * self._size]
         arranged = arrange_records(recorded, before, sources, ticks)
-        # A new file replaces the old one: a reader has either, never a mixture.
+        # A new file replaces the old one, so that a reader has one of the two, never a mixture.
         path = Path(self._path)
         full = self.full
         self._size = MOTOR_RECORD.size * after
@@ -77,7 +77,7 @@ class MotorsWriter(MappedWriter):
         os.replace(new, path)
 
     def close(self, ticks: int) -> None:
-        """Close the file, truncated to its true size: that of the records of `ticks` ticks."""
+        """Close the file, and cut off the space after the records of `ticks` ticks."""
         self._length[0] = ticks
         self._close(HEADER_BYTES + ticks * self._size)
 
@@ -102,7 +102,7 @@ def arrange_records(
 
 
 def read_motor_values(folder: Path, run: RunSpec, tick: int) -> tuple[MotorValues, ...]:
-    """Return what the drivers of all motors knew at the end of a tick; empty where nothing is recorded.
+    """Return the values of all motors' drivers at the end of a tick; empty if none are recorded for it.
 
     Raises:
         LogError: the file is damaged, or this machine cannot read it.
@@ -142,7 +142,7 @@ def read_motor_columns(folder: Path, robot: RobotSpec, ticks: Array) -> dict[str
 
 
 def _read_part(folder: Path, first: int, end: int) -> tuple[int, bytes]:
-    """Return the number of motors, and the complete records that exist of the ticks from `first` to before `end`."""
+    """Return the number of motors, and those complete records of the ticks from `first` to before `end` that exist."""
     path = folder / MOTORS_FILE
     try:
         with open_regular(path) as file:

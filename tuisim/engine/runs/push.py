@@ -27,7 +27,7 @@ _MIN_PUSH_MM = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Push:
-    """A summary of all times that something solid pushed a turning robot aside in a run."""
+    """A summary of how often and how far walls or obstacles pushed a turning robot aside in a run."""
 
     at: str
     """What pushed it first: `the wall` or `an obstacle`."""
@@ -41,7 +41,7 @@ class Push:
 
     @property
     def words(self) -> str:
-        """A sentence for people about it, without its subject, the robot."""
+        """A sentence about the push for users, without its subject, the robot."""
         aside = f"was pushed {self.aside_mm:.0f} mm aside by {self.at} while it turned"
         if self.times > 1:
             return f"{aside}, {counted(self.times, 'time')}, first at {self.since_s:.2f} s"
@@ -49,7 +49,7 @@ class Push:
 
 
 def find_push(telemetry: TelemetryView, spec: RunSpec) -> Push | None:
-    """Return where and when something solid pushed the turning robot of a run aside; None if that never happened.
+    """Return where and when walls or obstacles pushed the turning robot of a run aside; None if that never happened.
 
     Raises:
         LogError: the recording is damaged.
@@ -90,9 +90,10 @@ def find_push(telemetry: TelemetryView, spec: RunSpec) -> Push | None:
 
 
 def _measure_aside_mm(records: NDArray[Any], spec: RunSpec, reach_mm: float) -> NDArray[Any]:
-    """Return by how much each tick of a turn near something solid led elsewhere than the wheels, shape (2, n).
+    """Return by how much the robot moved in each tick in addition to what its wheels did, shape (2, n).
 
-    It is 0 in other ticks, and where the robot went so far that a hand must have moved it.
+    It is 0 in ticks without a turn near something solid, and where the robot moved so far that a hand must have moved
+    it.
     """
     import numpy as np
 
@@ -125,7 +126,7 @@ def _measure_aside_mm(records: NDArray[Any], spec: RunSpec, reach_mm: float) -> 
 def _are_near(
     x_mm: NDArray[Any], y_mm: NDArray[Any], spec: RunSpec, reach_mm: NDArray[Any]
 ) -> NDArray[Any]:
-    """Return whether a wall or an obstacle is within reach of each point."""
+    """Return for each point whether a wall or an obstacle is within reach of it."""
     import numpy as np
 
     is_near = np.zeros(len(x_mm), np.bool_)

@@ -82,7 +82,7 @@ _FIRST_BYTES = 1 << 14
 
 
 class ReadingsWriter(MappedWriter):
-    """Appends readings and publishes each at once."""
+    """Appends readings to the record of a run; readers of the file can see each one immediately."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__(
@@ -94,7 +94,7 @@ class ReadingsWriter(MappedWriter):
         self.newest_ns = -1
 
     def add(self, code: int, time_ns: int, line: int) -> None:
-        """Append a reading.
+        """Append a reading to the record.
 
         Args:
             code: One of `READING_CODES`.
@@ -118,7 +118,7 @@ class ReadingsWriter(MappedWriter):
         return False
 
     def _extend(self, count: int) -> bool:
-        """Make room for one more reading than `count`; return whether that was possible."""
+        """Make space for one more reading than `count`; return whether there was space."""
         if count >= MAX_READINGS or self._is_full:
             return False
         self._make_room(HEADER_BYTES + (count + 1) * READING_RECORD.size)
@@ -126,7 +126,7 @@ class ReadingsWriter(MappedWriter):
         return True
 
     def close(self) -> None:
-        """Close the file, truncated to its true size."""
+        """Close the file, and cut off its unused space."""
         self._close(HEADER_BYTES + min(self._count, self._room) * READING_RECORD.size)
 
 
@@ -140,7 +140,7 @@ class Readings:
     """Number of readings that the file had no room for."""
 
     def find(self, modes: tuple[str, ...]) -> Array:
-        """Return the rows with one of some modes, in their order."""
+        """Return the readings in one of several modes, as rows in their order."""
         import numpy as np
 
         rows: Array = self.rows[

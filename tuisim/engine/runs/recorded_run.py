@@ -38,7 +38,7 @@ _STILL_DEG = 0.05
 
 
 class Recording:
-    """Everything a run has written up to now.
+    """Everything that a run has recorded up to now.
 
     Args:
         source: A running run, or a stored one.
@@ -86,18 +86,18 @@ class Recording:
         return self._source.plugged
 
     def hold(self) -> None:
-        """Show telemetry and output as written up to now, until the next `RunHandle.pump` of a running run."""
+        """Let telemetry and output stay as they are now, until the next `RunHandle.pump` of a running run."""
         for view in (self.telemetry, self.output):
             view.read_new()
             view.holds = True
 
     @property
     def newest(self) -> int:
-        """Tick of the newest record; -1 before the first."""
+        """Tick of the newest record; -1 before the first record."""
         return self.telemetry.count - 1
 
     def take_rows(self, limit: int) -> list[OutputRow]:
-        """Read and return at most `limit` further rows of the output; read further commands, too.
+        """Read and return at most `limit` further rows of the output; read further commands of the program, too.
 
         Raises:
             LogError: the recording is damaged.
@@ -106,17 +106,17 @@ class Recording:
         return self.rows.take(limit)
 
     def actions(self) -> tuple[UserAction, ...]:
-        """Return the user's actions, as far as their file is not damaged."""
+        """Return the user's actions, up to where their file is damaged."""
         last = self.telemetry.last()
         # The record counts the actions modulo 65536, and may be slightly ahead of their file.
         if last is not None and 0 < (last.actions - len(self.known_actions)) & 0xFFFF < 0x8000:
-            # Damage is reported elsewhere: it ends the run, or is a note of a stored run.
+            # Damage is ignored here: it ends a running run, and is in the note of a stored one.
             with suppress(LogError):
                 self.known_actions = read_actions(self.folder)[0]
         return self.known_actions
 
     def find_noise(self, record: TickRecord) -> NoiseSpec:
-        """Return the noise at the tick of a record."""
+        """Return the noise settings at the tick of a record."""
         actions = self.actions()
         return find_noise(self.spec, actions, record) if actions else self.spec.world.noise
 
@@ -136,14 +136,14 @@ class Recording:
         return self._marks.at(tick)
 
     def instant(self, record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
-        """Return the instant of a record, with the drivers' values of the motors unless those are damaged."""
+        """Return the instant of a record, with the values of the motors' drivers unless those are damaged."""
         motors: tuple[MotorValues, ...] = ()
         with suppress(LogError):
             motors = read_motor_values(self.folder, self.spec, record.tick)
         return replace(record.build_instant(spec, noise), motors=motors)
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
-        """Return whether the left and the right motor were running but did not turn.
+        """Return for the left and the right wheel's motor whether it was running but did not turn.
 
         A motor of the Pybricks firmware also runs at a speed of 0: it stalls only where the robot touches something.
         """
@@ -167,7 +167,7 @@ class Recording:
 
 
 class _TimedMarks:
-    """The mat with the pen's marks at any tick: marks are only added, and are stored in drawing order."""
+    """The mat with the pen's marks at any tick. Marks are only added, and are stored in drawing order."""
 
     def __init__(self, mat: Field, run: Recording) -> None:
         self._run = run
@@ -180,7 +180,7 @@ class _TimedMarks:
     def at(self, tick: int) -> Field:
         marks = self._drawn.field.marks
         if tick >= len(self._counts):
-            # One by one: all records of a long run at once would take much memory as objects.
+            # The records are unpacked one by one: as objects, all records of a long run would take much memory.
             for record in TICK_RECORD.iter_unpack(
                 self._run.telemetry.array(len(self._counts)).data
             ):
@@ -203,13 +203,13 @@ _FINEST = 500
 
 
 class _Level:
-    """Tells when a variable has changed by more than `_LEVEL_SHARE` of its range."""
+    """Detects when a variable has changed by more than `_LEVEL_SHARE` of its range."""
 
     def __init__(self, value: float) -> None:
         self._low = self._high = self._level = value
 
     def changes(self, value: float) -> bool:
-        """Process a value; return whether the variable has reached another level with it."""
+        """Process the next value of the variable; return whether the variable has changed enough with it."""
         self._low, self._high = min(self._low, value), max(self._high, value)
         if abs(value - self._level) <= _LEVEL_SHARE * (self._high - self._low):
             return False
@@ -218,12 +218,12 @@ class _Level:
 
 
 class RowIndex:
-    """Tick, line and position of each row that has been read of an output, which may still grow."""
+    """Tick, line and position of each row of an output that has been read so far; the output may still grow."""
 
     def __init__(self, output: OutputView) -> None:
         self._output = output
         self._end = 0
-        # 16 bytes a row: a program may print for hours.
+        # Arrays take 16 bytes for each row; objects would take too much memory, as a program may print for hours.
         self._ticks, self._lines, self._starts = array("I"), array("I"), array("I")
         self._texts: array[int] = array("I")
         """Indices of the readable rows."""
@@ -238,7 +238,7 @@ class RowIndex:
         return len(self._ticks)
 
     def take(self, limit: int) -> list[OutputRow]:
-        """Read and return at most `limit` further rows.
+        """Read at most `limit` further rows, add them to the index, and return them.
 
         Raises:
             LogError: the recording is damaged.
@@ -275,13 +275,13 @@ class RowIndex:
         return bisect_right(self._ticks, tick)
 
     def list_texts(self, tick: int, most: int) -> tuple[list[OutputRow], int]:
-        """Return the last readable rows up to the end of a tick, at most `most`, and how many are before them."""
+        """Return the last readable rows up to the end of a tick, at most `most`, and the number of earlier ones."""
         end = bisect_right(self._texts, self.until(tick) - 1)
         first = max(0, end - most)
         return [self.row(number) for number in self._texts[first:end]], first
 
     def list_face_numbers(self, tick: int) -> list[int]:
-        """Return the indices of the rows that define the brick's state at the end of a tick, in order."""
+        """Return the indices of the rows that determine what the brick shows at the end of a tick, in order."""
         count = self.until(tick)
         return sorted(
             numbers[index - 1]
@@ -290,8 +290,8 @@ class RowIndex:
         )
 
     def row(self, number: int) -> OutputRow:
-        """Return one row by its index, from 0."""
-        # Nothing, if the program has changed its recording meanwhile.
+        """Return the row with an index, from 0."""
+        # An empty row replaces one that cannot be read because the program has changed its recording.
         nothing = OutputRow("", self._ticks[number], 0, 0, Stream.NOTE), 0
         return next(self._output.read_rows(self._starts[number]), nothing)[0]
 
@@ -304,7 +304,7 @@ class RowIndex:
             yield from (row for row, _ in islice(rows, len(self) - first))
 
     def find_line(self, name: str, tick: int) -> int:
-        """Return the line that printed the last sample of a name in a tick, 0 if there is none."""
+        """Return the line of the program that printed the last sample of a name in a tick; 0 if there is none."""
         for row in map(self.row, reversed(range(self.until(tick - 1), self.until(tick)))):
             sample = parse_sample(row.text) if row.stream in SAMPLE_STREAMS else None
             if sample is not None and sample[0] == name:

@@ -39,7 +39,7 @@ OUTPUT_ROW = Struct("<IIqIB3x")
 
 
 class Mark(StrEnum):
-    """Why a tick of a run is marked."""
+    """Why a tick of a run is marked on the timeline."""
 
     ERROR = "error"
     """An error text."""
@@ -54,7 +54,7 @@ class Mark(StrEnum):
 
 
 class Stream(IntEnum):
-    """Where an output row comes from, or which part of the brick's state it holds."""
+    """Where an output row comes from, or which part of the brick's state it stores."""
 
     NOTE = 0
     """A line of the app itself; never recorded."""
@@ -103,30 +103,30 @@ _NS_PER_ROW = 1_000_000_000 // MAX_ROWS_PER_S
 
 
 def pack_header(magic: bytes, record_bytes: int, length: int) -> bytes:
-    """Return the header of a recording: HEADER_BYTES bytes."""
+    """Return the header of a recording, which has HEADER_BYTES bytes."""
     return _HEADER.pack(magic, FORMAT_VERSION, record_bytes, length).ljust(HEADER_BYTES, b"\0")
 
 
 def is_full(error: OSError) -> bool:
-    """Return whether an error means that nothing can be written: full disk, quota, or limit of file sizes."""
+    """Return whether an error means that no more can be written: a full disk, a quota, or a limit of file sizes."""
     return error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def _allow_address_space(more: int) -> None:
-    """Raise this process's limit of address space by `more` bytes: it is for the program's memory, not its record."""
+    """Raise this process's limit of address space by `more` bytes, because it is for the program, not its recording."""
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     if soft != resource.RLIM_INFINITY:
         limit = soft + more if hard == resource.RLIM_INFINITY else min(hard, soft + more)
-        # Where the system refuses, the program has less memory.
+        # If the system refuses, the program has less memory.
         with suppress(OSError, ValueError):
             resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
 
 
 def _reserve(fd: int, start: int, size: int) -> None:
-    """Allocate disk space for a file: writing to a map without space would kill the process."""
+    """Allocate disk space for a part of a file: writing to a memory map without space would kill the process."""
     try:
         os.posix_fallocate(fd, start, size)
-    # macOS has no such call, and some file systems refuse it.
+    # macOS does not have this function, and some file systems refuse it.
     except (AttributeError, OSError) as error:
         if isinstance(error, OSError) and error.errno not in (
             errno.EINVAL,
@@ -141,7 +141,7 @@ def _reserve(fd: int, start: int, size: int) -> None:
 
 
 class MappedWriter:
-    """A recording in a memory-mapped file that grows in ever larger steps while the disk has space.
+    """Base class of writers of recordings: a memory-mapped file that grows in ever larger steps.
 
     Raises:
         OSError: by the constructor, if the disk is full.
@@ -173,7 +173,7 @@ class MappedWriter:
                 _reserve(self._fd, self._capacity, capacity - self._capacity)
                 break
             except OSError as error:
-                # Some file systems keep the part for which there was space.
+                # Some file systems keep the part of the file for which there was space: cut it off.
                 os.ftruncate(self._fd, self._capacity)
                 if not is_full(error) or capacity == need:
                     raise
@@ -185,7 +185,7 @@ class MappedWriter:
 
     def _map_file(self) -> None:
         self._map = mmap.mmap(self._fd, self._capacity)
-        # Set in one aligned store, which readers see atomically: pack_into would clear the bytes first.
+        # The length is set by one aligned store, which is atomic for readers; `pack_into` would clear the bytes first.
         self._length = memoryview(self._map)[_LENGTH_AT : _LENGTH_AT + 8].cast("Q")
 
     def _close_map(self) -> None:
@@ -194,14 +194,14 @@ class MappedWriter:
 
     def _close(self, used: int) -> None:
         self._close_map()
-        # The header says what is used, so the rest may stay.
+        # If this fails, the unused rest may stay, because the header has the length that is in use.
         with suppress(OSError):
             os.ftruncate(self._fd, used)
         os.close(self._fd)
 
 
 class TelemetryWriter(MappedWriter):
-    """Appends tick records. The hot loop packs into the map of `room` directly, then calls `publish`."""
+    """Appends tick records. The simulation writes them into the map of `reserve` directly, then calls `publish`."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__(
@@ -210,7 +210,7 @@ class TelemetryWriter(MappedWriter):
         self.count = 0
 
     def reserve(self, records: int) -> mmap.mmap:
-        """Return the map, with space for `records` more records after `count`."""
+        """Return the memory map of the file, with space for `records` more records after `count`."""
         need = HEADER_BYTES + (self.count + records) * TICK_RECORD.size
         if need > self._capacity:
             self._make_room(need)
@@ -221,19 +221,19 @@ class TelemetryWriter(MappedWriter):
         self.count = self._length[0] = count
 
     def close(self) -> None:
-        """Close the file, truncated to its true size."""
+        """Close the file, and cut off its unused space."""
         self._close(HEADER_BYTES + self.count * TICK_RECORD.size)
 
 
 class OutputWriter(MappedWriter):
-    """Appends printed lines and publishes each at once; when the disk is full, later output is lost."""
+    """Appends rows of output; readers can see each one immediately. When the disk is full, later rows are lost."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__(f"{folder}{os.sep}{OUTPUT_FILE}", OUTPUT_MAGIC, 0, OUTPUT_CHUNK)
         self.length = self._rows = 0
 
     def write(self, text: bytes, tick: int, time_ns: int, line: int, stream: Stream) -> None:
-        """Append one row.
+        """Append one row of output.
 
         Args:
             text: The line without its newline, UTF-8.
@@ -262,13 +262,13 @@ class OutputWriter(MappedWriter):
         self.length = self._length[0] = end - HEADER_BYTES
 
     def close(self) -> None:
-        """Close the file, truncated to its true size."""
+        """Close the file, and cut off its unused space."""
         self._close(HEADER_BYTES + self.length)
 
 
 @dataclass(frozen=True, slots=True)
 class OutputRow:
-    """One line of output: printed, spoken, or an answer to input()."""
+    """One row of output: a printed line, speech, an answer to `input()`, or a part of the brick's state."""
 
     text: str
     tick: int
@@ -279,13 +279,13 @@ class OutputRow:
     def format_line(self) -> str:
         """Return the display text of a row; speech and answers are marked."""
         if self.stream is Stream.SPEECH and not self.text.startswith("["):
-            # Sounds are in brackets already.
+            # A text in brackets describes a sound, which is not spoken.
             return f"says: {self.text}"
         return f"> {self.text}" if self.stream is Stream.INPUT else self.text
 
 
 def read_published_length(data: bytes, magic: bytes, file: str) -> int:
-    """Return the length in a header: number of telemetry records, or bytes of output.
+    """Return the length in a recording's header: the number of telemetry records, or the bytes of output.
 
     Raises:
         LogError: the file is not such a recording, or of another version.
@@ -294,7 +294,7 @@ def read_published_length(data: bytes, magic: bytes, file: str) -> int:
 
 
 def read_header(data: bytes, magic: bytes, file: str) -> tuple[int, int]:
-    """Return the size of a record and the length in a header; errors as of `read_published_length`."""
+    """Return the size of a record and the length in a recording's header; errors as of `read_published_length`."""
     if len(data) < HEADER_BYTES:
         raise LogError("too short to be a recording", file=file)
     file_magic, version, record_bytes, length = _HEADER.unpack_from(data)
@@ -306,13 +306,15 @@ def read_header(data: bytes, magic: bytes, file: str) -> tuple[int, int]:
 
 
 def is_hole(part: bytes | memoryview) -> bool:
-    """Return whether a part of a recording, far larger than a record, was never written: a file may seem to be of any
-    length without taking space on the disk."""
+    """Return whether a part of a recording, far larger than a record, was never written.
+
+    A file with such parts may seem to be of any length without taking space on the disk.
+    """
     return not bytes(part[-HEADER_BYTES:]).strip(b"\0") and not bytes(part).strip(b"\0")
 
 
 def iterate_raw_rows(data: bytes | memoryview, end: int) -> Iterator[tuple[int, bytes]]:
-    """Yield stream and text of each complete row before `end`, faster than `iterate_rows`."""
+    """Yield the stream and the text of each complete row before `end`, faster than `iterate_rows`."""
     start = HEADER_BYTES
     head = OUTPUT_ROW.unpack_from
     after_head = OUTPUT_ROW.size

@@ -48,10 +48,10 @@ loop in which no time passes does, too."""
 
 
 class CommandCheck:
-    """Finds commands that no program can have given.
+    """Finds recorded commands that no program can have given.
 
     Args:
-        sim: The simulation that is to obey them.
+        sim: The simulation to which the commands will be given.
     """
 
     __slots__ = ("_count", "_newest_ns", "_ranges", "_robot", "_sim")
@@ -64,7 +64,7 @@ class CommandCheck:
         """The ranges of the values of calls to parts, as far as they are known of this robot."""
 
     def find_disorder(self, time_ns: int) -> str:
-        """Take the time of the next command; return why the time is not possible, in words as those of `find_fault`."""
+        """Return why the next command cannot have its time, in words as those of `find_fault`; empty if it can."""
         if time_ns < self._newest_ns:
             return "goes back in time"
         self._count = self._count + 1 if time_ns == self._newest_ns else 1
@@ -75,7 +75,7 @@ class CommandCheck:
         """Return why no program can have given a command, in words that follow "a command that"; empty if one can.
 
         Args:
-            command: The command, right before it is obeyed. Values that its call does not take do not matter.
+            command: The command, right before it is given. Values that its call does not use are ignored.
         """
         _, part, call, values = command
         if self._sim.spec.robot is not self._robot:
@@ -95,7 +95,7 @@ class CommandCheck:
 
 
 def _narrow_ranges(call: Call, part: int, sim: Simulation) -> tuple[Range, ...]:
-    """Return the ranges of a call's values; the range of a speed depends on the kind of motor."""
+    """Return the allowed ranges of a command's values; that of a speed depends on the kind of motor."""
     ranges = [*CALLS[call].ranges]
     place = CALLS[call].speed_place
     if place is not None and sim.spec.profile.motor_law is not MotorLaw.NBEV3DEVSIM:
@@ -110,7 +110,7 @@ _LOOK_EVERY = 1000
 
 @dataclass(frozen=True, slots=True)
 class ReplayedTicks:
-    """The records that a run would have made."""
+    """The records that a run must have made, from a simulation of it."""
 
     telemetry: bytearray
     """A record for each tick, without a header; the lines of the program are 0."""
@@ -123,7 +123,7 @@ class ReplayedTicks:
 
 
 class _Motors:
-    """Records of motors in memory, in place of those of a `MotorsWriter`."""
+    """Keeps the records of motors in memory; replaces a `MotorsWriter`."""
 
     def __init__(self, robot: RobotSpec) -> None:
         self.tick_bytes = MOTOR_RECORD.size * len(name_motors(robot))
@@ -195,7 +195,7 @@ def replay(
 
 
 def give_command(sim: Simulation, command: SimulationCommand) -> None:
-    """Let a simulation obey a recorded command."""
+    """Give a recorded command to a simulation; ignore errors, because the program got them."""
     time_ns, part, call, values = command
     try:
         obey(sim, time_ns, part, call, *values[: len(CALLS[call].ranges)])
@@ -204,7 +204,7 @@ def give_command(sim: Simulation, command: SimulationCommand) -> None:
 
 
 def _build_advance(sim: Simulation, actions: Iterable[UserAction]) -> Callable[[int], None]:
-    """Return a function that runs all ticks up to a tick, and the user's actions right before the ticks of these."""
+    """Return a function that runs all ticks up to a given tick, with the user's actions right before their ticks."""
     script = deque(action for action in actions if not isinstance(action.command, Stop))
 
     def advance(tick: int) -> None:
@@ -222,7 +222,7 @@ def replay_run(
 ) -> tuple[StoredRun, str]:
     """Simulate a run that is over again, and replace its recording by the result where they differ.
 
-    The lines of the program stay as they were recorded, and so does its output.
+    The recorded lines of the program and its output stay as they are.
 
     Args:
         run: The run.
@@ -234,8 +234,8 @@ def replay_run(
         if it did not.
 
     Raises:
-        LogError: the commands are damaged, take too long, no program can have given them, or the disk refuses the
-            result.
+        LogError: the commands are damaged, take too long, no program can have given them, or the result cannot be
+            written.
     """
     import numpy as np
 
@@ -281,7 +281,7 @@ def _replay_commands(
 
 
 def _find_parting(records: Array, recorded: Array) -> int:
-    """Return the first tick at which records differ; their number if none do."""
+    """Return the first tick at which two recordings differ; the number of records if they are equal."""
     import numpy as np
 
     if records.tobytes() == recorded.tobytes():
@@ -313,7 +313,7 @@ def _find_motor_parting(run: StoredRun, ticks: ReplayedTicks) -> int:
 
 
 def _replace_files(run: StoredRun, ticks: ReplayedTicks, actions: Sequence[UserAction]) -> None:
-    """Write the files of ticks, motors and user actions anew."""
+    """Replace the run's files of ticks, motors and user actions."""
     count = len(ticks.telemetry) // TICK_RECORD.size
     begin = pack_header(TELEMETRY_MAGIC, TICK_RECORD.size, count)
     _replace_file(run.folder / TELEMETRY_FILE, begin, ticks.telemetry)

@@ -27,7 +27,7 @@ HISTORY = 400
 
 @dataclass(frozen=True, slots=True, order=True)
 class Position:
-    """An instant of a run, with the position among the lines of its tick."""
+    """An instant of a run: a tick, and the position among the lines of that tick."""
 
     tick: int
     ordinal: int = BEFORE_NEXT_TICK
@@ -35,7 +35,7 @@ class Position:
 
     @property
     def _sort_key(self) -> tuple[int, float]:
-        """The key to sort by: `BEFORE_NEXT_TICK` comes after every line of the tick."""
+        """A key to sort positions by; `BEFORE_NEXT_TICK` comes after every line of the tick."""
         return self.tick, float("inf") if self.ordinal == BEFORE_NEXT_TICK else self.ordinal
 
     def precedes(self, other: Position) -> bool:
@@ -49,7 +49,7 @@ Passed = Callable[[], None]
 
 
 class ReplayDebugger:
-    """A re-run that is paused at the requested instant; it can step forward, and is restarted to go back.
+    """Repeats a run and pauses at a requested instant; to go back, it starts the run again.
 
     Args:
         arrived: Called with the position of the pause and the program's state there.
@@ -84,7 +84,7 @@ class ReplayDebugger:
     # Requests
 
     def go(self, recording: Recording, at: Position, look: protocol.Inspect) -> None:
-        """Pause at an instant of a recording, and request the program's state with `look`."""
+        """Pause the re-run at an instant of a recording, and request the program's state with `look`."""
         self._line = 0
         self._request = look
         self._back = 0
@@ -95,7 +95,7 @@ class ReplayDebugger:
     def go_to_line(
         self, recording: Recording, tick: int, line: int, look: protocol.Inspect
     ) -> None:
-        """Pause where a line began for the last time in a tick; if it did not begin in it, at the end of the tick."""
+        """Pause where a line began for the last time in a tick; if it did not, pause at the end of the tick."""
         self._request = look
         self._back = 0
         self._next_command = None
@@ -104,7 +104,7 @@ class ReplayDebugger:
         self._go(recording, Position(tick), tick)
 
     def look(self, look: protocol.Inspect) -> None:
-        """Inspect the paused program again, with another request."""
+        """Inspect the paused program again with another request."""
         self._request = look
         if self.run is not None and self._paused is not None:
             self.busy = True
@@ -113,7 +113,7 @@ class ReplayDebugger:
     def go_on(
         self, recording: Recording, at: Position, command: protocol.Message, look: protocol.Inspect
     ) -> None:
-        """Pause at an instant, resume with a command, and inspect where the program pauses next."""
+        """Pause at an instant, resume with a command, and request the program's state where it pauses next."""
         self._line = 0
         self._request = look
         self._back = 0
@@ -130,7 +130,7 @@ class ReplayDebugger:
     def lines_back(
         self, recording: Recording, at: Position, count: int, look: protocol.Inspect
     ) -> None:
-        """Pause `count` lines before an instant."""
+        """Pause `count` lines of the program before an instant."""
         self._line = 0
         self._request = look
         self._back = count
@@ -151,7 +151,7 @@ class ReplayDebugger:
             here = Position(self._paused.tick, self._paused.ordinal)
             assert self.run is not None
             if here == at:
-                # `RunToInstant` would run on: the re-run is already paused there.
+                # The re-run is already paused at this instant, and `RunToInstant` would run on.
                 self.run.send(self._request)
                 return
             if here.precedes(at):
@@ -185,7 +185,7 @@ class ReplayDebugger:
             self._failed(str(error))
 
     def poll(self) -> None:
-        """Process events; never blocks."""
+        """Process the events of the re-run that have arrived, without blocking."""
         run = self.run
         if run is None:
             return
@@ -218,7 +218,7 @@ class ReplayDebugger:
         self.run.send(protocol.RequestHistory(HISTORY) if is_searched else self._request)
 
     def _choose_line(self, history: LineHistory) -> None:
-        """Go to the wanted line of the history; if it is farther back, search a larger window."""
+        """Go to the requested line of the history; if it is not in it, search a longer history."""
         assert self._of is not None and self._aim is not None
         aim = self._aim
         if self._line:
@@ -248,11 +248,11 @@ class ReplayDebugger:
             self.run.send(self._request)
             return
         self._back = 0
-        # Traced from the same tick on, the same lines have the same ordinals.
+        # If lines are traced from the same tick on as before, each has the same ordinal again.
         self._go(self._of, position, position.tick)
 
     def close(self) -> None:
-        """Close the process and delete its files."""
+        """End the process of the re-run, and delete its files."""
         if self.run is not None:
             self.run.kill()
             self.run.close()

@@ -59,7 +59,7 @@ _TOLD = frozenset({End.FINISHED, End.RAISED, End.TIME_LIMIT, End.DEADLOCK})
 
 @dataclass(frozen=True, slots=True)
 class StoredRun:
-    """A run in the store; its views also follow a run that is still running."""
+    """A run in a folder, whose views also follow a run that is still running."""
 
     folder: Path
     id: str
@@ -94,21 +94,21 @@ class StoredRun:
 
     @property
     def state(self) -> RunState:
-        """How the run ended; whether it is running or was interrupted if it has no end."""
+        """How the run ended; of a run without an end, whether it is running or was interrupted."""
         if self.end is not None:
             return self.end.end
         return find_state_without_end(self.folder)
 
     @property
     def time_s(self) -> float:
-        """Simulated seconds up to the run's end or, without an end, its newest tick."""
+        """Simulated seconds up to the run's end; without an end, up to its newest tick."""
         if self.end is not None:
             return self.end.time_ns / NS_PER_S
         last = self.telemetry.last()
         return compute_due_ns(last.tick, self.spec.profile.tick_hz) / NS_PER_S if last else 0.0
 
     def read_commands(self) -> tuple[SimulationCommand, ...]:
-        """Return the calls of the program to motors, gyro and pen.
+        """Return the commands that the program gave to motors, gyro and pen.
 
         Raises:
             LogError: they are not recorded, or damaged.
@@ -118,11 +118,11 @@ class StoredRun:
         return tuple(read_commands(self.folder).unpack())
 
     def find_noise(self, record: TickRecord) -> NoiseSpec:
-        """Return the noise at the tick of a telemetry record."""
+        """Return the noise settings at the tick of a telemetry record."""
         return find_noise(self.spec, self.actions, record)
 
     def open_mat(self) -> Field:
-        """Return the mat of a run; prepares it again if it is no longer cached.
+        """Return the mat of a run, which is prepared again if it is no longer cached.
 
         Raises:
             LogError: the mat no longer exists, or its image has changed.
@@ -134,7 +134,7 @@ class StoredRun:
             raise _build_mat_error(self, error) from error
 
     def find_mat_files(self) -> FieldFiles:
-        """Return the files of the mat that `open_mat` opens; prepares them again if necessary.
+        """Return the files of the mat that `open_mat` opens; if necessary, they are prepared again.
 
         Raises:
             LogError: as `open_mat`.
@@ -145,7 +145,7 @@ class StoredRun:
             if made_on is not None and made_on.is_for(diameters) and made_on.are_sound:
                 return made_on
             files = field_files(self.spec)
-            # The file names are derived from the contents of the image.
+            # The names of the mat's files depend on the contents of its image: another name means another image.
             if made_on is not None and files.pixels.name != made_on.pixels.name:
                 name = self.spec.world.background
                 raise LogError(
@@ -153,7 +153,7 @@ class StoredRun:
                 )
         except ConfigError as error:
             raise _build_mat_error(self, error) from error
-        # The system refuses some names that come from damaged files.
+        # In a damaged `run.json` there may be file names that the system refuses.
         except (KeyError, TypeError, ValueError, AttributeError, OverflowError, OSError) as error:
             raise LogError(
                 f"the mat of the run is not named: {error}", file=str(self.folder)
@@ -162,7 +162,7 @@ class StoredRun:
 
 
 def format_end(time_s: float) -> str:
-    """Return when a run ended, rounded down as the clock, which has reached no later tick."""
+    """Return the time in s at which a run ended as text, rounded down, because no later tick was reached."""
     return f"{int(time_s * 100 + 1e-6) / 100:.2f}"
 
 
@@ -172,7 +172,7 @@ def find_state_without_end(folder: Path) -> Unended:
 
 
 def restore_program(program: Program, folder: Path) -> Program:
-    """Return a run's program so that it can run again, with the copies of its own modules from the run folder.
+    """Return a run's program so that it can run again, with the copies of its own modules that the run folder has.
 
     Args:
         program: The program.
@@ -182,7 +182,10 @@ def restore_program(program: Program, folder: Path) -> Program:
 
 
 def find_noise(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -> NoiseSpec:
-    """Return the noise at the tick of a record: that of the spec, changed by the user's actions, which are in order."""
+    """Return the noise settings at the tick of a record: those of the spec, as changed by the user's actions.
+
+    `actions` are in the order of their ticks.
+    """
     # The record counts the actions modulo 65536; their ticks resolve the ambiguity.
     due = bisect_right(actions, record.tick, key=lambda action: action.tick)
     offset = (record.actions - due + _ACTION_COUNTS // 2) % _ACTION_COUNTS - _ACTION_COUNTS // 2
@@ -202,7 +205,7 @@ def build_run_data(
     options: Mapping[str, Any] | None,
     live: bool,
 ) -> dict[str, Any]:
-    """Return the contents of the `run.json` of a run that is about to start."""
+    """Return the contents of the `run.json` of a run that is about to start, as data for JSON."""
     return {
         "format": RUN_FORMAT,
         "id": run_id,
@@ -220,19 +223,19 @@ def build_run_data(
 
 
 def run_document(data: Mapping[str, Any]) -> bytes:
-    """Return the contents of a `run.json`."""
+    """Return the contents of a `run.json` as bytes."""
     return json.dumps(data, indent=1, ensure_ascii=True).encode() + b"\n"
 
 
 def write_run_file(folder: Path, data: Mapping[str, Any]) -> None:
-    """Write or replace `run.json`.
+    """Write `run.json` to a run folder, or replace it.
 
     Raises:
         LogError: it cannot be written.
     """
     path = folder / RUN_FILE
     if path.is_dir() and not path.is_symlink():
-        # Only the program can have made a folder of this name.
+        # A folder with the name of this file can only be made by the program: remove it.
         remove_tree(path)
     try:
         with replacing(path, owner_only=True, follow_links=False) as handle:
@@ -242,7 +245,7 @@ def write_run_file(folder: Path, data: Mapping[str, Any]) -> None:
 
 
 def read_run_file(folder: Path) -> dict[str, Any]:
-    """Return the contents of `run.json`.
+    """Return the contents of the `run.json` of a run folder.
 
     Raises:
         LogError: it is missing, damaged or of another version.
@@ -273,7 +276,7 @@ def _check_type(value: Any, kind: type[_Kind], name: str) -> _Kind:
 
 
 def _restore_spec(plain: Mapping[str, Any]) -> RunSpec:
-    """Return the spec in a run file.
+    """Return the spec in the contents of a `run.json`.
 
     Raises:
         ValueError: one of its numbers is out of range.
@@ -281,7 +284,7 @@ def _restore_spec(plain: Mapping[str, Any]) -> RunSpec:
     spec = restore(plain)
     if not 1 <= spec.profile.tick_hz <= NS_PER_S:
         raise ValueError(f"the tick rate cannot be {spec.profile.tick_hz}")
-    # A seed may be any whole number.
+    # The seed is not checked, because it may be any whole number.
     parts = [plain[name] for name in ("robot", "world", "profile")]
     while parts:
         part = parts.pop()
@@ -298,7 +301,7 @@ def add_plugged(spec: RunSpec, parts: Sequence[PluggedPart]) -> RunSpec:
 
 
 def _parse_program(plain: Mapping[str, Any]) -> Program:
-    """Return the program in a run file."""
+    """Return the program in the contents of a `run.json`."""
     texts = ("name", "path", "text", "prelude", "working_directory", "module_folder")
     fields: dict[str, Any] = {key: _check_type(plain[key], str, key) for key in texts}
     lists = ["arguments", "python_path"]
@@ -334,10 +337,10 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
         known: The spec in it, if it is known.
 
     Raises:
-        LogError: the folder holds no run, or a damaged one.
+        LogError: there is no run in the folder, or it is damaged.
     """
     data = read_run_file(folder) if document is None else json.loads(document)
-    # The intact parts of a damaged run are readable: its program, its world, and the other recording.
+    # Of a damaged run, the intact parts can be read: its program, its world, and the other recording.
     is_falsified = isinstance(data.get("end"), dict) and data["end"].get("end") == End.FALSIFIED
     telemetry, output = open_views(folder, is_falsified)
     try:
@@ -350,7 +353,7 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
         plugged = tuple(map(PluggedPart.from_plain, _check_type(data["plugged"], list, "plugged")))
         end = None if data["end"] is None else _parse_end(data["end"])
         lost = [view.note or _describe_lost(view, end) for view in (telemetry, output)]
-        # What has ended stays as it is.
+        # The recording of a run that has ended does not change any more.
         telemetry.holds = output.holds = end is not None
         return StoredRun(
             folder=folder,
@@ -379,7 +382,7 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
 
 
 def _describe_lost(view: TelemetryView | OutputView, end: Ended | None) -> str:
-    """Return what an undamaged recording lacks although the run's process reported its end; empty if nothing."""
+    """Return a text that says what an undamaged recording lacks although the run has ended; empty if nothing."""
     if end is None or end.end not in _TOLD:
         return ""
     if view.is_missing:
@@ -390,7 +393,7 @@ def _describe_lost(view: TelemetryView | OutputView, end: Ended | None) -> str:
 
 
 def field_files(spec: RunSpec) -> FieldFiles:
-    """Return the files of a run's mat, prepared for its robot's sensors; prepare them unless they are cached.
+    """Return the files of a run's mat, prepared for its robot's sensors; files that are not cached are prepared now.
 
     Raises:
         BackgroundError: the mat does not exist, or its image cannot be read.
@@ -400,7 +403,7 @@ def field_files(spec: RunSpec) -> FieldFiles:
 
 
 def find_diameters(spec: RunSpec) -> frozenset[int]:
-    """Return the diameters of a run's colour sensors, also of one that may be plugged in."""
+    """Return the diameters of the discs that a run's colour sensors see, including sensors that may be plugged in."""
     sensors = spec.robot.color_sensors
     return frozenset({PLUGGED_DIAMETER_MM, *(sensor.diameter_mm for sensor in sensors)})
 

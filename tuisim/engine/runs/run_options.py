@@ -18,7 +18,7 @@ DEFAULT_TIME_LIMIT_S = 600.0
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """How a run is executed; apart from limits and answers, nothing here changes what it records."""
+    """How a run is executed. Apart from limits and answers, nothing here changes what the run records."""
 
     live: bool = False
     """Whether the run is paced by the wall clock, can be paused and accepts user actions; otherwise it is headless."""
@@ -48,16 +48,16 @@ class RunOptions:
 
     @property
     def can_pause(self) -> bool:
-        """Whether the run may pause without a later command from the host."""
+        """Whether the run may pause before the host sends a command."""
         return bool(self.live or self.start_paused or self.breaks or self.hold_at)
 
     def to_plain(self) -> dict[str, Any]:
-        """Return the options in the form that is stored with a run."""
+        """Return the options as a dictionary for JSON, as they are stored with a run."""
         return {**asdict(self), "actions": [action.to_plain() for action in self.actions]}
 
     @classmethod
     def from_plain(cls, plain: Mapping[str, Any]) -> RunOptions:
-        """Rebuild options from the output of `to_plain`.
+        """Return the options that `to_plain` has turned into a dictionary.
 
         Raises:
             KeyError, TypeError, ValueError, ConfigError: the data is not the options of a run.

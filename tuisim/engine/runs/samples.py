@@ -39,7 +39,7 @@ _MAX_ROWS_READ = 10_000
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """One logged value and its origin."""
+    """One value that a program has logged, with its name, its time and its line."""
 
     name: str
     value: float
@@ -53,7 +53,7 @@ class Sample:
 
 
 def parse_sample(text: str) -> tuple[str, float, float | None] | None:
-    """Return name, value and printed time (None without one) of a line; None if it is not a sample."""
+    """Return the name, value and printed time (None without one) of a sample; None if a line is not a sample."""
     if ":" not in text:
         return None
     match = _SAMPLE.fullmatch(text)
@@ -73,7 +73,7 @@ def parse_sample(text: str) -> tuple[str, float, float | None] | None:
 
 
 def describe_near_sample(rows: Iterable[OutputRow]) -> str:
-    """Return which of the first rows is nearly a sample, and how it becomes one, in words; empty if none is."""
+    """Return a text that says which of the first rows is nearly a sample and how to make it one; empty if none is."""
     for row in islice(rows, _MAX_ROWS_READ):
         if row.stream not in SAMPLE_STREAMS or not (match := _NEAR_SAMPLE.fullmatch(row.text)):
             continue
@@ -88,14 +88,14 @@ def describe_near_sample(rows: Iterable[OutputRow]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """Counts of a program's output."""
+    """The numbers of printed lines and samples in a program's output."""
 
     lines: int
     samples: int
 
 
 def counts_of(output: OutputView) -> Counts:
-    """Count printed lines and samples without creating row objects: there may be a million."""
+    """Return the numbers of printed lines and samples. No row becomes an object, as there may be a million."""
     lines = samples = 0
     for stream, text in output.read_raw_rows():
         if stream in SAMPLE_STREAMS:
@@ -123,7 +123,7 @@ def list_samples(rows: Iterable[OutputRow]) -> list[Sample]:
 
 
 def build_value_reader(condition: ValueCondition) -> Callable[[str], float | None]:
-    """Return a function that takes a printed line, and returns the value that a condition on such lines tests.
+    """Return a function that returns the value in a printed line that a condition tests.
 
     The value is the number of a sample with the condition's name, or 1 for a line that matches its pattern; None for
     any other line.
@@ -143,7 +143,7 @@ def select_rows(condition: ValueCondition, rows: Iterable[OutputRow]) -> Iterato
     """Yield the printed rows for which a condition is true.
 
     Raises:
-        ValueError: the condition compares a sample with something that is no number.
+        ValueError: the condition compares a sample with something that is not a number.
     """
     read = build_value_reader(condition)
     test = condition.test()

@@ -43,6 +43,7 @@ def measure_array(
     """Return the measured columns of a sensor at all ticks, in their order; None if it must be measured tick by tick.
 
     Args:
+        sensor: The sensor.
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
         run: The specification of the run.
         field: The mat.
@@ -65,7 +66,7 @@ def measure_array(
 def measure_quiet_color(
     records: Array, sensor: ColorSensorSpec, run: RunSpec, field: Field
 ) -> dict[str, Array]:
-    """Return red, green and blue of a colour sensor at every tick without light noise, by column.
+    """Return red, green and blue of a colour sensor at every tick without light noise, by the name of the column.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
@@ -170,7 +171,7 @@ def _cut_off(
     step: tuple[Array, Array],
     echoes: Array,
 ) -> Array:
-    """Return the lengths of rays that end at the first of some edges, as `ultrasonic.find_first_hit_mm`.
+    """Return the lengths of rays after they are cut off at the first of some edges; see `ultrasonic.find_first_hit_mm`.
 
     Args:
         nearest_mm: The lengths without the edges, shape (n,).
@@ -203,7 +204,7 @@ def _is_echoing(edge_deg: float, facing_deg: Array) -> Array:
 
 
 def _round_numbers(values: Array) -> Array:
-    """Return whole numbers, as Python rounds; -0.0 becomes 0.0."""
+    """Return the values rounded to whole numbers as Python rounds; -0.0 becomes 0.0."""
     rounded: Array = np.rint(values) + 0.0
     return rounded
 

@@ -82,7 +82,9 @@ MAX_BYTES = 64 << 20
 
 
 def hold(folder: Path) -> int:
-    """Lock a run folder and return the file descriptor of the lock; closing it and all its copies releases the lock.
+    """Lock a run folder, and return the descriptor of the lock.
+
+    The lock is released when the descriptor and all its copies are closed.
 
     Raises:
         OSError: the folder cannot be written to, or not be locked.
@@ -102,7 +104,10 @@ def hold(folder: Path) -> int:
 
 
 def is_held(folder: Path) -> bool | None:
-    """Return whether a living process holds the lock; None if no process ever did, or this machine cannot tell."""
+    """Return whether a living process holds the lock of a run folder.
+
+    None if no process ever did, or this machine cannot find out.
+    """
     try:
         # O_NONBLOCK: a pipe that a program has put in its place would block.
         descriptor = os.open(folder / LOCK_FILE, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -120,7 +125,7 @@ def is_held(folder: Path) -> bool | None:
 
 
 def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
-    """Return the user's actions, and a note if the last one is incomplete, otherwise an empty string.
+    """Return the user's actions in a run folder, and a note if the last one is incomplete, otherwise an empty string.
 
     Raises:
         LogError: a line other than the last is invalid.
@@ -157,7 +162,7 @@ def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
 
 @contextmanager
 def _convert_errors(path: Path) -> Iterator[None]:
-    """Turn any error while a file is read and parsed into a LogError."""
+    """Return a context in which any error of reading or parsing a file is raised as a LogError."""
     try:
         yield
     except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
@@ -165,7 +170,7 @@ def _convert_errors(path: Path) -> Iterator[None]:
 
 
 def _read_rows(path: Path) -> Iterator[Any]:
-    """Return the rows of a file of JSON lines, none if it is missing; an incomplete last one is ignored."""
+    """Yield the rows of a file of JSON lines; none if the file is missing, and no incomplete last row."""
     try:
         *lines, _ = read_regular(path, MAX_BYTES).split(b"\n")
     except FileNotFoundError:
@@ -174,7 +179,7 @@ def _read_rows(path: Path) -> Iterator[Any]:
 
 
 def _append(path: Path, row: Mapping[str, object]) -> None:
-    """Add a row to a file of JSON lines."""
+    """Append a row to a file of JSON lines."""
     with open(path, "ab", opener=private) as file:
         file.write(json.dumps(row).encode() + b"\n")
 
@@ -185,7 +190,7 @@ def write_stop_tick(folder: Path, tick: int) -> None:
     Raises:
         OSError: it cannot be written.
     """
-    # The process may be killed while it writes: the file is whole, or not there.
+    # The file is renamed after writing: if the process is killed before, there is no file, never a part of it.
     part = folder / f"{STOP_FILE}.part"
     with open(part, "w", encoding="utf-8", opener=private) as file:
         file.write(json.dumps({"tick": tick}))
@@ -209,7 +214,7 @@ def read_stop_tick(folder: Path) -> int | None:
 
 @dataclass(frozen=True, slots=True)
 class OwnModule:
-    """One import of the program: the module that was found, or none of that name."""
+    """One import by the program: the module that was found, or the name of a missing one."""
 
     name: str
     """Full name with packages, such as `tools.drive`."""
@@ -249,7 +254,7 @@ def read_modules(run_folder: Path) -> list[OwnModule]:
     path = run_folder / MODULES_FILE
     with _convert_errors(path):
         try:
-            # Most runs have none, and each looks for it.
+            # Most runs have no such file, and to find that out must be quick, as each run does it.
             _lstat(f"{run_folder}{os.sep}{MODULES_FILE}")
         except FileNotFoundError:
             return []
@@ -292,7 +297,7 @@ class FileRead:
     """Checksum of the contents; -1 if there is none."""
 
     def is_same(self, other: FileRead) -> bool:
-        """Return whether the contents are equal, as far as can be told."""
+        """Return whether two states of a file have equal contents, as far as this is known."""
         if not (self.there and other.there):
             return self.there == other.there
         if self.crc32 < 0 or other.crc32 < 0:
@@ -302,7 +307,7 @@ class FileRead:
 
 @dataclass(frozen=True, slots=True)
 class FilesRead:
-    """The files that a program has read."""
+    """The files that a program has read during a run."""
 
     files: tuple[FileRead, ...] = ()
     left_out: int = 0
@@ -321,7 +326,7 @@ MAX_SUMMED_BYTES = 1 << 22
 
 
 def read_state(path: str) -> FileRead | None:
-    """Return the present state of a file, also of a missing one; None for folders, devices and the like."""
+    """Return the present state of a file, which may be missing; None for a folder, a device and the like."""
     try:
         status = _stat(path)
     except (OSError, ValueError) as error:

@@ -39,7 +39,7 @@ _POSE = ["x_mm", "y_mm", "heading_deg"]
 
 @dataclass(frozen=True, slots=True)
 class Standstill:
-    """A summary of all times that something solid stopped the robot in a run."""
+    """A summary of all times that walls or obstacles stopped the robot in a run."""
 
     at: str
     """What stopped it: `the wall`, `an obstacle`, or both."""
@@ -56,7 +56,7 @@ class Standstill:
 
     @property
     def words(self) -> str:
-        """A sentence for people about it, without its subject, the robot."""
+        """A sentence about the standstill for users, without its subject, the robot."""
         if self.on_floor and WALL in self.at:
             return f"stood at {self.at} for {self.pushed_s:.1f} s; --walls off takes the walls away"
         pushed = f"its wheels pushed for {self.pushed_s:.1f} s"
@@ -68,7 +68,7 @@ class Standstill:
 
 @dataclass(frozen=True, slots=True)
 class _Stretch:
-    """A stretch of ticks in which the wheels pushed against something."""
+    """A stretch of ticks in which the wheels pushed the robot against something."""
 
     start: int
     end: int
@@ -77,7 +77,7 @@ class _Stretch:
 
 
 def find_standstill(telemetry: TelemetryView, spec: RunSpec) -> Standstill | None:
-    """Return where and when something solid stopped the robot of a run; None if that never happened.
+    """Return where and when walls or obstacles stopped the robot of a run; None if that never happened.
 
     Raises:
         LogError: the recording is damaged.
@@ -102,7 +102,7 @@ def find_standstill(telemetry: TelemetryView, spec: RunSpec) -> Standstill | Non
     return Standstill(
         " and ".join(kinds),
         1 + sum(tick is not None for tick in moved),
-        # It stood at the end of the tick before already.
+        # The robot already stood at the end of the tick before the stretch.
         time_s(stretches[0].start - 1),
         None if until is None else time_s(until - 1),
         time_s(sum(stretch.end - stretch.start for stretch in stretches)),
@@ -111,7 +111,7 @@ def find_standstill(telemetry: TelemetryView, spec: RunSpec) -> Standstill | Non
 
 
 def touches_solid(pose: PoseTuple, spec: RunSpec) -> bool:
-    """Return whether the robot of a run touches something that can stop it, at a pose."""
+    """Return whether the robot of a run touches a wall or an obstacle at a pose."""
     from tuisim.engine.core.collision import Solids
 
     gaps = Solids(spec.world, spec.robot).measure_gaps_mm(pose) if spec.world.solid else ()
@@ -119,7 +119,7 @@ def touches_solid(pose: PoseTuple, spec: RunSpec) -> bool:
 
 
 def _find_stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
-    """Yield each stretch that is long enough for the motors to stall.
+    """Yield each stretch of pushing that is long enough for the motors to stall.
 
     Noise lets the wheels turn a little between ticks in which they are stopped: those are one stretch.
     """
@@ -132,7 +132,7 @@ def _find_stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
     from tuisim.engine.runs.arrays import find_spans
 
     runs = (records["flags"] & (FLAG_LEFT_RUNNING | FLAG_RIGHT_RUNNING)) != 0
-    # The first record is the state before any motion.
+    # The first record is that of the start, before any motion: it is not a push.
     runs[:1] = False
     pushes = runs.copy()
     for name in ("left_speed_dps", "right_speed_dps"):
@@ -151,7 +151,7 @@ def _find_stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
 
 
 def describe_touched(solids: Solids, records: NDArray[Any], tick: int, spec: RunSpec) -> str:
-    """Return what the robot touches at a tick, in words; empty if it is nothing."""
+    """Return what the robot touches at a tick, such as `the wall`; empty if it touches nothing."""
     gaps = solids.measure_gaps_mm(_build_pose(records, tick))
     number = next((number for number, gap in enumerate(gaps) if gap < _CONTACT_MM), None)
     if number is None:

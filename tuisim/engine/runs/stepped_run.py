@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class SteppedRun:
-    """A run without a program, at its start. Judges see it as if it ended now; it is also its own recording.
+    """A run that a script advances step by step, without a program. At any time it can be judged as if it ended then.
 
     Args:
         spec: The run.
@@ -69,18 +69,18 @@ class SteppedRun:
 
     @property
     def pose(self) -> Pose:
-        """Where the robot is."""
+        """The robot's present pose."""
         return self._sim.pose
 
     @property
     def max_speed_dps(self) -> float:
-        """The highest speed of a wheel's motor."""
+        """The highest speed of the wheels' motors, in degrees per second."""
         return find_top_speed_dps(self.spec.robot.left_motor, self.spec.profile)
 
     def read(
         self, readers: Mapping[str, Callable[[Instant, RunSpec, Field], float]]
     ) -> dict[str, float]:
-        """Return what readers read now, by their names; sensors see what the pen has drawn so far."""
+        """Return the present value of each reader by its name; sensors see what the pen has drawn so far."""
         mat = self._mat
         if self._marks is not None:
             self._marks.add_records(self._sim.read_records(self._marks.records))
@@ -89,13 +89,13 @@ class SteppedRun:
         return {name: read(instant, self.spec, mat) for name, read in readers.items()}
 
     def turn_wheels(self, left_dps: float, right_dps: float) -> None:
-        """Let the wheels' motors run on at these speeds."""
+        """Set the speeds at which the wheels' motors run from now on, in degrees per second."""
         time_ns = self._sim.compute_due_ns(self._sim.tick)
         self._run(time_ns, 0, left_dps)
         self._run(time_ns, 1, right_dps)
 
     def advance(self, ticks: int, commands: Iterable[SimulationCommand]) -> None:
-        """Move on by ticks; each command takes effect at its own time."""
+        """Advance the run by ticks; each command takes effect at its own time."""
         sim = self._sim
         end = sim.tick + ticks
         for command in commands:
@@ -105,11 +105,11 @@ class SteppedRun:
 
     @property
     def ended(self) -> Ended:
-        """The end of the run: now."""
+        """How the run would end at the present time."""
         return Ended(End.FINISHED, self._sim.tick, self._sim.compute_due_ns(self._sim.tick))
 
     def array(self) -> np.ndarray[Any, Any]:
-        """Return the records of the ticks."""
+        """Return the records of all ticks as a structured array of `TICK_FIELDS`."""
         import numpy as np
 
         end = TICK_RECORD.size * (1 + self._recording.count)
@@ -122,7 +122,10 @@ class SteppedRun:
 
 
 def _find_run(sim: Simulation) -> Callable[[int, int, float], None]:
-    """Return a function that lets a wheel's motor run, at the time in ns, by its number, at a speed in °/s."""
+    """Return a function that sets the speed of a wheel's motor.
+
+    The function takes the time in ns, the number of the motor and the speed in °/s.
+    """
     robot = sim.spec.robot
     law = sim.spec.profile.motor_law
     signs = -1.0 if robot.left_reversed else 1.0, -1.0 if robot.right_reversed else 1.0

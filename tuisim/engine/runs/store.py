@@ -53,7 +53,7 @@ _COUNT_A_LISTING_BYTES = 8 << 20
 
 @dataclass(frozen=True, slots=True)
 class NewRun:
-    """A run whose folder has just been created."""
+    """A run whose folder has just been created, with its lock."""
 
     id: str
     number: int
@@ -65,7 +65,7 @@ class NewRun:
 
 
 class RunStore:
-    """All runs in one home folder; any number of processes may use it at once.
+    """All runs in one home folder, which several processes may use at the same time.
 
     Args:
         home: The folder, by default `home_folder()`. It is created with the first run.
@@ -112,7 +112,7 @@ class RunStore:
             number = self._catalogue.add(info)
             data = build_run_data(run_id, number, created, program, spec, field, options, live)
             write_run_file(folder, data)
-        # Also when interrupted: nobody else closes the lock.
+        # Any exception, such as KeyboardInterrupt, ends up here, because nobody else closes the lock.
         except BaseException:
             os.close(lock_fd)
             remove_tree(folder)
@@ -120,10 +120,10 @@ class RunStore:
         return NewRun(run_id, number, folder, lock_fd, data)
 
     def add_folder(self, folder: Path) -> NewRun:
-        """Move the folder of a finished run from elsewhere into the store, and list it; return where it is now.
+        """Move the folder of a finished run into the store, list the run, and return it with its new folder.
 
         Raises:
-            LogError: it holds no run, or the home folder cannot be written.
+            LogError: there is no run in the folder, or the home folder cannot be written.
         """
         data = read_run_file(folder)
         run_id, place, lock_fd = self._create_folder(datetime.now(UTC))
@@ -137,7 +137,7 @@ class RunStore:
             raise LogError(
                 f"cannot be stored: {error.strerror or error}", HOME_HINT, file=str(place)
             ) from error
-        # Also when interrupted: half of a run must not be listed.
+        # Any exception, such as KeyboardInterrupt, ends up here, because an incomplete run must not be listed.
         except BaseException:
             remove_tree(place)
             raise
@@ -149,7 +149,8 @@ class RunStore:
     def finish(self, run: NewRun, end: Ended) -> None:
         """Record how a run ended.
 
-        Its `run.json` is written as it was at the start, but for its tags: the program could have changed the file.
+        Its `run.json` is written with its contents from the start and its present tags: the program could have changed
+        it.
 
         Raises:
             LogError: the run does not exist, or cannot be written.
@@ -175,7 +176,7 @@ class RunStore:
             )
 
     def note_plugged(self, run: NewRun, parts: Sequence[PluggedPart]) -> None:
-        """Record which parts have been plugged in up to now.
+        """Record which parts have been plugged in so far.
 
         Raises:
             LogError: the run cannot be written.
@@ -185,7 +186,7 @@ class RunStore:
             write_run_file(run.folder, {**run.data, "tags": _read_tags(run.folder)})
 
     def forget(self, run_id: str) -> None:
-        """Delete a run that could not be started."""
+        """Delete the folder and the row of a run that could not be started."""
         remove_tree(self.folder(run_id))
         with suppress(LogError):
             self._catalogue.remove([run_id])
@@ -217,7 +218,7 @@ class RunStore:
         try:
             _delete(folder)
         except FileNotFoundError as error:
-            # Another process has been faster.
+            # Another process has deleted the run in the meantime.
             raise LogError(f"no run {run_id!r}", file=str(self._runs)) from error
         except OSError as error:
             raise LogError(
@@ -230,7 +231,7 @@ class RunStore:
     # Reading
 
     def runs(self) -> list[RunInfo]:
-        """Return all runs, oldest first; `end` is known of each.
+        """Return the catalogue rows of all runs, oldest first, each with its `end`.
 
         Raises:
             LogError: the home folder cannot be used.
@@ -241,20 +242,20 @@ class RunStore:
         for row in self._update_rows():
             known, change, counted = self._complete(row, left)
             if not change and row.end in _MAY_CHANGE and not self.folder(row.id).is_dir():
-                # Removed by another process since it was listed.
+                # Another process has deleted the run since it was listed.
                 continue
             rows.append(known)
             left -= counted
             if change:
                 changes.append((row.id, change))
         if changes:
-            # If it cannot be stored, it is computed again the next time.
+            # If the changes cannot be stored, they are computed again the next time.
             with suppress(LogError):
                 self._catalogue.update_all(changes)
         return rows
 
     def _update_rows(self) -> list[RunInfo]:
-        """Return all runs with the data in the catalogue."""
+        """Return the catalogue rows of all runs, after adding those of new folders and removing old ones."""
         try:
             there = {entry.name for entry in os.scandir(self._runs) if entry.is_dir()}
         except FileNotFoundError:
@@ -277,12 +278,12 @@ class RunStore:
                     self._catalogue.add(info)
                 rows = self._catalogue.rows()
             except LogError:
-                # If nothing can be written, the folders are right nevertheless.
+                # If the catalogue cannot be written, the result is still right, because it follows from the folders.
                 rows = [row for row in rows if row.id not in gone] + new_rows
         return rows
 
     def find(self, text: str) -> RunInfo:
-        """Return the run that matches a full id, a number, the start of an id, or `last`.
+        """Return the catalogue row of the run that a text names: an id or its start, a number, or `last`.
 
         Raises:
             LogError: no run matches, or more than one.
@@ -308,13 +309,15 @@ class RunStore:
         except LogError as error:
             if os.path.lexists(self.folder(info.id) / RUN_FILE):
                 raise
-            # Another process has removed it since it was found.
+            # Another process has deleted the run since it was found.
             raise LogError(f"no run {run!r}", file=str(self.home)) from error
 
     # Internals
 
     def _create_folder(self, now: datetime) -> tuple[str, Path, int]:
-        """Create and lock a folder: a run whose lock nobody holds counts as interrupted, and any process can remove it.
+        """Create the folder of a new run, and lock it.
+
+        Without the lock, other processes would take the run for an interrupted one, and could remove it.
 
         Returns:
             The id of the run, its folder, and the descriptor of the lock.
@@ -347,7 +350,7 @@ class RunStore:
         return filter(None, map(self._read_info, sorted(self._runs.glob("*"))))
 
     def _read_info(self, folder: Path) -> RunInfo | None:
-        """Return the catalogue row of a folder; None if it holds no run (yet)."""
+        """Return the catalogue row of the run in a folder; None if there is no run in it (yet)."""
         # The folder's name is the id: a copied run is another run.
         run_id = folder.name
         if run_id.startswith(".") or not os.path.lexists(folder / RUN_FILE):
@@ -356,16 +359,16 @@ class RunStore:
             return _build_info(run_id, read_run_file(folder))
         except LogError as error:
             if not os.path.lexists(folder / RUN_FILE):
-                # Another process has just removed it.
+                # Another process has just deleted the run.
                 return None
-            # The number of the run tells where it is.
+            # The message does not need the path of the file, because the number of the run says where it is.
             summary = error.message.removeprefix(f"{error.file}: ")
         except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
             summary = f"{RUN_FILE} is damaged: {error!r}"
         return RunInfo(0, run_id, "", "", "", "", 0, Unended.DAMAGED, summary=summary)
 
     def _complete(self, info: RunInfo, most_bytes: int) -> tuple[RunInfo, dict[str, Any], int]:
-        """Return a run with the data that its catalogue row lacks, read from its folder.
+        """Return a run's catalogue row, completed with data that is read from its folder.
 
         Args:
             info: The catalogue row.
@@ -380,7 +383,7 @@ class RunStore:
         folder = self.folder(info.id)
         known = info
         if is_open:
-            # The run file is written first: it may have an end that the catalogue does not.
+            # `run.json` is written before the catalogue, so it may have an end that the catalogue does not have yet.
             stored = self._read_info(folder)
             state = find_state_without_end(folder)
             if stored is not None and stored.end is Unended.DAMAGED:
@@ -402,7 +405,7 @@ class RunStore:
                 known = _add_last_record(known, folder)
         except LogError as error:
             return replace(known, summary=known.summary or str(error)), {}, counted
-        # Where this machine cannot tell whether the lock is held, the run may be running.
+        # If this machine cannot find out whether the lock is held, the run may be running.
         unlocked = is_held(folder) is False
         if known.end in (Unended.RUNNING, Unended.DAMAGED) or (
             known.end is Unended.INTERRUPTED and not unlocked
@@ -415,7 +418,7 @@ class RunStore:
 
 
 def load_run(run: str | Path | int) -> StoredRun:
-    """Return a stored run by its folder (a path), its number, its id or the start of it, or `last`.
+    """Return a stored run by its number, its id or the start of it, the path of its folder, or `last`.
 
     Raises:
         LogError: the run does not exist, or is damaged.
@@ -423,7 +426,7 @@ def load_run(run: str | Path | int) -> StoredRun:
     if not isinstance(run, str | Path):
         hint = "its number, its id, `last`, or the path of its folder"
         try:
-            # Also a number of NumPy, such as a cell of a frame.
+            # `index` also accepts an integer of NumPy, such as a cell of a frame.
             number = index(run)
         except TypeError:
             raise LogError(f"this names no run: {reprlib.repr(run)}", hint) from None
@@ -434,7 +437,7 @@ def load_run(run: str | Path | int) -> StoredRun:
 
 
 def count_bytes(folder: Path) -> int:
-    """Return the total size of a run's files in bytes; files deleted during the call do not count.
+    """Return the total size of a run's files in bytes; files that are deleted during the call are ignored.
 
     Raises:
         LogError: the folder cannot be read.
@@ -451,7 +454,7 @@ def count_bytes(folder: Path) -> int:
 
 
 def _match(text: str, rows: Sequence[RunInfo]) -> RunInfo:
-    """Return the run among `rows` that a text matches; see `RunStore.find`."""
+    """Return the one of `rows` that a text names; see `RunStore.find`."""
     if text == LAST:
         return rows[-1]
     tests = (
@@ -474,7 +477,11 @@ def _match(text: str, rows: Sequence[RunInfo]) -> RunInfo:
 
 
 def _build_info(run_id: str, data: Mapping[str, Any]) -> RunInfo:
-    """Return the catalogue row of a run file; raises KeyError, TypeError or ValueError for invalid contents."""
+    """Return the catalogue row for the contents of a `run.json`.
+
+    Raises:
+        KeyError, TypeError, ValueError: the contents are invalid.
+    """
     spec = data["spec"]
     end = data["end"]
     info = RunInfo(
@@ -499,7 +506,7 @@ def _build_info(run_id: str, data: Mapping[str, Any]) -> RunInfo:
 
 
 def _copy_files(folder: Path, place: Path) -> None:
-    """Copy the files that every run records, but for `run.json` and the lock; no links, no other files of the program.
+    """Copy the files that every run records, except `run.json` and the lock; links and other files are left out.
 
     A link would be followed with the rights of this process, which the program may not have had.
     """
@@ -514,26 +521,26 @@ def _copy_files(folder: Path, place: Path) -> None:
             continue
         with source, open(place / name, "xb", opener=private) as target:
             status = os.fstat(source.fileno())
-            # A file may claim any size; its holes would be filled.
+            # A file may seem to be of any size; a copy would fill its holes.
             if status.st_size <= 512 * status.st_blocks + MAX_BYTES:
                 shutil.copyfileobj(source, target)
 
 
 def _delete(folder: Path) -> None:
-    """Delete a run folder; of a symbolic link only the link."""
-    # Renamed first: a partly deleted run must not look like a run.
+    """Delete a run folder; if it is a symbolic link, delete only the link."""
+    # The folder is renamed first, so that a partly deleted run does not look like a run.
     removed = folder.with_name(f".{folder.name}.{os.urandom(4).hex()}{_REMOVED}")
     os.replace(folder, removed)
     if removed.is_symlink():
         removed.unlink()
         return
-    # Another process may take the folder for left over, and delete the rest.
+    # Another process may find the folder, and delete the rest of it.
     with suppress(FileNotFoundError):
         remove_tree(removed, ignore_errors=False)
 
 
 def _remove_unfinished(folder: Path) -> None:
-    """Remove a folder in which a killed process was about to begin a run, or to delete one."""
+    """Remove the folder of a run that a process was creating or deleting when it was killed."""
     is_removed = folder.name.startswith(".") and folder.name.endswith(_REMOVED)
     is_begun = os.path.lexists(folder / RUN_FILE)
     if not folder.is_symlink() and (is_removed or (not is_begun and is_held(folder) is False)):
@@ -541,7 +548,7 @@ def _remove_unfinished(folder: Path) -> None:
 
 
 def _read_tags(folder: Path) -> list[str]:
-    """Return the tags in the `run.json` of a run that is over, without anything else that its program has put there."""
+    """Return the tags in the `run.json` of a run that is over; everything else in it may come from the program."""
     try:
         tags = read_run_file(folder).get("tags", ())
     except LogError:

@@ -42,7 +42,7 @@ _BATCH_PREFIX = f"{_PREFIX}batch-"
 
 
 def create_batch_folder() -> Path:
-    """Create a folder for the temporary runs of a batch.
+    """Create and return a folder for the temporary runs of a batch.
 
     Raises:
         LogError: it cannot be created.
@@ -51,7 +51,7 @@ def create_batch_folder() -> Path:
 
 
 def create_owned_folder(prefix: str = _PREFIX, parent: Path | None = None) -> Path:
-    """Create a folder that counts as used as long as this process lives; its name begins with the prefix.
+    """Create and return a folder that is marked as in use while this process lives; its name begins with the prefix.
 
     The first call also removes folders that killed processes have left in `parent` and in the usual places.
 
@@ -66,7 +66,7 @@ def create_owned_folder(prefix: str = _PREFIX, parent: Path | None = None) -> Pa
     with _held_lock:
         for old in [old for old in _held if not old.exists()]:
             os.close(_held.pop(old))
-        # Where it cannot be locked, nothing shows that it is used: it is never removed by others either.
+        # A folder that cannot be locked is not marked as in use, but other processes never remove one without a lock.
         with suppress(OSError):
             _held[folder] = hold(folder)
     return folder
@@ -80,7 +80,7 @@ _held_lock = threading.Lock()
 
 @cache
 def _remove_abandoned(parent: Path) -> None:
-    """Remove folders of this user whose process has ended; one without a lock is another program's."""
+    """Remove folders of this user whose process has ended; a folder without a lock belongs to another program."""
     for folder in parent.glob(f"{_PREFIX}*"):
         with suppress(OSError):
             if folder.lstat().st_uid == os.getuid() and is_held(folder) is False:
@@ -89,7 +89,9 @@ def _remove_abandoned(parent: Path) -> None:
 
 @contextmanager
 def create_temporary_home(prefix: str = _PREFIX) -> Iterator[Path]:
-    """Create a home folder for temporary runs, and delete it afterwards; its name begins with the prefix.
+    """Return a context with a new home folder for temporary runs, which is deleted at its end.
+
+    The name of the folder begins with the prefix.
 
     Raises:
         LogError: it cannot be created.
@@ -122,7 +124,7 @@ def _find_parent() -> Path:
 
 
 class TemporaryRun:
-    """Folder of one run that is deleted at the end of a `with` block. It stands in for the store of a `RunHandle`.
+    """The folder of one run, which is deleted at the end of a `with` block. A `RunHandle` uses it in place of a store.
 
     Args:
         parent: Where it is created; see `create_batch_folder`.
@@ -178,18 +180,18 @@ class TemporaryRun:
             ) from error
 
     def finish(self, _run: NewRun, _end: Ended) -> None:
-        """Do nothing: the handle of the run keeps its end."""
+        """Do nothing: only the handle of the run knows its end."""
 
     def note_plugged(self, _run: NewRun, parts: Sequence[PluggedPart]) -> None:
-        """Record which parts have been plugged in up to now."""
+        """Record which parts have been plugged in so far."""
         self._data["plugged"] = [part.to_plain() for part in parts]
         self._document = json.dumps(self._data)
 
     def forget(self, _run_id: str) -> None:
-        """Do nothing: the end of the `with` block deletes the folder."""
+        """Do nothing: the folder is deleted at the end of the `with` block."""
 
     def load_run(self, folder: Path) -> StoredRun:
-        """Return the run, without its end; see `RunStore.load_run`.
+        """Return the run in the folder, without its end; see `RunStore.load_run`.
 
         Raises:
             LogError: the program has deleted it, or it is damaged.
@@ -208,7 +210,7 @@ class TemporaryRun:
         write_run_file(self.folder, self._data)
 
     def read_files(self, end: Ended) -> dict[str, bytes]:
-        """Write the end of the run; return all that the run has recorded, by the names of its files.
+        """Write the end of the run to its folder, and return all recorded files of the run by name.
 
         Raises:
             LogError: the end cannot be written.

@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 
 
 def change_simulation(sim: Simulation, action: Message) -> None:
-    """Apply a user's action right before the next tick, and count it. Answers are only counted.
+    """Apply a user's action to a simulation right before the next tick, and count it.
+
+    Answers change nothing, and are only counted.
 
     Raises:
         TypeError: the message is not a user action that is counted.

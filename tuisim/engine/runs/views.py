@@ -69,7 +69,7 @@ _MAX_NUMBER = 1e12
 
 @dataclass(frozen=True, slots=True)
 class TickRecord:
-    """Telemetry of one tick; see `engine.core.tick_record.TICK_RECORD`."""
+    """The telemetry of one tick; see `engine.core.tick_record.TICK_RECORD`."""
 
     tick: int
     line: int
@@ -91,7 +91,7 @@ class TickRecord:
 
     @property
     def is_pen_down(self) -> bool:
-        """Whether the pen draws."""
+        """Whether the pen is down, so that it draws."""
         return bool(self.flags & FLAG_PEN_DOWN)
 
     @property
@@ -100,7 +100,7 @@ class TickRecord:
         return bool(self.flags & FLAG_LEFT_RUNNING), bool(self.flags & FLAG_RIGHT_RUNNING)
 
     def build_instant(self, spec: RunSpec, noise: NoiseSpec) -> Instant:
-        """Return the instant of a record with the noise at its tick, for the functions of `engine.core.sensors`."""
+        """Return the instant of a record, with the noise at its tick, for functions of `engine.core.sensors`."""
         from tuisim.engine.core.drift import sense_turn_rate_dps
 
         return Instant(
@@ -121,9 +121,9 @@ class TickRecord:
 
 
 class _View(ABC):
-    """A copy of a recording as far as it has been written, which follows the file while that grows.
+    """A copy of a recording as far as it has been written; while the file grows, the copy follows.
 
-    It is not mapped: truncating a mapped file would kill its reader.
+    The file is not memory-mapped: truncating a mapped file would kill its reader.
 
     Args:
         folder: The run folder.
@@ -160,17 +160,17 @@ class _View(ABC):
 
     @property
     def damage(self) -> str:
-        """Why the file, or the rest of it, is not a recording; empty as long as it is one."""
+        """Why the file, or the rest of it, is not a valid recording; empty if it is valid."""
         return self._damage if self.holds else self.read_new()
 
     @property
     def is_missing(self) -> bool:
-        """Whether there is no recording, not even an empty one."""
+        """Whether there is no recording at all, not even an empty one."""
         return not self._measure_length() and not self._has_begun
 
     @property
     def note(self) -> str:
-        """A description of what is missing in a truncated or damaged file, or empty."""
+        """A text that says what is missing in a truncated or damaged file; empty if nothing is."""
         there = self._measure_length()
         if self._damage or self._published == there:
             return self._damage
@@ -178,11 +178,11 @@ class _View(ABC):
 
     @abstractmethod
     def _describe_lost(self, count: int) -> str:
-        """Return in words that `count` records, or bytes, are lost."""
+        """Return a text that says that `count` records, or bytes, are lost."""
 
     @abstractmethod
     def _find_sound_end(self, data: memoryview, begin: int, end: int) -> int:
-        """Return up to where the recording, already read up to `end`, can come from the simulation.
+        """Return the index up to which records, or bytes, can come from the simulation.
 
         Args:
             data: The copy of the recording.
@@ -192,28 +192,28 @@ class _View(ABC):
 
     @property
     def _done(self) -> int:
-        """Number of records that need not be checked any more."""
+        """Number of records that need no further check."""
         return self._there
 
     def _look(self) -> tuple[memoryview, int]:
-        """Return the recording, and how many records or bytes of it exist."""
+        """Return the copy of the recording, and how many records or bytes it has."""
         there = self._measure_length()
         return memoryview(self._copy).toreadonly(), there
 
     def _measure_length(self) -> int:
-        """Return how many records or bytes exist, after reading new ones unless the view holds."""
+        """Return how many records or bytes there are, after reading new ones unless `holds` is set."""
         if not self.holds:
             self.read_new()
         return self._there
 
     def read_new(self) -> str:
-        """Read what has been published since. Return why it is not a recording; empty as long as it is one."""
+        """Read what was written since the last call; return why the file is not a valid recording, or an empty text."""
         if not self._damage:
             self._read_new()
         return self._damage
 
     def _get_known(self, count: int) -> memoryview | None:
-        """Return the recording if `count` records that can no longer change have been read, else None."""
+        """Return the recording if more than `count` records have been read, so that these cannot change; else None."""
         return memoryview(self._copy).toreadonly() if count < self._there else None
 
     def _read_new(self) -> None:
@@ -230,7 +230,7 @@ class _View(ABC):
             self._damage = f"{self._path.name} cannot be read: {reason}"
 
     def _is_withheld(self, error: OSError) -> bool:
-        """Return whether this machine forbids to read a file that its owner may read: no program has caused that."""
+        """Return whether this machine forbids reading a file that its owner may read: no program can cause that."""
         try:
             return isinstance(error, PermissionError) and bool(self._path.stat().st_mode & S_IRUSR)
         except OSError:
@@ -238,7 +238,7 @@ class _View(ABC):
 
     def _read_file(self, fd: int) -> None:
         head = _read_header(fd)
-        # The writer sizes a new file before it writes the header. A file that has been emptied since is ignored.
+        # A new file has its size before it has a header. A file that was emptied after it was read is ignored.
         if not head.strip(b"\0") or (self._there and len(head) < HEADER_BYTES):
             return
         try:
@@ -252,7 +252,7 @@ class _View(ABC):
             return
         room = max(0, os.fstat(fd).st_size - HEADER_BYTES) // self._record_bytes
         self._published = max(published, self._published)
-        # The last record may have been rewritten.
+        # The last record is read again, because the simulation may have rewritten it.
         count = max(0, self._there - 1) if self._record_bytes > 1 else self._there
         published_count = min(published, room)
         step = _CHUNK_BYTES // self._record_bytes
@@ -260,11 +260,11 @@ class _View(ABC):
             end = min(published_count, count + step)
             count = self._read_chunk(fd, head, count, end)
             if count < end:
-                # A file that was truncated meanwhile, or never written, has no more; what was read before stays.
+                # The file was truncated meanwhile, or its rest was never written: what was read before stays.
                 return
 
     def _read_chunk(self, fd: int, head: bytes, begin_count: int, end_count: int) -> int:
-        """Read and check the records between two positions; return the position up to which they are sound."""
+        """Read and check the records between two positions; return the position up to which they are valid."""
         begin, end = (
             HEADER_BYTES + self._record_bytes * (count - self._dropped)
             for count in (begin_count, end_count)
@@ -287,7 +287,7 @@ class _View(ABC):
         return sound
 
     def _make_room(self, fd: int, head: bytes, begin: int, end: int) -> tuple[int, int]:
-        """Make the copy large enough; return where in it the next records begin and end."""
+        """Make the copy large enough for further records; return where in it they begin and end."""
         drops = 0
         if self._is_checked and self._kept is not None:
             drops = min(
@@ -310,20 +310,20 @@ class _View(ABC):
 
 
 def _are_few_sound(part: memoryview, begin: int, end: int) -> bool:
-    """Return whether records are those of ticks `begin` to before `end`, with finite numbers that a run can reach."""
+    """Return whether records are valid: those of the ticks from `begin` to before `end`, with plausible numbers."""
     doubles = part.cast("d")
     floats = part.cast("f")
     columns = [doubles[index :: TICK_RECORD.size // 8] for index in range(1, 6)]
     columns += [floats[index :: TICK_RECORD.size // 4] for index in range(12, 15)]
     ticks = part.cast("I")[:: TICK_RECORD.size // 4].tolist()
-    # No number is larger than the root of the sum of all squares; NaN is not below anything, nor is a sum with it.
+    # `hypot` is at least as large as each number of a column, and NaN if one is NaN: then the comparison is false.
     return ticks == list(range(begin, end)) and all(
         hypot(*column.tolist()) <= _MAX_NUMBER for column in columns
     )
 
 
 def _are_all_sound(part: memoryview, begin: int, end: int) -> bool:
-    """Return the same as `_are_few_sound` for many records, a hundred times faster."""
+    """Return the same as `_are_few_sound`; for many records, this is a hundred times faster."""
     import numpy as np
 
     records = np.frombuffer(part, np.dtype(list(TICK_FIELDS)))
@@ -334,12 +334,12 @@ def _are_all_sound(part: memoryview, begin: int, end: int) -> bool:
 
 
 def _allocate(size: int) -> bytearray | mmap:
-    """Return a buffer; a large one takes memory only as it is filled."""
+    """Return a buffer of a size; a large one takes memory only where it is filled."""
     return bytearray(size) if size < _LARGE_BYTES else mmap(-1, size, MAP_PRIVATE | MAP_ANONYMOUS)
 
 
 def _read_header(fd: int) -> bytes:
-    """Return the header, read until two reads are equal: a number in it may be half written."""
+    """Return the header of a recording, read until two reads are equal: a number in it may be half written."""
     head = b""
     while (again := os.pread(fd, HEADER_BYTES, 0)) != head:
         head = again
@@ -347,7 +347,7 @@ def _read_header(fd: int) -> bytes:
 
 
 def _read_buffer(fd: int, place: memoryview, at: int) -> int:
-    """Fill a buffer from a file position; return the number of bytes read."""
+    """Fill a buffer with bytes of a file from a position on; return the number of bytes read."""
     done = 0
     while done < len(place) and (got := os.preadv(fd, [place[done:]], at + done)):
         done += got
@@ -355,7 +355,7 @@ def _read_buffer(fd: int, place: memoryview, at: int) -> int:
 
 
 class TelemetryView(_View):
-    """The tick records of a run."""
+    """The tick records of a run, read from its folder."""
 
     name = TELEMETRY_FILE
     _magic = TELEMETRY_MAGIC
@@ -377,9 +377,10 @@ class TelemetryView(_View):
         return self._find_sound_ticks(data[first:after], begin)
 
     def _find_sound_ticks(self, part: memoryview, begin: int) -> int:
-        """Return up to which tick records, from that of tick `begin` on, are what the simulation writes."""
+        """Return the tick up to which records, beginning with that of tick `begin`, are what the simulation writes."""
         end = begin + len(part) // TICK_RECORD.size
-        # Ticks are numbered from 0; all other fields are finite numbers. Whole columns, for their speed.
+        # Ticks are numbered from 0, and all other fields are finite numbers. Whole columns are checked first: it is
+        # faster.
         are_all = _are_all_sound if end - begin >= _MANY_TICKS else _are_few_sound
         if are_all(part, begin, end):
             return end
@@ -391,7 +392,7 @@ class TelemetryView(_View):
         return end
 
     def _read_again(self, begin: int, end: int) -> memoryview:
-        """Return records that were dropped from memory.
+        """Return records that were dropped from memory, read from the file again.
 
         Those that have been changed meanwhile, which only the program can have done, are replaced by the oldest one
         that is in memory: whoever follows the run learns of its damage, and must not fail before.
@@ -414,7 +415,7 @@ class TelemetryView(_View):
         return self.record(count - 1) if count else None
 
     def record(self, index: int) -> TickRecord:
-        """Return one record.
+        """Return the record of one tick.
 
         Raises:
             IndexError: the record does not exist (yet).
@@ -433,7 +434,7 @@ class TelemetryView(_View):
         )
 
     def array(self, first: int = 0) -> np.ndarray[Any, Any]:
-        """Return all records from one on as a structured array of `TICK_FIELDS`, read-only; later ones need a new call.
+        """Return all present records from one on as a read-only structured array of `TICK_FIELDS`.
 
         It is a view, not a copy, unless the run is running and the first of them are no longer in memory.
         """
@@ -446,17 +447,17 @@ class TelemetryView(_View):
         if first >= self._dropped:
             offset = HEADER_BYTES + (first - self._dropped) * TICK_RECORD.size
             return np.frombuffer(data, kind, count - first, offset)
-        # Those that are still in memory, too: the whole array must be one buffer.
+        # Records that are still in memory are read from the file, too, because the whole array must be one buffer.
         return np.frombuffer(self._read_again(first, count), kind)
 
 
 class OutputView(_View):
-    """The rows of a run: printed, spoken, answers to input(), brick state."""
+    """The output rows of a run, read from its folder: printed lines, speech, answers to `input()`, brick state."""
 
     name = OUTPUT_FILE
     _magic = OUTPUT_MAGIC
     _record_bytes = 1
-    # The file is larger by its last step of growth.
+    # A file may be larger than its contents by the last step in which it grew.
     _most_bytes = 2 * MAX_OUTPUT_BYTES
     _kept = 1 << 20
     _seen = 0
@@ -465,7 +466,7 @@ class OutputView(_View):
 
     @property
     def length(self) -> int:
-        """Number of bytes of rows."""
+        """Number of bytes that the rows take in the file."""
         return self._measure_length()
 
     def _describe_lost(self, count: int) -> str:
@@ -497,7 +498,7 @@ class OutputView(_View):
         return self._checked
 
     def read_new_rows(self, limit: int | None = None) -> list[OutputRow]:
-        """Return the rows since the last call, at most `limit`; the others follow with the next call."""
+        """Return the rows since the last call, at most `limit`; any others are returned by the next call."""
         rows: list[OutputRow] = []
         for row, after in islice(self.read_rows(self._seen), limit):
             rows.append(row)
@@ -505,11 +506,11 @@ class OutputView(_View):
         return rows
 
     def read_all_rows(self) -> list[OutputRow]:
-        """Return all rows up to now; does not affect `read_new_rows`."""
+        """Return all rows so far, without an effect on `read_new_rows`."""
         return list(self.rows())
 
     def read_rows(self, position: int) -> Iterator[tuple[OutputRow, int]]:
-        """Return the rows from a position on, 0 or one that was yielded before, each with the position after it."""
+        """Yield the rows from a position on, which is 0 or was yielded before, each with the position after it."""
         data, end = self._look()
         if not self._dropped:
             return iterate_rows(data, position, end)
@@ -518,7 +519,7 @@ class OutputView(_View):
     def _read_both_rows(
         self, data: memoryview, position: int, end: int, dropped: int
     ) -> Iterator[tuple[OutputRow, int]]:
-        """Yield the rows that were dropped from memory, then those in it."""
+        """Yield the rows that were dropped from memory, then those in memory, each with the position after it."""
         for row, after in self._read_dropped_rows(position, dropped):
             yield row, after
             position = after
@@ -527,7 +528,7 @@ class OutputView(_View):
                 yield row, dropped + after
 
     def _read_dropped_rows(self, position: int, end: int) -> Iterator[tuple[OutputRow, int]]:
-        """Yield the rows between two positions that were dropped from memory, unless the program has changed them."""
+        """Yield the rows between two positions that were dropped from memory; stop at one that was changed since."""
         size = _AGAIN_BYTES
         while position < end and self._source is not None:
             part = bytearray(HEADER_BYTES + size)
@@ -553,17 +554,17 @@ class OutputView(_View):
                 size *= 4
 
     def read_raw_rows(self) -> Iterator[tuple[int, bytes]]:
-        """Yield stream and text of each row, the text as bytes of the file."""
+        """Yield the stream and the text of each row, the text as bytes of the file."""
         data, end = self._look()
         if self._dropped:
             return ((row.stream, row.text.encode()) for row in self.rows())
         return iterate_raw_rows(data, end)
 
     def rows(self) -> Iterator[OutputRow]:
-        """Yield the rows of `read_all_rows` one by one: a run may print a million lines."""
+        """Yield the rows of `read_all_rows` one by one, because a run may print a million lines."""
         return map(itemgetter(0), self.read_rows(0))
 
 
 def open_views(folder: Path, is_checked: bool = False) -> tuple[TelemetryView, OutputView]:
-    """Return both views of a run folder; see `_View` for `is_checked`."""
+    """Return the telemetry and the output of a run folder; `is_checked` as of `_View`."""
     return TelemetryView(folder, is_checked), OutputView(folder, is_checked)

@@ -47,7 +47,7 @@ class _Envelope(msgspec.Struct):
 
 
 def decode_event(line: bytes) -> Message:
-    """Return the event in one line from the child.
+    """Return the event in one line that the child has sent.
 
     Raises:
         HostError: the line is not an event of this protocol.
@@ -58,7 +58,7 @@ def decode_event(line: bytes) -> Message:
         if not _is_sound(asdict(event)):
             raise ValueError(line)
         if isinstance(event, Plugged):
-            # Raises a ValueError unless it is a part.
+            # This raises a ValueError if there is no such part.
             build_part(event)
     except (msgspec.MsgspecError, ValueError, KeyError, RecursionError) as error:
         raise HostError(
@@ -68,7 +68,7 @@ def decode_event(line: bytes) -> Message:
 
 
 def build_part(event: Plugged) -> PluggedPart:
-    """Return the part that was plugged in, from the event that reports it.
+    """Return the part that was plugged in, as the event describes it.
 
     Raises:
         ValueError: there is no such part.
@@ -77,7 +77,7 @@ def build_part(event: Plugged) -> PluggedPart:
 
 
 def _is_sound(value: object) -> bool:
-    """Return whether all integers in a value of an event are small enough for catalogue, files and screen."""
+    """Return whether all integers in a value of an event are small enough to be stored and shown."""
     match value:
         case int():
             return abs(value) < _MAX_NUMBER
@@ -90,7 +90,7 @@ def _is_sound(value: object) -> bool:
 
 
 class EventStream:
-    """Reads the events from a pipe, without blocking.
+    """Reads events from the pipe of a child without blocking, and checks that they are allowed.
 
     Args:
         descriptor: The read end, non-blocking.
@@ -108,11 +108,11 @@ class EventStream:
         """Why what has arrived does not come from the simulation; nothing is read after it. Empty if it does."""
 
     def allow(self, kinds: _Kinds) -> None:
-        """Accept further classes of events: the host has asked the child for them."""
+        """Accept further classes of events from now on, because the host has requested them."""
         self._allowed = (*self._allowed, *kinds)
 
     def read(self) -> list[Message]:
-        """Return the events that have arrived, up to one that cannot come from the simulation; see `falsified`."""
+        """Return the events that have arrived. One that cannot come from the simulation ends them, see `falsified`."""
         events: list[Message] = []
         for line in self._split_lines():
             event = self._decode_event(line)
@@ -139,7 +139,10 @@ class EventStream:
         return lines
 
     def _decode_event(self, line: bytes) -> Message | None:
-        """Return the event in a line; None, with the reason in `falsified`, if it is no event or must not come now."""
+        """Return the event in a line.
+
+        None if the line is not an event, or the event is not allowed now; the reason is then in `falsified`.
+        """
         try:
             event = decode_event(line)
         except HostError as error:
@@ -155,7 +158,7 @@ class EventStream:
                 self.falsified = (
                     f"the program's process sent the message {event.kind}, which must not come here"
                 )
-            # A run that cannot begin ends without a start.
+            # A run that cannot begin sends its end without a start before it.
             case _ if is_start != is_first and not (is_first and isinstance(event, Ended)):
                 when = "first" if is_first else "again"
                 self.falsified = f"the program's process sent the message {event.kind}, which must not come {when}"

@@ -74,7 +74,7 @@ _HIDDEN = (errno.ENAMETOOLONG, errno.EACCES)
 
 
 def check_isolation() -> None:
-    """Check that bubblewrap works here: start it once, and wait for its end.
+    """Check that bubblewrap works on this machine, by starting it once and waiting for its end.
 
     Raises:
         ConfigError: it is not installed, or cannot start here.
@@ -105,7 +105,7 @@ def check_isolation() -> None:
 
 
 class IsolatedChild:
-    """A child inside bubblewrap.
+    """A child process that runs inside bubblewrap.
 
     Args:
         process: bubblewrap itself, which waits for the child.
@@ -144,11 +144,11 @@ class IsolatedChild:
 
 
 class Quota:
-    """How many threads and sockets an isolated program may have, and how much it may add to its folders.
+    """The limits of an isolated program: its threads, its sockets, and what it may add to its folders.
 
     Args:
         pid: The program's process.
-        folders: The program's folders, before it begins; empty names are left out.
+        folders: The program's folders, before it begins; empty names are ignored.
     """
 
     def __init__(self, pid: int, folders: Iterable[str | Path]) -> None:
@@ -160,7 +160,9 @@ class Quota:
         self._files, self._bytes = self._count_growth(MOST_FILES, MOST_BYTES)
 
     def exceeded(self, now_s: float) -> str:
-        """Return which limit the program exceeds; empty if none, or if the last check was only a moment ago.
+        """Return a text that says which limit the program exceeds.
+
+        It is empty if the program exceeds none, or if the last check was only a moment ago.
 
         Args:
             now_s: The time on any clock.
@@ -169,7 +171,7 @@ class Quota:
             return ""
         self._next_look_s = now_s + _LOOK_EVERY_S
         with suppress(OSError):
-            # A folder has a link more for each folder in it, and two of its own.
+            # The number of links to a folder is two more than the number of folders in it, here one for each thread.
             if os.stat(f"{self._process}/task").st_nlink - 2 > _MAX_THREADS:
                 return f"the program has started more than {_MAX_THREADS:,} threads"
         if self._count_sockets() - self._sockets > _MAX_SOCKETS:
@@ -183,7 +185,7 @@ class Quota:
         return ""
 
     def _count_sockets(self) -> int:
-        """Return the number of sockets in the program's own network; 0 if the system does not tell."""
+        """Return the number of sockets in the program's network namespace; 0 if the system does not give it."""
         with suppress(OSError):
             first = Path(f"{self._process}/net/sockstat").read_text("ascii").partition("\n")[0]
             if first.startswith(_SOCKETS_USED):
@@ -191,7 +193,7 @@ class Quota:
         return 0
 
     def _count_growth(self, most_files: int, most_bytes: int) -> tuple[int, int]:
-        """Return how many files and bytes the folders have gained since the beginning; stop counting at `most_…`."""
+        """Return how many files and bytes the folders have gained since the start, counted only up to these limits."""
         files = -self._files
         size = -self._bytes
         for block in self._measure_blocks():
@@ -202,10 +204,10 @@ class Quota:
         return files, size
 
     def _measure_blocks(self) -> Iterator[int]:
-        """Yield the bytes on the disk of each file in the folders; more than is allowed for an unreadable folder."""
+        """Yield the bytes that each file in the folders takes on the disk; for an unreadable folder too many."""
         folders = list(self._folders)
         while folders:
-            # The program goes on meanwhile: a file or folder that is gone takes no space.
+            # The program goes on meanwhile: a file or folder that it has deleted takes no space.
             try:
                 with os.scandir(folders.pop()) as entries:
                     for entry in entries:
@@ -215,11 +217,11 @@ class Quota:
                             folders.append(entry.path)
             except OSError as error:
                 if error.errno in _HIDDEN:
-                    # Its contents cannot be measured: it counts as too large.
+                    # The contents of this folder cannot be measured, so it is treated as too large.
                     yield MOST_BYTES + 1
 
     def _measure_nameless(self) -> Iterator[int]:
-        """Yield the bytes of the program's open files that have no name (any more), also of those in memory."""
+        """Yield the bytes of the program's open files that have no name (any more), including files in memory."""
         with suppress(OSError):
             for entry in os.scandir(f"{self._process}/fd"):
                 with suppress(OSError):
@@ -236,7 +238,7 @@ def spawn_isolated(
     writable: Sequence[Path],
     readable: Sequence[Path],
 ) -> IsolatedChild:
-    """Start a child that can change nothing but some folders, and read little else. Blocks until it has started.
+    """Start a child that can change only some folders, and read little else. Blocks until it has started.
 
     Args:
         command: Its command.
@@ -286,7 +288,7 @@ def spawn_isolated(
 
 
 def _build_command(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
-    """Return bubblewrap's command without its last options; the process that bubblewrap starts ends with it.
+    """Return bubblewrap's command without its last options; the process that it starts ends with bubblewrap.
 
     Args:
         cwd: The working directory.
@@ -294,21 +296,21 @@ def _build_command(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]
         readable: Files and folders that it may read, besides Python and the system.
     """
     words = [BWRAP, "--unshare-all", "--new-session", "--die-with-parent"]
-    # bubblewrap leaves capabilities to root, who could mount read-only folders again for writing.
+    # For root, bubblewrap would keep capabilities, with which read-only folders could be mounted for writing again.
     words += ["--cap-drop", "ALL"]
     words += ["--proc", "/proc", "--dev", "/dev", "--size", str(_TMP_BYTES), "--tmpfs", "/tmp"]
     for place in (*_SYSTEM, *_list_python_folders(), *map(str, readable)):
         words += ["--ro-bind-try", place, place]
     for folder in writable:
         words += ["--bind", str(folder), str(folder)]
-    # /dev and / are in memory, too, and in /proc root could change the settings of the whole system.
+    # /dev and / are in memory, which the program must not fill; in /proc, root could change settings of the system.
     for place in ("/proc", "/dev", "/"):
         words += ["--remount-ro", place]
     return [*words, "--chdir", str(cwd)]
 
 
 def _list_python_folders() -> list[str]:
-    """Return the folders that Python and its packages are in."""
+    """Return the folders that contain Python and its packages."""
     package = Path(__file__).parents[3]
     packages = [folder for folder in sys.path if Path(folder).name in _PACKAGES]
     folders = [
@@ -319,7 +321,7 @@ def _list_python_folders() -> list[str]:
         *packages,
         str(package),
     ]
-    # A prefix such as / would show everything; what Python needs of it is part of the system.
+    # A prefix of / would make everything readable; the parts that Python needs are in the folders of the system.
     return [folder for folder in dict.fromkeys(map(os.path.realpath, folders)) if folder != os.sep]
 
 
@@ -327,7 +329,8 @@ def is_readable(descriptor: int, timeout_s: float | None) -> bool:
     """Return whether a descriptor can be read without blocking, or is at its end.
 
     Args:
-        timeout_s: How long to wait until it can be; None waits without a limit.
+        descriptor: The descriptor.
+        timeout_s: How long to wait until it can be read; None waits without a limit.
 
     Raises:
         OSError: the descriptor is closed.
@@ -361,7 +364,7 @@ _X32 = 0x40000000
 
 @dataclass(frozen=True, slots=True)
 class _Machine:
-    """The numbers of system calls on one kind of processor, from its tables in Linux."""
+    """The numbers of system calls on one kind of processor, from the tables of Linux."""
 
     architecture: int
     """`AUDIT_ARCH_…`"""
@@ -386,7 +389,7 @@ _MACHINES = {
 
 
 def build_filter() -> bytes | None:
-    """Return the filter in the form that bubblewrap takes; None for a processor whose calls are not known here."""
+    """Return the filter of system calls in the form that bubblewrap needs; None on an unknown processor."""
     machine = _MACHINES.get(platform.machine())
     if machine is None:
         return None
@@ -395,7 +398,7 @@ def build_filter() -> bytes | None:
     nothing = _FAIL
     program = [
         _pack_instruction(_LOAD, _ARCHITECTURE_AT),
-        # Calls of another architecture have other numbers.
+        # System calls of another architecture have other numbers, so they are all refused.
         _pack_instruction(_EQUAL, machine.architecture, 1, 0),
         _pack_instruction(_RETURN, fails),
         _pack_instruction(_LOAD, _NUMBER_AT),
@@ -408,7 +411,7 @@ def build_filter() -> bytes | None:
     for number in (*machine.refused, *machine.refused_everywhere):
         program += [_pack_instruction(_EQUAL, number, 0, 1), _pack_instruction(_RETURN, fails)]
     program += [
-        # A socket's buffers are memory, too: they keep their size, but setsockopt reports success.
+        # A socket's buffers use memory, too: `setsockopt` reports success, but they keep their size.
         _pack_instruction(_EQUAL, machine.setsockopt, 0, 7),
         _pack_instruction(_LOAD, _SECOND_AT),
         _pack_instruction(_EQUAL, socket.SOL_SOCKET, 0, 4),
@@ -432,7 +435,7 @@ def _pack_instruction(code: int, operand: int, if_true: int = 0, if_false: int =
 
 
 def filter_descriptor() -> int | None:
-    """Return a descriptor from which the filter can be read once; None if `build_filter` has none.
+    """Return a descriptor from which the filter of system calls can be read once; None if there is no filter.
 
     Raises:
         OSError: this process can open no more files.

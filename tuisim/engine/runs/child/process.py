@@ -31,9 +31,9 @@ _CLOCK_HZ = os.sysconf("SC_CLK_TCK")
 
 
 class FairClock:
-    """A clock that leaves out the time in which a process waits for a processor, because other processes run.
+    """A clock that stops while a process has to wait for a processor, because other processes run.
 
-    It runs at least as fast as the process computes: of many threads, some always wait.
+    It runs at least as fast as the process uses processors: of many threads, some always wait.
 
     Args:
         pid: The process, which has just been started.
@@ -45,7 +45,7 @@ class FairClock:
         self._waits_s = self._without_s = 0.0
 
     def read_s(self) -> float:
-        """Return the seconds since the start of the process, without its waits."""
+        """Return the seconds since the start of the process, without those in which it waited for a processor."""
         now_s, waits_s = time.monotonic(), measure_waited_s(self._pid)
         self._without_s += min(max(0.0, waits_s - self._waits_s), now_s - self._looked_s)
         self._waits_s, self._looked_s = waits_s, now_s
@@ -55,7 +55,7 @@ class FairClock:
 def measure_waited_s(pid: int) -> float:
     """Return the seconds that the threads of a process have waited for a processor, added up.
 
-    0 if the process is gone or the system does not tell. The waits of threads that have ended are missing.
+    The result is 0 if the process has ended or the system does not give it. Threads that have ended are not included.
     """
     total_ns = 0
     with suppress(OSError):
@@ -69,7 +69,7 @@ def measure_waited_s(pid: int) -> float:
 
 
 def measure_computed_s(pid: int) -> float:
-    """Return the seconds that a process has spent on processors; 0 if it is gone or the system does not tell."""
+    """Return the seconds that a process has used processors; 0 if it has ended or the system does not give it."""
     try:
         # The name, in parentheses, may contain anything. Then the state, and 10 more: proc_pid_stat(5).
         fields = Path(f"/proc/{pid}/stat").read_bytes().rpartition(b")")[2].split()
@@ -106,7 +106,7 @@ MAX_SHOWN = 500
 
 
 class _Starts:
-    """What this process has started: the warm process, the templates, and the number of children."""
+    """The processes that this process has started: the warm process, the templates, and the number of children."""
 
     warm: WarmProcess | None = None
     templates: ClassVar[OrderedDict[Hashable, Template]] = OrderedDict()
@@ -121,16 +121,16 @@ def start_warm_process() -> None:
     with _Starts.lock:
         if _Starts.warm is None or not _Starts.warm.is_usable:
             end_warm_process()
-            # Imported on demand: it imports what most commands need not.
+            # Imported on demand: most commands do not need it.
             from tuisim.engine.runs.child.warm import WarmProcess
 
-            # If it cannot be started, each child is started by itself.
+            # If the warm process cannot be started, each child is started as a new process.
             with suppress(OSError):
                 _Starts.warm = WarmProcess(_build_command(), _build_environment())
 
 
 def end_warm_process() -> None:
-    """End the warm process and all templates; their children go on."""
+    """End the warm process and all templates; the children that they have forked go on."""
     with _Starts.lock:
         while _Starts.templates:
             _Starts.templates.popitem()[1].close()
@@ -148,9 +148,9 @@ def start_child(
     makes_template: bool = False,
     isolated_with: Sequence[Path] | None = None,
 ) -> tuple[ChildProcess, int, int, int]:
-    """Start the process that executes the run of a folder.
+    """Start the process that executes the run in a folder.
 
-    The first child of this process is started by itself; with the second comes the warm process.
+    The first child of this process is started as a new process. Before the second, the warm process is started.
 
     Args:
         folder: The run folder.
@@ -160,7 +160,7 @@ def start_child(
         template_key: What a template must be prepared for to fork the child; None forks it from the warm process.
         makes_template: Whether such a template is made if there is none; otherwise the warm process forks the child.
         isolated_with: The files and folders that it needs besides its run folder and its working directory; it is then
-            started by itself, isolated from the others. None starts it without isolation.
+            a new process, isolated from the others. None starts it without isolation.
 
     Returns:
         The process; write end of its commands and read end of its events, both non-blocking; and its lifeline, at
@@ -200,7 +200,7 @@ def start_child(
 
 
 def _open_pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
-    """Return the read end and the write end of a new pipe; each stack closes its end."""
+    """Return the read end and the write end of a new pipe; each stack closes one end when it is closed."""
     read_fd, write_fd = os.pipe()
     reader.callback(os.close, read_fd)
     writer.callback(os.close, write_fd)
@@ -208,7 +208,9 @@ def _open_pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
 
 
 def prepare_template(key: Hashable, folder: Path, run: Mapping[str, Any]) -> None:
-    """Make a template unless there is one, if the warm process runs. Does not block until it is ready.
+    """Fork a template from the warm process, if that runs and there is no template for the key yet.
+
+    It does not block until the template is ready.
 
     Args:
         key: What the template is prepared for.
@@ -217,13 +219,13 @@ def prepare_template(key: Hashable, folder: Path, run: Mapping[str, Any]) -> Non
     """
     with _Starts.lock:
         if _Starts.warm is not None and _Starts.warm.is_usable:
-            # Without a template, children are forked from the warm process.
+            # If no template can be made, children are forked from the warm process.
             with suppress(OSError):
                 _get_template(_Starts.warm, key, folder, run)
 
 
 def _build_command(first: str = "") -> list[str]:
-    """Return the command of a child without its arguments; `first` is code for its start."""
+    """Return the command that starts a child, without its arguments; `first` is code to execute at its start."""
     return [sys.executable, "-s", "-P", "-c", first + BOOT, str(Path(__file__).parents[4])]
 
 
@@ -245,7 +247,7 @@ def _fork(
     try:
         here = cwd or os.getcwd()
     except OSError:
-        # It has been deleted: a forked child could not enter it, only a child that is started here inherits it.
+        # The working directory has been deleted: only a child of this process can inherit it, not a forked one.
         return None
     try:
         server = _Starts.warm if key is None else _get_template(_Starts.warm, key, folder, run)
@@ -281,7 +283,7 @@ def _spawn(folder: Path, cwd: str | None, log: IO[bytes], inherited: Sequence[in
 
 
 def mark(pid: int) -> int:
-    """Mark a child and all its future descendants; no new session, program or environment removes the mark.
+    """Mark a child and all its future descendants; a new session, program or environment does not remove the mark.
 
     Returns:
         The mark; 0 if the child cannot be marked.
@@ -289,14 +291,14 @@ def mark(pid: int) -> int:
     new_mark = 1 << 62 | int.from_bytes(os.urandom(7))
     try:
         resource.prlimit(pid, FILE_LOCKS, (new_mark, new_mark))
-    # Not Linux, exited already, or a limit is set.
+    # The system is not Linux, the child has exited already, or such a limit is set.
     except (AttributeError, OSError, ValueError):
         return 0
     return new_mark
 
 
 def end_group(pid: int) -> None:
-    """Kill a child and its process group."""
+    """Kill a child and all processes of its process group."""
     try:
         os.killpg(pid, signal.SIGKILL)
     except (ProcessLookupError, PermissionError):
@@ -331,7 +333,7 @@ def end_descendants(pid: int, marked: int) -> None:
 
 
 def _list_younger(pid: int) -> set[int]:
-    """Return the ids of all processes that may be younger than a process; some of the ids may belong to none."""
+    """Return the ids of all processes that may be younger than a process; some of these ids may not be in use."""
     last = int(Path("/proc/loadavg").read_text("ascii").split()[-1])
     # Process ids increase, and wrap around when they are used up.
     if pid <= last < pid + MAX_ID_GAP:
@@ -348,7 +350,7 @@ def _has_mark(pid: int, marked: int) -> bool:
 
 
 def _build_environment() -> dict[str, str]:
-    """Return the child's environment: isolated from the user's, with reproducible hashes."""
+    """Return the environment variables of a child: not those of the user, and with reproducible hashes."""
     inherited = {
         name: os.environ[name]
         for name in ("PATH", "HOME", "LD_LIBRARY_PATH", "TMPDIR")
@@ -368,7 +370,10 @@ def _build_environment() -> dict[str, str]:
 
 
 def write_command(fd: int, data: bytes) -> bool:
-    """Write a command, which may exceed the pipe's capacity; return whether it was written completely."""
+    """Write a command to a pipe; return whether it was written completely.
+
+    The command may be longer than the pipe's capacity.
+    """
     while data:
         try:
             data = data[os.write(fd, data) :]
@@ -383,7 +388,7 @@ def write_command(fd: int, data: bytes) -> bool:
 
 
 def await_stack(folder: Path, pid: int) -> None:
-    """Block until a stuck child has written its stack, but only for a short time."""
+    """Block until a stuck child has written its stack, or a short time is over."""
     start_s = time.monotonic()
     waited_before_s = measure_waited_s(pid)
     size = 0
@@ -404,7 +409,7 @@ def find_stuck_line(folder: Path, program_file: str) -> int:
         stack = read_regular(folder / STACK_FILE, MAX_BYTES).decode("utf-8", "replace")
     except OSError:
         return 0
-    # In the format of that file: ASCII, truncated.
+    # The file name is written as in the stack: in ASCII, and perhaps truncated.
     ascii_file = program_file.encode("ascii", "backslashreplace").decode()
     for line in source_lines(stack):
         if f'"{ascii_file}"' in line or (

@@ -28,7 +28,7 @@ _LENGTH_BYTES = 4
 
 
 class ChildProcess(Protocol):
-    """What the host uses of a run's process; `subprocess.Popen` offers the same."""
+    """What the host needs of a run's process; `subprocess.Popen` has the same methods."""
 
     pid: int
     returncode: int | None
@@ -37,18 +37,22 @@ class ChildProcess(Protocol):
         """Return the child's exit status, negative for a signal; None while it runs."""
 
     def wait(self, timeout: float | None = None) -> int:
-        """Block until the child has ended; return its exit status. Raises subprocess.TimeoutExpired."""
+        """Block until the child has ended; return its exit status.
+
+        Raises:
+            subprocess.TimeoutExpired: it is still running after `timeout` seconds.
+        """
 
     def send_signal(self, number: int, /) -> None:
         """Send a signal to the child, unless it has ended."""
 
 
 class ForkedChild:
-    """A child of the warm process.
+    """A child that the warm process or a template has forked.
 
     Args:
         pid: Its process id.
-        status_fd: Where the warm process reports its end.
+        status_fd: From which its exit status can be read after its end.
     """
 
     def __init__(self, pid: int, status_fd: int) -> None:
@@ -86,7 +90,7 @@ class ForkedChild:
         while self.poll() is None:
             left_s = None if give_up is None else max(give_up - time.monotonic(), 0.0)
             with suppress(OSError, ValueError):
-                # Another thread may close it.
+                # Another thread may close the descriptor meanwhile.
                 if not is_readable(self._status_fd, left_s):
                     raise subprocess.TimeoutExpired("child of the warm process", timeout or 0.0)
         assert self.returncode is not None
@@ -100,7 +104,7 @@ class ForkedChild:
 
 
 def _continue_parent(pid: int) -> None:
-    """Continue the process that has to report the end of a child: a program may have stopped it."""
+    """Continue the process that has to report the end of a child, because a program may have stopped it by a signal."""
     # Without /proc, or with another user's process, nothing can be done.
     with suppress(OSError, ValueError):
         with open(f"/proc/{pid}/stat", "rb") as file:
@@ -110,10 +114,10 @@ def _continue_parent(pid: int) -> None:
 
 
 class ForkClient:
-    """The host's side of a process that forks children.
+    """The host's connection to a process that forks children.
 
     Args:
-        connection: The socket to it.
+        connection: The socket to the process.
         process: The process.
     """
 
@@ -122,12 +126,12 @@ class ForkClient:
         self._pid = os.getpid()
         self._socket = connection
         self._process = process
-        # A program may have stopped the server when more is sent than the system keeps.
+        # A program may have stopped the server: without a timeout, sending more than the system's buffer would block.
         self._socket.settimeout(ANSWER_S)
 
     @property
     def is_usable(self) -> bool:
-        """Whether this process has started the server, and not a process that has forked this one."""
+        """Whether this process has started the server itself, not a process from which this one was forked."""
         return self._pid == os.getpid()
 
     def fork(
@@ -139,14 +143,13 @@ class ForkClient:
         run: Mapping[str, Any],
         serves: bool = False,
     ) -> ForkedChild:
-        """Fork a child. Blocks until it leads its process group, a few milliseconds; first until the server is ready.
+        """Fork a child. Blocks until the server is ready, and until the child leads its process group.
 
         Args:
             folder: The run folder.
             working_directory: Its initial working directory.
             environment: Its environment variables.
-            files: Descriptors: its error output; its commands, events, lifeline and lock, or the socket of a
-                template.
+            files: Descriptors: its error output; its commands, events, lifeline and lock, or the socket of a template.
             run: The contents of the `run.json` in the folder.
             serves: Whether it becomes a template.
 
@@ -186,7 +189,7 @@ class ForkClient:
         return ForkedChild(pid, status_fd)
 
     def _select_changes(self, _run: Mapping[str, Any]) -> dict[str, Any]:
-        """Return what the server must be told of a `run.json`; the child reads the rest from the file."""
+        """Return the parts of a `run.json` that the server needs; the child reads the rest from the file."""
         return {}
 
     def _answer(self, status_fd: int) -> bytes:
@@ -197,7 +200,7 @@ class ForkClient:
         raise TimeoutError(errno.ETIMEDOUT, "the server does not answer")
 
     def close(self) -> None:
-        """End the server, unless it belongs to a process that has forked this one; the server's children go on."""
+        """End the server, unless a process from which this one was forked uses it; its children go on."""
         self._socket.close()
         if self._pid != os.getpid():
             return
@@ -245,7 +248,7 @@ def _select_varying(run: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class WarmProcess(ForkClient):
-    """A process that has imported the runtime. It is started with the first child, and ends with this process.
+    """A process that has imported the runtime, so that children forked from it start sooner; it ends with this process.
 
     Args:
         command: Command of a child without its arguments.
@@ -270,11 +273,11 @@ class WarmProcess(ForkClient):
 
     @property
     def is_usable(self) -> bool:
-        """Whether the warm process runs, and this process has started it, not one that has forked this one."""
+        """Whether the warm process runs, and this process has started it itself."""
         return super().is_usable and self._process.poll() is None
 
     def fork_template(self, folder: str, run: Mapping[str, Any]) -> Template:
-        """Fork a template for the robot and the world of a run. Does not block until it is ready.
+        """Fork a template for the robot and the world of a run, without blocking until it is ready.
 
         Args:
             folder: The folder of a run.
