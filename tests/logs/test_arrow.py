@@ -19,7 +19,7 @@ from tuisim.logs.arrow import (
     make_names_unique,
     match_condition,
     match_text,
-    read_int32,
+    read_numbers,
     sort_places,
     wrap_int64,
 )
@@ -69,8 +69,8 @@ def test_whole_numbers_are_not_copied() -> None:
     numbers = np.arange(5, dtype=np.int64)
     assert wrap_int64(numbers).to_pylist() == [0, 1, 2, 3, 4]
     chunk = pa.array([1, 2, 3], pa.int32()).slice(1)
-    assert read_int32(chunk).tolist() == [2, 3]
-    assert read_int32(chunk.slice(2)).tolist() == []
+    assert read_numbers(chunk).tolist() == [2, 3]
+    assert read_numbers(chunk.slice(2)).tolist() == []
 
 
 def test_texts_that_are_no_utf_8_are_replaced() -> None:

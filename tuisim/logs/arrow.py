@@ -59,39 +59,25 @@ def convert_to_floats(column: pa.ChunkedArray) -> FloatArray:
     """Return a numeric column as floats, shape (n,), NaN for nulls. Copied only if necessary."""
     if not pa.types.is_floating(column.type) or pa.types.is_float16(column.type):
         column = column.cast(pa.float64(), safe=False)
-    kind = np.float32 if pa.types.is_float32(column.type) else np.float64
-    parts = [_convert_chunk(chunk, kind) for chunk in column.chunks]
+    parts = [
+        read_numbers(chunk.fill_null(float("nan")) if chunk.null_count else chunk)
+        for chunk in column.chunks
+    ]
     if len(parts) == 1:
         return parts[0]
-    numbers: FloatArray = np.concatenate(parts) if parts else np.empty(0, kind)
+    numbers: FloatArray = np.concatenate(parts) if parts else np.empty(0)
     return numbers
 
 
-def _convert_chunk(chunk: pa.Array, kind: Any) -> FloatArray:
-    known, numbers = chunk.buffers()
-    first = chunk.offset
-    count = len(chunk)
-    if not count or numbers is None:
-        return np.full(count, np.nan, kind)
-    floats = np.frombuffer(numbers, kind, count, first * np.dtype(kind).itemsize)
-    if not chunk.null_count or known is None:
-        return floats
-    bits = np.unpackbits(np.frombuffer(known, np.uint8), count=first + count, bitorder="little")
-    return np.where(bits[first:], floats, kind(np.nan))
-
-
-def read_int32(chunk: pa.Array) -> np.ndarray[Any, np.dtype[np.int32]]:
-    """Return a 32-bit integer array without nulls, shape (n,), not copied."""
-    if not len(chunk):
-        return np.empty(0, np.int32)
-    return np.frombuffer(chunk.buffers()[1], np.int32, len(chunk), chunk.offset * 4)
+def read_numbers(chunk: pa.Array) -> np.ndarray[Any, Any]:
+    """Return an array of numbers without nulls, shape (n,), not copied."""
+    # Not `to_numpy`, which imports pandas.
+    return np.from_dlpack(chunk)
 
 
 def wrap_int64(numbers: np.ndarray[Any, np.dtype[np.int64]]) -> pa.ChunkedArray:
     """Return 64-bit integers, shape (n,), as a column, not copied."""
-    return pa.chunked_array(
-        [pa.Array.from_buffers(pa.int64(), len(numbers), [None, pa.py_buffer(numbers)])]
-    )
+    return pa.chunked_array([_build_column(numbers)])
 
 
 BoolArray = np.ndarray[Any, np.dtype[np.bool_]]
@@ -270,15 +256,8 @@ def _validate_batch(batch: pa.RecordBatch) -> pa.Table:
 def _name_columns(part: pa.Table, notes: Notes) -> pa.Table:
     # Renaming drops the metadata.
     renamed = part.rename_columns(make_names_unique(part.column_names, notes))
-    for index, field in enumerate(part.schema):
-        usual = _choose_type(field.type)
-        if usual != field.type:
-            renamed = renamed.set_column(
-                index,
-                renamed.field(index).with_type(usual),
-                part.column(index).cast(usual, safe=False),
-            )
-    return renamed.replace_schema_metadata(part.schema.metadata)
+    fields = [field.with_type(_choose_type(field.type)) for field in renamed.schema]
+    return renamed.cast(pa.schema(fields, part.schema.metadata), safe=False)
 
 
 def _choose_type(kind: pa.DataType) -> pa.DataType:

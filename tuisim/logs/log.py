@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray, IntArray
-from tuisim.logs.arrow import convert_to_floats, read_int32, wrap_int64
+from tuisim.logs.arrow import convert_to_floats, read_numbers, wrap_int64
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import ROW, Layout, read_seconds
 
@@ -73,22 +72,11 @@ def _build_member(name: object, run: Any, rows: IntArray | None, several: bool) 
 def _encode_column(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
     """Return the distinct values of a column in order of first appearance, and the index of each row's value."""
     if pa.types.is_dictionary(column.type):
-        column = column.unify_dictionaries()
-        values = column.chunk(0).dictionary.to_pylist() if column.num_chunks else []
-        if None in values or len(set(values)) < len(values):
-            # Some writers have duplicates or nulls in the dictionary.
-            column = column.cast(column.type.value_type)
-    if not pa.types.is_dictionary(column.type):
-        column = column.dictionary_encode("encode")
-        values = column.chunk(0).dictionary.to_pylist() if column.num_chunks else []
-    indices = [chunk.indices.cast(pa.int32()) for chunk in column.chunks]
-    indices = [pc.fill_null(chunk, len(values)) if chunk.null_count else chunk for chunk in indices]
-    appeared = pc.unique(pa.chunked_array(indices, pa.int32())).to_pylist()
-    place_of = np.zeros(len(values) + 1, np.int32)
-    place_of[appeared] = np.arange(len(appeared))
-    codes = [place_of[read_int32(chunk)] for chunk in indices]
-    values.append(None)
-    names = [values[code] for code in appeared]
+        # Some writers have duplicates or nulls in the dictionary.
+        column = column.cast(column.type.value_type)
+    column = column.dictionary_encode("encode")
+    names = column.chunk(0).dictionary.to_pylist() if column.num_chunks else []
+    codes = [read_numbers(chunk.indices) for chunk in column.chunks]
     return names, np.concatenate(codes) if codes else np.empty(0, np.int32)
 
 
