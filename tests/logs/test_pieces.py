@@ -20,7 +20,7 @@ def test_steps_between_pieces_are_those_of_least_squares(seed: int) -> None:
     values[rng.random(stop) < 0.2] += 1000.0
     before, after = np.array([[0, edge]]), np.array([[edge + gap, stop]])
     lines = [pieces._fit_lines(values, span, 1.0) for span in (before, after)]
-    step, spread = pieces._estimate_steps(lines[0], lines[1], before[:, 1])
+    step, spread = pieces._estimate_steps(*lines)
 
     kept = [
         ~find_strays(values[None, start:end], 1.0)[0]

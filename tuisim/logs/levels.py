@@ -50,14 +50,13 @@ def list_greys() -> Mapping[int, Grey]:
 def find_nearest_greys(percents: FloatArray) -> list[Grey | None]:
     """Return the grey nearest to each level of 0 to 100 %, None if none is within NEAR_PERCENT."""
     named = list(list_greys().values())
-    nearest = np.zeros(len(percents), np.int64)
-    smallest = np.full(len(percents), np.inf)
-    for index, grey in enumerate(named):
-        apart = np.abs(grey.percent - percents)
-        nearest[apart < smallest] = index
-        smallest = np.minimum(smallest, apart)
-    nearest[smallest > NEAR_PERCENT] = -1
-    return [None if index < 0 else named[index] for index in nearest.tolist()]
+    apart = np.abs(np.array([grey.percent for grey in named]) - percents[:, None])
+    return [
+        named[index] if near else None
+        for index, near in zip(
+            apart.argmin(axis=1), (apart <= NEAR_PERCENT).any(axis=1), strict=True
+        )
+    ]
 
 
 def undo_clamping(percents: FloatArray, noise: int) -> FloatArray:

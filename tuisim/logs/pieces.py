@@ -148,7 +148,7 @@ def _find_continued(
     before[:, 0] = np.maximum(before[:, 0], before[:, 1] - NEAR_SAMPLES)
     after[:, 1] = np.minimum(after[:, 1], after[:, 0] + NEAR_SAMPLES)
     step, spread = _estimate_steps(
-        _fit_lines(values, before, sigma), _fit_lines(values, after, sigma), before[:, 1]
+        _fit_lines(values, before, sigma), _fit_lines(values, after, sigma)
     )
     goes_on[goes_on] = np.abs(step) <= np.maximum(min_step, CERTAINTY * sigma * spread)
     return goes_on
@@ -193,9 +193,7 @@ def _sum_products(left: FloatArray, right: FloatArray) -> FloatArray:
     return sums
 
 
-def _estimate_steps(
-    before: _Lines, after: _Lines, edges: IntArray
-) -> tuple[FloatArray, FloatArray]:
+def _estimate_steps(before: _Lines, after: _Lines) -> tuple[FloatArray, FloatArray]:
     """Return the steps of least squares between pieces of the same drift, and their deviations in units of the noise.
 
     The slope is that of both pieces together, each about its own means (analysis of covariance); the step is what it
@@ -204,28 +202,14 @@ def _estimate_steps(
     Args:
         before: The pieces before the steps.
         after: The pieces after them.
-        edges: Where the pieces before the steps stop.
     """
     apart = after.place - before.place
     width = before.width + after.width
-    lone = width == 0.0
-    safe_width = np.where(lone, 1.0, width)
-    step = after.level - before.level - apart * (before.rise + after.rise) / safe_width
-    spread = np.sqrt(1.0 / before.samples + 1.0 / after.samples + apart * apart / safe_width)
-    if lone.any():
-        # One sample on each side has no slope: of the many lines, the pseudo-inverse gives the smallest numbers.
-        step[lone], spread[lone] = _estimate_lone_steps(
-            np.stack((before.place[lone], after.place[lone]), axis=1) - edges[lone, None],
-            np.stack((before.level[lone], after.level[lone]), axis=1),
-        )
+    # One sample on each side has no slope.
+    width[width == 0.0] = 1.0
+    step = after.level - before.level - apart * (before.rise + after.rise) / width
+    spread = np.sqrt(1.0 / before.samples + 1.0 / after.samples + apart * apart / width)
     return step, spread
-
-
-def _estimate_lone_steps(places: FloatArray, levels: FloatArray) -> tuple[FloatArray, FloatArray]:
-    ones = np.ones_like(places)
-    after = np.broadcast_to([0.0, 1.0], places.shape)
-    rows = np.linalg.pinv(np.stack((ones, places, after), axis=2))[:, 2]
-    return (rows * levels).sum(axis=1), np.sqrt((rows * rows).sum(axis=1))
 
 
 def find_strays(part: FloatArray, sigma: float) -> BoolArray:

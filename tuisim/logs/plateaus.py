@@ -377,52 +377,30 @@ def _add_ends(values: FloatArray, plateaus: PlateauArray, min_step: float) -> Pl
 
 def _extend_pieces(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
     """Extend pieces by samples of the same level beyond a stray at their ends."""
-    grown = pieces.copy()
     near = FAR * sigma / 2.0
-    for index in _find_extendable(values, pieces, near).tolist():
-        start, stop = pieces[index].tolist()
-        first = grown[index - 1, 1] if index else 0
-        last = pieces[index + 1, 0] if index + 1 < len(pieces) else len(values)
-        for ahead in range(start - 1, max(first, start - 1 - STRAY_SAMPLES) - 1, -1):
-            if (
-                abs(
-                    values[ahead]
-                    - compute_medians(values[None, start : min(stop, start + NEAR_SAMPLES)])[0]
-                )
-                <= near
-            ):
-                start = ahead
-        for ahead in range(stop, min(last, stop + 1 + STRAY_SAMPLES)):
-            if (
-                abs(
-                    values[ahead]
-                    - compute_medians(values[None, max(start, stop - NEAR_SAMPLES) : stop])[0]
-                )
-                <= near
-            ):
-                stop = ahead + 1
-        grown[index] = start, stop
-    return grown
+    # From the end of the log, stops are starts.
+    mirrored = len(values) - pieces[::-1, ::-1]
+    stops = (
+        len(values)
+        - _extend_starts(values[::-1], mirrored, np.append(0, mirrored[:-1, 1]), near)[::-1]
+    )
+    # Before a short piece, a sample of its level is as likely one of the piece before.
+    limits = np.where(
+        2 * count_samples(pieces) <= NEAR_SAMPLES, pieces[:, 0], np.append(0, stops[:-1])
+    )
+    return np.stack((_extend_starts(values, pieces, limits, near), stops), axis=1)
 
 
-def _find_extendable(values: FloatArray, pieces: Pieces, near: float) -> IntArray:
-    """Return which pieces have a sample of their level ahead of one of their ends, so that they may grow."""
-    starts, stops = pieces.T
-    firsts = np.append(0, stops[:-1])
-    lasts = np.append(starts[1:], len(values))
-    apart = np.flatnonzero((firsts < starts) | (stops < lasts))
-    starts = starts[apart]
-    stops = stops[apart]
-    firsts = firsts[apart]
-    lasts = lasts[apart]
-    heads = _measure_levels(values, starts, np.minimum(starts + NEAR_SAMPLES, len(values)))
-    tails = _measure_levels(values, np.maximum(starts, stops - NEAR_SAMPLES), stops)
-    growing = np.zeros(len(apart), bool)
-    for ahead in range(1 + STRAY_SAMPLES):
-        for positions, level in ((starts - 1 - ahead, heads), (stops + ahead, tails)):
-            free = (firsts <= positions) & (positions < lasts)
-            growing |= free & (np.abs(values[np.where(free, positions, 0)] - level) <= near)
-    return apart[growing]
+def _extend_starts(values: FloatArray, pieces: Pieces, limits: IntArray, near: float) -> IntArray:
+    """Return where pieces start, extended to no earlier than where the ones before them stop: `limits`."""
+    starts, stops = pieces.T.copy()
+    for ahead in starts - 1 - np.arange(STRAY_SAMPLES + 1)[:, None]:
+        free = np.flatnonzero(ahead >= limits)
+        nearest = np.minimum(starts[free] + NEAR_SAMPLES, stops[free])
+        levels = _measure_levels(values, starts[free], nearest)
+        grown = free[np.abs(values[ahead[free]] - levels) <= near]
+        starts[grown] = ahead[grown]
+    return starts
 
 
 def _measure_levels(values: FloatArray, starts: IntArray, stops: IntArray) -> FloatArray:
