@@ -13,7 +13,7 @@ import pyarrow as pa
 from tuisim.base.errors import LogError, counted, listed, shortened
 from tuisim.logs.blocks import MAX_DOCUMENT_BYTES, Block
 from tuisim.logs.choices import ReadChoices
-from tuisim.logs.json_rows import JsonReader, is_row, parse_value
+from tuisim.logs.json_rows import build_json_reader, is_row, parse_value
 from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.warnings import Notes
 
@@ -70,7 +70,7 @@ class DocumentReader:
         try:
             value = json.loads(self._text)
         except (ValueError, RecursionError) as error:
-            table = JsonReader(self._notes).read(Block(1, self._text))
+            table = build_json_reader(self._notes).read(Block(1, self._text))
             if table is None:
                 self._notes.say(f"not complete JSON: {error}")
             return table
@@ -90,7 +90,7 @@ class DocumentReader:
         self._notes.add(
             "value is not a row and was skipped", "values are not rows and were skipped", others
         )
-        return JsonReader(self._notes).build_table(objects) if any(objects[0][1]) else None
+        return build_json_reader(self._notes).build_table(objects) if any(objects[0][1]) else None
 
     def _build_from_lists(self, rows: Sequence[Any]) -> pa.Table | None:
         """Return rows that are lists, the first of which may have the names, or single values."""

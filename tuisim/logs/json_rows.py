@@ -1,9 +1,10 @@
-"""Rows in JSON, one object a line: also as Python prints dictionaries."""
+"""Rows as objects, from lines of JSON, of Python's dictionaries, or of what else has names with values."""
 
 from __future__ import annotations
 
 import ast
 import json
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -14,34 +15,44 @@ from tuisim.logs.typed_columns import TypedColumns
 from tuisim.logs.warnings import Notes
 
 _NAMELESS = "(no name)"
+# Python prints more than JSON has: sets, bytes, numbers as names.
+_format_value = json.JSONEncoder(default=repr, skipkeys=True).encode
+
+Row = Mapping[str, Any]
+"""Cells by the names of their columns."""
 
 
-class JsonReader:
-    """Reads blocks of JSON lines of one file; names and types of the columns are fixed by the first block."""
+class ObjectReader:
+    """Reads blocks of lines of one file; names and types of the columns are fixed by the first block.
 
-    def __init__(self, notes: Notes) -> None:
+    Args:
+        parse: Returns the rows in a line, of which the number is given, too; none if it has none.
+        kind: What a line has to be, in the singular and in the plural.
+    """
+
+    def __init__(
+        self, notes: Notes, parse: Callable[[int, str], Sequence[Row]], *kind: str
+    ) -> None:
         self._notes = notes
+        self._parse = parse
+        self._singular, self._plural = kind
         self._columns = TypedColumns(notes, "")
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the rows of a block; None if it has none."""
-        numbered_rows: list[tuple[int, dict[str, Any]]] = []
-        broken: list[int] = []
-        for row, line in block.lines():
+        numbered_rows: list[tuple[int, Row]] = []
+        others: list[int] = []
+        for number, line in block.lines():
             if line.strip() in ("[", "]", "[]"):
                 continue
-            objects = _parse_rows(line)
-            numbered_rows += [(row, cells) for cells in objects]
-            if not objects:
-                broken.append(row)
-        skipped = (
-            "line is not a JSON object and was skipped",
-            "lines are not JSON objects and were skipped",
-        )
-        self._notes.add(*skipped, broken)
+            rows = self._parse(number, line)
+            numbered_rows += [(number, row) for row in rows]
+            if not rows:
+                others.append(number)
+        self._notes.add(f"line is not {self._singular}", f"lines are not {self._plural}", others)
         return self.build_table(numbered_rows) if numbered_rows else None
 
-    def build_table(self, numbered_rows: list[tuple[int, dict[str, Any]]]) -> pa.Table:
+    def build_table(self, numbered_rows: Sequence[tuple[int, Row]]) -> pa.Table:
         """Return a table of objects, each of which comes with its row in the file."""
         names = dict.fromkeys(name for _, cells in numbered_rows for name in cells)
         texts = {
@@ -53,12 +64,17 @@ class JsonReader:
         return self._columns.convert(texts, lambda: [row for row, _ in numbered_rows], "")
 
 
+def build_json_reader(notes: Notes) -> ObjectReader:
+    """Return a reader of lines that are an object, or a list of objects, each."""
+    return ObjectReader(notes, lambda _, line: _parse_rows(line), "a JSON object", "JSON objects")
+
+
 def _format_cell(cell: object) -> str | None:
     if cell is None:
         return None
-    # Python prints more than JSON has: sets, bytes, numbers as names.
-    text = cell if isinstance(cell, str) else json.dumps(cell, default=repr, skipkeys=True)
-    return _escape_surrogates(text)
+    if type(cell) in (int, float):
+        return repr(cell)
+    return _escape_surrogates(cell if isinstance(cell, str) else _format_value(cell))
 
 
 def _escape_surrogates(text: str) -> str:

@@ -5,22 +5,19 @@ The printed lines of a run become samples in `engine/runs/samples.py`, which rea
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-import pyarrow as pa
-
 from tuisim.engine.core.conditions import NUMBER
 from tuisim.engine.runs.samples import parse_sample
-from tuisim.logs.blocks import Block
 from tuisim.logs.cells import UNIT
 from tuisim.logs.choices import ReadChoices
 from tuisim.logs.columns import NAMES, parse_time_name
 from tuisim.logs.dates import MOMENT
 from tuisim.logs.heading import BLANKS, SEPARATORS, count_rows, parse_kinds, split_cells
+from tuisim.logs.json_rows import ObjectReader, Row
 from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.warnings import Notes
 
@@ -52,8 +49,8 @@ _TUPLE = re.compile(r"\s*(?:[A-Za-z_]*\((?P<tuple>.*)\)|\[(?P<list>[^\[\]{}]*)\]
 _MAX_CHARACTERS = 4000
 """Longer lines are not searched for samples."""
 
-Values = tuple[tuple[str, float], ...]
-"""Names with their numbers."""
+Values = tuple[tuple[str, float | str], ...]
+"""Names with their numbers, which may be texts."""
 
 
 class ProgramLine(NamedTuple):
@@ -73,7 +70,7 @@ def parse_line(line: str) -> ProgramLine | None:
     if (sample := parse_sample(line)) is not None:
         return ProgramLine(sample[2], (sample[:2],))
     if (teleplot := _TELEPLOT.fullmatch(line.strip())) is not None:
-        return ProgramLine(float(teleplot[2]) / 1000, ((teleplot[1], float(teleplot[3])),))
+        return ProgramLine(float(teleplot[2]) / 1000, ((teleplot[1], teleplot[3]),))
     time, rest, certain = _split_time(line)
     if samples := _parse_samples(rest):
         return ProgramLine(time, samples)
@@ -112,7 +109,7 @@ def _parse_samples(text: str) -> Values:
         samples = []
         position = 0
         while position < len(text) and (item := _ITEM.match(text, position)) is not None:
-            samples.append((item[1], _parse_value(item[2])))
+            samples.append((item[1], item[2]))
             gap = _GAP.match(text, item.end())
             position = item.end() if gap is None else gap.end()
             if gap is None:
@@ -125,17 +122,8 @@ def _parse_samples(text: str) -> Values:
         text = text[prefix.end() :]
 
 
-def _parse_value(text: str) -> float:
-    """Return a number; NaN for a missing one, or one that is too large."""
-    try:
-        value = float(text)
-    except ValueError:
-        return math.nan
-    return value if math.isfinite(value) or "inf" in text.lower() else math.nan
-
-
-def _is_number(time: float | str) -> bool:
-    return isinstance(time, float) or re.fullmatch(NUMBER, time) is not None
+def _is_number(time: str) -> bool:
+    return re.fullmatch(NUMBER, time) is not None
 
 
 def _is_row(line: str) -> bool:
@@ -147,7 +135,7 @@ def _is_row(line: str) -> bool:
 
 def choose_reader(
     lines: Sequence[str], is_table: bool, notes: Notes, choices: ReadChoices
-) -> RowReader | SampleReader | None:
+) -> CsvReader | ObjectReader | None:
     """Return a reader for a file with these first lines; None if a program has not printed them.
 
     Args:
@@ -166,58 +154,24 @@ def choose_reader(
     if numbers >= len(samples):
         is_stamped = 2 * stamped > len(lines) and not with_heading
         tabs = replace(choices, separator="tab")
-        return RowReader(split_stamped, notes, tabs) if is_stamped else None
+        return CsvReader(notes, tabs, _split_stamped) if is_stamped else None
     rows = sum(_is_row(text) for text, line in zip(lines, by_line, strict=True) if line is None)
     last = max(index for index, line in enumerate(by_line) if line is not None)
     rows = max(rows, count_rows(lines[last + 1 :]))
     if len(parsed) <= rows or (is_table and 2 * stamped <= len(lines)):
         return None
-    times = [line.time for line in samples if line.time is not None]
-    return SampleReader(notes, not times or all(map(_is_number, times)))
+    return ObjectReader(notes, _list_samples, "a sample", "samples")
 
 
-class SampleReader:
-    """Reads blocks of one file of samples.
-
-    Args:
-        has_seconds: Whether times are numbers; else they are dates or times of day.
-    """
-
-    def __init__(self, notes: Notes, has_seconds: bool) -> None:
-        self._notes = notes
-        self._has_seconds = has_seconds
-
-    def read(self, block: Block) -> pa.Table | None:
-        """Return the samples of a block; None if it has none. The time is empty where none was printed."""
-        rows: list[tuple[int, str, float, float | str | None]] = []
-        others = []
-        for row, line in block.lines():
-            # The usual case is fast.
-            if self._has_seconds and (sample := parse_sample(line)) is not None:
-                rows.append((row, *sample))
-                continue
-            parsed = parse_line(line)
-            if parsed is None or not parsed.samples:
-                others.append(row)
-                continue
-            time = self._choose_time(parsed)
-            rows += [(row, name, value, time) for name, value in parsed.samples]
-        self._notes.add("line is not a sample", "lines are not samples", others)
-        if not rows:
-            return None
-        kinds = {
-            "row": pa.float64(),
-            "variable": pa.string(),
-            "value": pa.float64(),
-            "time": pa.float64() if self._has_seconds else pa.string(),
-        }
-        cells = zip(*rows, strict=True)
-        return pa.table({name: pa.array(next(cells), kind) for name, kind in kinds.items()})
-
-    def _choose_time(self, line: ProgramLine) -> float | str | None:
-        if line.time is None or not self._has_seconds:
-            return None if line.time is None else str(line.time)
-        return float(line.time) if _is_number(line.time) else None
+def _list_samples(row: int, line: str) -> list[Row]:
+    """Return the samples in a line; their time is None where none was printed."""
+    parsed = parse_line(line)
+    if parsed is None:
+        return []
+    return [
+        {"row": row, "variable": name, "value": value, "time": parsed.time}
+        for name, value in parsed.samples
+    ]
 
 
 def has_tuples(lines: Sequence[str]) -> bool:
@@ -227,30 +181,13 @@ def has_tuples(lines: Sequence[str]) -> bool:
     return len(lines) > 1 and not is_document and 2 * rows > len(lines)
 
 
-class RowReader:
-    """Reads blocks of one file whose lines become rows of a table by rewriting them.
-
-    Args:
-        rewrite: Returns the cells of a line as text; a line that it does not know as it is.
-        choices: How the table is to be read.
-    """
-
-    def __init__(self, rewrite: Callable[[str], str], notes: Notes, choices: ReadChoices) -> None:
-        self._rewrite, self._table = rewrite, CsvReader(notes, choices)
-
-    def read(self, block: Block) -> pa.Table | None:
-        """Return the rows of a block; None if it has none."""
-        text = "\n".join(map(self._rewrite, block.text.split("\n")))
-        return self._table.read(replace(block, text=text))
-
-
 def strip_brackets(line: str) -> str:
     """Return a tuple or list without its brackets; other lines as they are."""
     match = _TUPLE.fullmatch(line)
     return line if match is None else match["tuple"] or match["list"] or ""
 
 
-def split_stamped(line: str) -> str:
+def _split_stamped(line: str) -> str:
     """Return a time and the numbers behind it, or their names, with tabs between them; other lines as they are."""
     parsed = parse_line(line)
     if parsed is not None and parsed.rest:

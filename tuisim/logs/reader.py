@@ -46,11 +46,9 @@ from tuisim.logs.columns import (
 )
 from tuisim.logs.documents import DocumentReader, has_objects, is_document, is_json_start
 from tuisim.logs.export import find_companion, log_metadata
-from tuisim.logs.json_rows import JsonReader
+from tuisim.logs.json_rows import ObjectReader, build_json_reader
 from tuisim.logs.log import Log, LogCache
 from tuisim.logs.program_lines import (
-    RowReader,
-    SampleReader,
     choose_reader,
     has_tuples,
     strip_brackets,
@@ -339,15 +337,19 @@ def _refuse_binary(data: bytes) -> None:
 
 def _choose_reader(
     block: Block, suffix: str, choices: ReadChoices, notes: Notes
-) -> CsvReader | JsonReader | DocumentReader | SampleReader | RowReader:
+) -> CsvReader | ObjectReader | DocumentReader:
     lines = [line for _, line in islice(block.lines(), _JUDGED_LINES)]
     is_table = suffix in _TABLES or choices.header > 0 or choices.separator != ""
     if lines and has_tuples(lines):
-        return RowReader(strip_brackets, notes, choices)
+        return CsvReader(notes, choices, strip_brackets)
     if suffix in (".jsonl", ".ndjson", ".json") or (not is_table and is_json_start(lines)):
-        return DocumentReader(notes, choices) if lines and is_document(lines) else JsonReader(notes)
+        return (
+            DocumentReader(notes, choices)
+            if lines and is_document(lines)
+            else build_json_reader(notes)
+        )
     if not is_table and has_objects(lines):
-        return JsonReader(notes)
+        return build_json_reader(notes)
     return choose_reader(lines, is_table, notes, choices) or CsvReader(notes, choices)
 
 

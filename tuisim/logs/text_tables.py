@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice, takewhile
 from typing import Any
@@ -50,11 +50,18 @@ _MIN_ROWS = 2
 
 
 class CsvReader:
-    """Reads blocks of one file; names and types of the columns are fixed by the first block."""
+    """Reads blocks of one file; names and types of the columns are fixed by the first block.
 
-    def __init__(self, notes: Notes, choices: ReadChoices) -> None:
+    Args:
+        rewrite: Returns the cells of a line as text with separators; a line that it does not know as it is.
+    """
+
+    def __init__(
+        self, notes: Notes, choices: ReadChoices, rewrite: Callable[[str], str] | None = None
+    ) -> None:
         self._notes = notes
         self._choices = choices
+        self._rewrite = rewrite
         self._heading = Heading()
         self._tables_left = choices.table - 1
         """Tables that are still to be passed by."""
@@ -71,6 +78,9 @@ class CsvReader:
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the rows of a block; None if it has none of the table."""
+        if self._rewrite:
+            lines = map(self._rewrite, block.text.split("\n"))
+            block = Block(block.first_row, "\n".join(lines))
         while not self._is_over:
             if not self._heading.names:
                 block = self._begin(block)
