@@ -38,7 +38,7 @@ _ITEM = re.compile(
     rf"(?:\s*(?i:{UNIT})(?![\w.\-/%°]|\s*[:=]))?"
 )
 """A name with its number, of which a unit may follow."""
-_GAP = re.compile(r"[\s,;|]+")
+_ITEMS = re.compile(rf"(?:(?>{_ITEM.pattern})(?:[\s,;|]+|$))+")
 _TELEPLOT = re.compile(rf">?([^\W\d]\w*):(\d{{9,}}(?:\.\d+)?):({NUMBER})(?:[|\xa7].*)?")
 """Name, milliseconds and value."""
 _VALUES = re.compile(rf"{_VALUE}(?:(?:\s*[,;]\s*|\s+){_VALUE})*")
@@ -49,7 +49,7 @@ _TUPLE = re.compile(r"\s*(?:[A-Za-z_]*\((?P<tuple>.*)\)|\[(?P<list>[^\[\]{}]*)\]
 _MAX_CHARACTERS = 4000
 """Longer lines are not searched for samples."""
 
-Values = tuple[tuple[str, float | str], ...]
+Values = Sequence[tuple[str, float | str]]
 """Names with their numbers, which may be texts."""
 
 
@@ -71,12 +71,12 @@ def parse_line(line: str) -> ProgramLine | None:
         return ProgramLine(sample[2], (sample[:2],))
     if (teleplot := _TELEPLOT.fullmatch(line.strip())) is not None:
         return ProgramLine(float(teleplot[2]) / 1000, ((teleplot[1], teleplot[3]),))
-    time, rest, certain = _split_time(line)
-    if samples := _parse_samples(rest):
+    time, rest, certain = _split_time(line.strip())
+    if samples := _ITEM.findall(_strip_prefixes(rest, _ITEMS)):
         return ProgramLine(time, samples)
     # Of two numbers, the first need not be a time.
-    rest = _strip_prefixes(rest) if certain else ""
-    return ProgramLine(time, (), rest) if rest and _VALUES.fullmatch(rest) else None
+    numbers = _strip_prefixes(rest, _VALUES) if certain else ""
+    return ProgramLine(time, (), numbers) if numbers else None
 
 
 def _split_time(line: str) -> tuple[str | None, str, bool]:
@@ -84,46 +84,18 @@ def _split_time(line: str) -> tuple[str | None, str, bool]:
     match = _STAMPED.fullmatch(line)
     if match is None:
         return None, line, False
-    between = match["between"].strip()
-    is_certain = match["open"] is not None or ":" in between
     # If only blanks separate two numbers, they can be cells of a row, and the first need not be a time.
-    return (
-        match["stamp"],
-        match["rest"],
-        is_certain or (between != "" and not _is_number(match["stamp"])),
-    )
+    return match["stamp"], match["rest"], bool(match["open"] or match["between"].strip())
 
 
-def _strip_prefixes(text: str) -> str:
-    while (prefix := _PREFIX.match(text)) is not None and prefix.end() < len(text):
+def _strip_prefixes(text: str, pattern: re.Pattern[str]) -> str:
+    """Return a text without prefixes such as a logger's; empty if the rest does not match a pattern."""
+    while pattern.fullmatch(text) is None:
+        prefix = _PREFIX.match(text)
+        if prefix is None:
+            return ""
         text = text[prefix.end() :]
     return text
-
-
-def _parse_samples(text: str) -> Values:
-    """Return the samples in a text, after prefixes such as a logger's; none if it has anything else in it."""
-    text = text.strip()
-    while True:
-        if (sample := parse_sample(text)) is not None and sample[2] is None:
-            return (sample[:2],)
-        samples = []
-        position = 0
-        while position < len(text) and (item := _ITEM.match(text, position)) is not None:
-            samples.append((item[1], item[2]))
-            gap = _GAP.match(text, item.end())
-            position = item.end() if gap is None else gap.end()
-            if gap is None:
-                break
-        if samples and position == len(text):
-            return tuple(samples)
-        prefix = _PREFIX.match(text)
-        if prefix is None or prefix.end() == len(text):
-            return ()
-        text = text[prefix.end() :]
-
-
-def _is_number(time: str) -> bool:
-    return re.fullmatch(NUMBER, time) is not None
 
 
 def _is_row(line: str) -> bool:
