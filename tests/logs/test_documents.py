@@ -94,7 +94,7 @@ CASES: dict[str, Case] = {
     "unequal columns": (
         "a.json",
         text({"a": [0, 1], "b": [2]}),
-        "different lengths: 'a' has 2 values, 'b' has 1 value",
+        "columns of different lengths",
     ),
     "two tables": ("a.json", text({"a": ROWS, "b": ROWS}), "has several tables: 'a', 'b'"),
     "a single number": ("a.json", b"5", "is a single JSON value, 5, not a table"),

@@ -10,7 +10,7 @@ from typing import Any
 
 import pyarrow as pa
 
-from tuisim.base.errors import LogError, counted, listed, shortened
+from tuisim.base.errors import LogError, listed, shortened
 from tuisim.logs.blocks import MAX_DOCUMENT_BYTES, Block
 from tuisim.logs.choices import ReadChoices
 from tuisim.logs.json_rows import build_json_reader, is_row, parse_value
@@ -29,15 +29,10 @@ def is_json_start(lines: Sequence[str]) -> bool:
 
 
 def has_objects(lines: Sequence[str]) -> bool:
-    """Return whether most of the lines are a JSON object each."""
-    return 2 * sum(line.lstrip().startswith("{") and is_row(line) for line in lines) > len(lines)
-
-
-def is_document(lines: Sequence[str]) -> bool:
-    """Return whether JSON with these first lines is one document, not a row on each line."""
-    return len(lines) == 1 or not (
-        is_row(lines[0]) or (lines[0].strip() == "[" and is_row(lines[1]))
-    )
+    """Return whether there are several lines, and most of them are a JSON object each."""
+    return len(lines) > 1 and 2 * sum(
+        line.lstrip().startswith("{") and is_row(line) for line in lines
+    ) > len(lines)
 
 
 class DocumentReader:
@@ -109,17 +104,15 @@ class DocumentReader:
             self._notes.say(f"only the table {inner[0]!r} is read")
             table = value[inner[0]]
             return self._list_rows(table) if isinstance(table, dict) else table
-        if value and all(isinstance(cells, dict) for cells in value.values()):
-            # pandas writes a frame like this: an object of cells for each column.
-            labels = dict.fromkeys(label for cells in value.values() for label in cells)
-            return [{name: cells.get(label) for name, cells in value.items()} for label in labels]
-        columns = {name: cells for name, cells in value.items() if isinstance(cells, list)}
+        # pandas writes a frame as an object of cells for each column.
+        has_labels = all(isinstance(cells, dict) for cells in value.values())
+        columns = {n: cells for n, cells in value.items() if has_labels or isinstance(cells, list)}
         if not columns:
             return [value] if value else []
         others = [repr(name) for name in value if name not in columns]
         if others:
             self._notes.say(f"only the lists are read as columns, without {listed(others)}")
-        return _transpose(columns)
+        return _list_rows(columns)
 
 
 def _is_table(value: Any) -> bool:
@@ -129,16 +122,16 @@ def _is_table(value: Any) -> bool:
     return isinstance(value, dict) and any(isinstance(cell, list) for cell in value.values())
 
 
-def _transpose(columns: Mapping[str, Sequence[Any]]) -> list[Any]:
+def _list_rows(columns: Mapping[str, Any]) -> list[Any]:
     """Return columns as rows.
 
     Raises:
         LogError: their lengths differ.
     """
-    if len({len(cells) for cells in columns.values()}) > 1:
-        lengths = listed(
-            f"{name!r} has {counted(len(cells), 'value')}" for name, cells in columns.items()
-        )
-        raise LogError(f"columns of different lengths: {lengths}", _ALLOWED)
-    rows = zip(*columns.values(), strict=True)
-    return [dict(zip(columns, cells, strict=True)) for cells in rows]
+    import pandas as pd
+
+    try:
+        frame = pd.DataFrame(columns, dtype=object)
+    except ValueError as error:
+        raise LogError("has columns of different lengths", _ALLOWED) from error
+    return frame.where(frame.notna(), None).to_dict("records")

@@ -284,14 +284,6 @@ def _has_inner_commas(lines: Sequence[str]) -> bool:
     return 2 * outside <= len(lines)
 
 
-def count_rows(lines: Sequence[str]) -> int:
-    """Return how many of the lines are rows of one table with numbers."""
-    if not lines:
-        return 0
-    run = _find_table(list(_split_lines(list(enumerate(lines)), sniff_separator(lines))))
-    return run.length if run.rank.is_table else 0
-
-
 def _find_table(table: Sequence[_Line]) -> _Run:
     """Return the run that is the table: the first of those that begin with numbers, else the most certain one."""
     runs = list(_find_runs(table))

@@ -16,7 +16,7 @@ from tuisim.logs.cells import UNIT
 from tuisim.logs.choices import ReadChoices
 from tuisim.logs.columns import NAMES, parse_time_name
 from tuisim.logs.dates import MOMENT
-from tuisim.logs.heading import BLANKS, SEPARATORS, count_rows, parse_kinds, split_cells
+from tuisim.logs.heading import BLANKS, SEPARATORS, parse_kinds, split_cells
 from tuisim.logs.json_rows import ObjectReader, Row
 from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.warnings import Notes
@@ -115,21 +115,14 @@ def choose_reader(
     """
     by_line = [parse_line(line) for line in lines]
     parsed = [line for line in by_line if line is not None]
-    if not parsed:
-        return None
     samples = [line for line in parsed if line.samples]
     numbers = len(parsed) - len(samples)
-    with_heading = (
-        len(lines) > 1 and by_line[0] is None and len(lines[0].split()) == len(lines[1].split())
-    )
     stamped = sum(line.time is not None for line in parsed)
     if numbers >= len(samples):
-        is_stamped = 2 * stamped > len(lines) and not with_heading
+        is_stamped = 2 * stamped > len(lines)
         tabs = replace(choices, separator="tab")
         return CsvReader(notes, tabs, _split_stamped) if is_stamped else None
     rows = sum(_is_row(text) for text, line in zip(lines, by_line, strict=True) if line is None)
-    last = max(index for index, line in enumerate(by_line) if line is not None)
-    rows = max(rows, count_rows(lines[last + 1 :]))
     if len(parsed) <= rows or (is_table and 2 * stamped <= len(lines)):
         return None
     return ObjectReader(notes, _list_samples, "a sample", "samples")
@@ -148,9 +141,9 @@ def _list_samples(row: int, line: str) -> list[Row]:
 
 def has_tuples(lines: Sequence[str]) -> bool:
     """Return whether most of the lines are tuples or lists as Python prints them."""
-    is_document = lines[0].lstrip().startswith(("[[", "[{")) or lines[0].strip() == "["
-    rows = sum(_TUPLE.fullmatch(line) is not None for line in lines)
-    return len(lines) > 1 and not is_document and 2 * rows > len(lines)
+    if len(lines) < 2 or lines[0].strip() == "[" or lines[0].lstrip().startswith(("[[", "[{")):
+        return False
+    return 2 * sum(_TUPLE.fullmatch(line) is not None for line in lines) > len(lines)
 
 
 def strip_brackets(line: str) -> str:

@@ -44,7 +44,7 @@ from tuisim.logs.columns import (
     has_guessed_order,
     is_text,
 )
-from tuisim.logs.documents import DocumentReader, has_objects, is_document, is_json_start
+from tuisim.logs.documents import DocumentReader, has_objects, is_json_start
 from tuisim.logs.export import find_companion, log_metadata
 from tuisim.logs.json_rows import ObjectReader, build_json_reader
 from tuisim.logs.log import Log, LogCache
@@ -340,16 +340,12 @@ def _choose_reader(
 ) -> CsvReader | ObjectReader | DocumentReader:
     lines = [line for _, line in islice(block.lines(), _JUDGED_LINES)]
     is_table = suffix in _TABLES or choices.header > 0 or choices.separator != ""
-    if lines and has_tuples(lines):
+    if has_tuples(lines):
         return CsvReader(notes, choices, strip_brackets)
-    if suffix in (".jsonl", ".ndjson", ".json") or (not is_table and is_json_start(lines)):
-        return (
-            DocumentReader(notes, choices)
-            if lines and is_document(lines)
-            else build_json_reader(notes)
-        )
     if not is_table and has_objects(lines):
         return build_json_reader(notes)
+    if suffix in (".jsonl", ".ndjson", ".json") or (not is_table and is_json_start(lines)):
+        return DocumentReader(notes, choices)
     return choose_reader(lines, is_table, notes, choices) or CsvReader(notes, choices)
 
 
