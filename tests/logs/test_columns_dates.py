@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.cases import cases
-from tuisim.logs.columns import read_seconds
+from tuisim.logs.columns import read_times
 from tuisim.logs.export import EXPORTERS, export_log
 from tuisim.logs.reader import open_log
 
@@ -29,7 +29,11 @@ TEXTS: dict[str, tuple[list[str | None], list[float]]] = {
 @cases("texts, expected", TEXTS)
 def test_texts(texts: list[str | None], expected: list[float]) -> None:
     assert_allclose(
-        read_seconds(pa.chunked_array([pa.array(texts, pa.string())]), 1.0), expected, atol=1e-9
+        read_times(
+            pa.chunked_array([pa.array(texts, pa.string())]), 1.0, since_first=False
+        ).seconds,
+        expected,
+        atol=1e-9,
     )
 
 
@@ -47,7 +51,9 @@ KINDS: dict[str, tuple[pa.Array, list[float]]] = {
 
 @cases("column, expected", KINDS)
 def test_kinds(column: pa.Array, expected: list[float]) -> None:
-    assert_allclose(read_seconds(pa.chunked_array([column]), 1.0), expected, rtol=1e-12)
+    assert_allclose(
+        read_times(pa.chunked_array([column]), 1.0, since_first=False).seconds, expected, rtol=1e-12
+    )
 
 
 @pytest.mark.parametrize("suffix", EXPORTERS)

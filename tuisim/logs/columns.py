@@ -22,53 +22,42 @@ from tuisim.logs.units import SECONDS
 if TYPE_CHECKING:
     import pandas as pd
 
-NAMES = (
-    "time",
-    "t",
-    "seconds",
-    "secs",
-    "sec",
-    "elapsed",
-    "timestamp",
-    "datetime",
-    "date",
-    "ts",
-    "clock",
-    "epoch",
-    "zeit",
-    "temps",
-    "tiempo",
-    "tempo",
-    "minutes",
-    "millis",
-    "milliseconds",
-    "ms",
-    "micros",
-    "microseconds",
-    "us",
-    "nanos",
-    "nanoseconds",
-    "ns",
-    "index",
-    "row",
-)
-"""Names of time columns, the most certain first."""
-_WORDS = frozenset(
-    {"time", "timestamp", "datetime", "elapsed", "stamp", "clock", "timer", "uptime", "zeit"}
-)
-"""A rising column with one of these words in its name is a time, too: `sim_time`, `brick clock (ms)`."""
-
 _UNIT_WORDS_S = {
     1.0: ("s", "sec", "secs", "second", "seconds"),
     1e-3: ("ms", "msec", "msecs", "millis", "millisecond", "milliseconds"),
-    1e-6: ("us", "µs", "μs", "usec", "usecs", "micros", "microsecond", "microseconds"),
-    1e-9: ("ns", "nsec", "nsecs", "nanos", "nanosecond", "nanoseconds"),
+    1e-6: ("us", "µs", "μs", "usec", "usecs", "micros", "microsec", "microsecond", "microseconds"),
+    1e-9: ("ns", "nsec", "nsecs", "nanos", "nanosec", "nanosecond", "nanoseconds"),
     60.0: ("min", "mins", "minute", "minutes"),
     3600.0: ("h", "hour", "hours"),
 }
-_UNITS_S = {word: seconds for seconds, words in _UNIT_WORDS_S.items() for word in words}
+UNITS_S = {word: seconds for seconds, words in _UNIT_WORDS_S.items() for word in words}
+
+COUNTS = ("index", "row")
+"""Names of columns that count the samples."""
+NAMES = (
+    *(
+        "time",
+        "t",
+        "elapsed",
+        "timestamp",
+        "datetime",
+        "date",
+        "ts",
+        "clock",
+        "epoch",
+        "stamp",
+        "timer",
+    ),
+    *("uptime", "zeit", "temps", "tiempo", "tempo", "sec"),
+    *(word for word in UNITS_S if len(word) > 1 and word.endswith("s")),
+    *COUNTS,
+)
+"""Names of time columns, the most certain first: units, too, such as `ms`."""
+_WORDS = frozenset(word for word in NAMES if len(word) > 3 and word not in COUNTS)
+"""A rising column with one of these words in its name is a time, too: `sim_time`, `brick clock (ms)`."""
+
 _UNIT = re.compile(
-    r"(?:[ _]*[(\[](?P<bracket>[^)\]]*)[)\]]|\s*/\s*(?P<slash>[^\W\d_]+)|[_ ](?:in[_ ])?(?P<end>[^\W\d_]+))$"
+    r"(?:[ _]*[(\[](?P<bracket>[^)\]]*)[)\]]|\s*/\s*(?P<slash>[^\W\d_]+)|[._ ](?:in[_ ])?(?P<end>[^\W\d_]+))$"
 )
 """The unit at the end of a name: `time (ms)`, `Time [s]`, `t/s`, `timestamp_ms`, `time in ms`."""
 _LONGEST_UNIT = 200
@@ -95,16 +84,16 @@ def parse_time_name(name: str) -> TimeName:
     unit_s = None
     if match is not None and match.start() > 0:
         word = next(part for part in match.groups() if part is not None).strip()
-        unit_s = _UNITS_S.get(word)
+        unit_s = UNITS_S.get(word)
         if unit_s is not None or match["bracket"] is not None:
             text = text[: match.start()]
     base = text.strip(" #%@._/\"'")
-    return TimeName(base, _UNITS_S.get(base) if unit_s is None else unit_s)
+    return TimeName(base, UNITS_S.get(base) if unit_s is None else unit_s)
 
 
 def has_time_word(name: str) -> bool:
-    """Return whether one of the words of a name means a time, or its unit in brackets: `since start (s)`."""
-    if name.endswith((")", "]")) and parse_time_name(name).unit_s is not None:
+    """Return whether one of the words of a name means a time, or its unit: `since start (s)`."""
+    if parse_time_name(name).unit_s is not None:
         return True
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     return not _WORDS.isdisjoint(re.split(r"[\W_]+", spaced.lower()))
@@ -150,11 +139,6 @@ class Times(NamedTuple):
     """The period in words, if there are wraps."""
 
 
-def read_seconds(column: pa.ChunkedArray, unit_s: float, since_first: bool = False) -> FloatArray:
-    """Return a time column in seconds, as `read_times`."""
-    return read_times(column, unit_s, since_first).seconds
-
-
 def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool) -> Times:
     """Return a time column in seconds: dates since the first of them, numbers times their unit.
 
@@ -164,28 +148,24 @@ def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool) -> Tim
         since_first: Whether numbers are dates, too, and count from the first.
     """
     kind = column.type
-    if pa.types.is_date(kind):
-        column = column.cast(pa.timestamp("s"))
-        kind = pa.timestamp("s")
-    if pa.types.is_temporal(kind):
-        # Arrow casts 32-bit times only to integers of the same size.
-        wide: Any = (
-            column.cast(pa.int32()).cast(pa.int64())
-            if pa.types.is_time32(kind)
-            else column.cast(pa.int64())
-        )
-        if pa.types.is_timestamp(kind):
-            # Subtracted as integers: floats have no digits left for nanoseconds since 1970.
-            wide = pc.subtract(wide, pc.first(wide))
-        return Times(_read_floats(wide) / PER_S[kind.unit])
-    if pa.types.is_string(kind) or pa.types.is_large_string(kind) or pa.types.is_dictionary(kind):
+    if is_text(kind):
         return parse_times(column)
-    if since_first and pa.types.is_integer(kind):
-        # Subtracted as integers, as above.
-        column = pc.subtract(column.cast(pa.int64()), pc.first(column.cast(pa.int64())))
-    if since_first:
-        return Times(_subtract_first(_read_floats(column)) * unit_s)
-    times = _unwrap(_read_floats(column), _COUNTER, "2³²")
+    if pa.types.is_date(kind):
+        kind = pa.timestamp("s")
+        column = column.cast(kind)
+    if pa.types.is_time32(kind):
+        # Arrow casts 32-bit times only to integers of the same size.
+        column = column.cast(pa.int32())
+    is_temporal = pa.types.is_temporal(kind)
+    if is_temporal or pa.types.is_integer(kind):
+        column = column.cast(pa.int64())
+    if since_first or pa.types.is_timestamp(kind):
+        # Subtracted as integers: floats have no digits left for nanoseconds since 1970.
+        column = pc.subtract(column, pc.first(column.filter(pc.is_finite(column))))
+    seconds = np.asarray(convert_to_floats(column), np.float64)
+    if is_temporal:
+        return Times(seconds / PER_S[kind.unit])
+    times = Times(seconds) if since_first else _unwrap(seconds, _COUNTER, "2³²")
     return times if unit_s == 1.0 else times._replace(seconds=times.seconds * unit_s)
 
 
@@ -205,15 +185,6 @@ def _unwrap(seconds: FloatArray, period: float, words: str) -> Times:
     rounds = np.zeros(len(seconds))
     rounds[wraps] = period
     return Times(seconds + np.cumsum(rounds), wraps, words)
-
-
-def _subtract_first(seconds: FloatArray) -> FloatArray:
-    known = seconds[np.isfinite(seconds)]
-    return seconds - known[0] if len(known) else seconds
-
-
-def _read_floats(column: pa.ChunkedArray) -> FloatArray:
-    return np.asarray(convert_to_floats(column), np.float64)
 
 
 def parse_times(column: pa.ChunkedArray) -> Times:
@@ -240,9 +211,6 @@ ROW = ""
 """In place of a time column: the samples are counted."""
 
 _JUDGED_CELLS = 20
-COUNTS = ("index", "row")
-"""Names of columns that count the samples."""
-_TEXT_TIMES = frozenset(NAMES) - {*COUNTS}
 
 _VARIABLE_NAMES = (
     "variable",
@@ -293,15 +261,21 @@ def list_numeric_columns(schema: pa.Schema) -> list[str]:
     return [field.name for field in schema if is_numeric(field.type)]
 
 
-def is_time(kind: pa.DataType) -> bool:
-    """Return whether a type is a date, a time or a time span."""
-    return bool(pa.types.is_temporal(kind) and not pa.types.is_interval(kind))
+def list_time_columns(table: pa.Table) -> list[str]:
+    """Return the names of the columns that can be the time: of numbers, dates, times and time spans."""
+    names = list_numeric_columns(table.schema)[:_MAX_TIMES]
+    return [*names, *_list_moments(table)]
 
 
-def time_columns(table: pa.Table) -> list[str]:
-    """Return the names of the columns that can be the time."""
-    names = table.column_names[:_MAX_TIMES]
-    return [n for n in names if is_numeric(table.field(n).type) or _is_moment(table, n)]
+def _list_moments(table: pa.Table) -> list[str]:
+    """Return the columns of dates, times or time spans, also as texts."""
+    types = {field.name: field.type for field in table.schema}
+    typed = [
+        n
+        for n, kind in types.items()
+        if pa.types.is_temporal(kind) and not pa.types.is_interval(kind)
+    ]
+    return [*typed, *find_texts(table, is_moment)]
 
 
 def guess_columns(table: pa.Table) -> Layout:
@@ -319,18 +293,16 @@ def guess_columns(table: pa.Table) -> Layout:
     value = _find_named(table, _VALUE_NAMES, is_numeric)
     numeric = [n for n in names if is_numeric(table.field(n).type) and n not in (time, run)]
     if variable and value and value != time:
+        values = [value]
         sure = bool(named) or not set(numeric) - {value, *_NO_VALUES}
-        return _set_time_unit(Layout(time, 1.0, False, variable, (value,), run, sure), table)
-    if value and value in numeric:
-        value_columns = [n for n in numeric if n not in _NO_VALUES]
     else:
+        variable = ""
         # In telemetry, the pose is a value like any other.
-        value_columns = [n for n in numeric if n not in ("line", "row")]
-    # With a single numeric column, there is no choice.
-    sure = bool(named) or (len(numeric) < 2 and not time)
-    return _set_time_unit(
-        Layout(time, 1.0, False, "", tuple(value_columns or numeric), run, sure), table
-    )
+        hidden = _NO_VALUES if value in numeric else ("line", "row")
+        values = [n for n in numeric if n not in hidden] or numeric
+        # With a single numeric column, there is no choice.
+        sure = bool(named) or (len(numeric) < 2 and not time)
+    return _set_time_unit(Layout(time, 1.0, False, variable, tuple(values), run, sure), table)
 
 
 def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataType], bool]) -> str:
@@ -341,55 +313,43 @@ def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataTy
 
 def _set_time_unit(layout: Layout, table: pa.Table, unit_s: float | None = None) -> Layout:
     """Return a layout with the unit of its time column: as given, or guessed from name and size of the numbers."""
+    date_unit_s = None
     if not layout.time or not is_numeric(table.field(layout.time).type):
-        return replace(layout, unit_s=1.0, since_first=False)
-    if unit_s is None:
-        unit_s = parse_time_name(layout.time).unit_s
-    date_unit_s = find_epoch_unit_s(table.column(layout.time), unit_s)
-    if date_unit_s is not None:
-        return replace(layout, unit_s=date_unit_s, since_first=True)
-    return replace(layout, unit_s=1.0 if unit_s is None else unit_s, since_first=False)
+        unit_s = 1.0
+    else:
+        if unit_s is None:
+            unit_s = parse_time_name(layout.time).unit_s
+        date_unit_s = find_epoch_unit_s(table.column(layout.time), unit_s)
+    return replace(layout, unit_s=date_unit_s or unit_s or 1.0, since_first=date_unit_s is not None)
 
 
 def _find_named_time(table: pa.Table) -> str:
     """Return the column that is the time by its name or type, empty if there is none."""
-    bases: dict[str, list[str]] = {}
-    for name in table.column_names:
-        bases.setdefault(parse_time_name(name).base, []).append(name)
-    column = next(
-        (n for time_word in NAMES for n in bases.get(time_word, ()) if _is_usable(table, n)), ROW
-    )
-    if column:
-        return column
-    compound = (
-        n
-        for n in table.column_names
-        if has_time_word(n) and _is_usable(table, n) and _is_rising_time(table, n)
-    )
-    by_type = (n for n in table.column_names if is_time(table.field(n).type))
-    by_content = find_texts(table, is_moment)
-    return next((name for names in (compound, by_type, by_content) for name in names), ROW)
+    moments = _list_moments(table)
+    numbers = list_numeric_columns(table.schema)
+    usable = [n for n in (*moments, *numbers) if table.column(n).null_count < table.num_rows]
+    bases = {parse_time_name(name).base: name for name in reversed(usable)}
+    named = (bases[word] for word in NAMES if word in bases)
+    compound = (n for n in usable if has_time_word(n) and (n in moments or _is_rising(table, n)))
+    return next((name for names in (named, compound, moments) for name in names), ROW)
 
 
 def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:
-    """Yield the columns of texts whose first cells all fit; less than half of these cells may be missing."""
+    """Yield the columns of texts of whose first cells at least half fit."""
     for field in table.schema:
         if is_text(field.type):
-            cells = table.column(field.name).slice(0, _JUDGED_CELLS).cast(pa.string())
-            texts = list(filter(str.strip, cells.drop_null().to_pylist()))
-            if 2 * len(texts) > len(cells) and all(map(fits, texts)):
+            cells = table.column(field.name).slice(0, _JUDGED_CELLS).cast(pa.string()).to_pylist()
+            if 0 < len(cells) <= 2 * sum(cell is not None and fits(cell) for cell in cells):
                 yield field.name
-
-
-def _is_rising_time(table: pa.Table, name: str) -> bool:
-    return not is_numeric(table.field(name).type) or _is_rising(table, name)
 
 
 def find_unread_time(table: pa.Table, layout: Layout) -> str:
     """Return the column of texts with the name of a time, if no column could be read as the time; otherwise empty."""
     if layout.time:
         return ""
-    named = (name for name in table.column_names if parse_time_name(name).base in _TEXT_TIMES)
+    named = (
+        name for name in table.column_names if parse_time_name(name).base in {*NAMES} - {*COUNTS}
+    )
     return next((name for name in named if is_text(table.field(name).type)), "")
 
 
@@ -412,18 +372,7 @@ def _find_rising(table: pa.Table) -> str:
     """Return the first column if no column has a name, and its numbers rise; else `ROW`."""
     names = table.column_names
     nameless = all(name == f"column {number}" for number, name in enumerate(names, 1))
-    first = names[0] if nameless and len(names) > 1 else ROW
-    return (
-        first if first and is_numeric(table.field(first).type) and _is_rising(table, first) else ROW
-    )
-
-
-def _is_usable(table: pa.Table, name: str) -> bool:
-    """Return whether a column has at least one time or number."""
-    column = table.column(name)
-    return column.null_count < table.num_rows and (
-        is_numeric(column.type) or _is_moment(table, name)
-    )
+    return names[0] if nameless and len(names) > 1 and _is_rising(table, names[0]) else ROW
 
 
 def is_text(kind: pa.DataType) -> bool:
@@ -433,19 +382,9 @@ def is_text(kind: pa.DataType) -> bool:
     return bool(pa.types.is_string(kind) or pa.types.is_large_string(kind))
 
 
-def _is_moment(table: pa.Table, name: str) -> bool:
-    """Return whether a column has times, also as ISO texts."""
-    kind = table.field(name).type
-    if is_time(kind):
-        return True
-    if not is_text(kind) or not table.num_rows:
-        return False
-    return bool(np.isfinite(parse_times(table.column(name).slice(0, _JUDGED_CELLS)).seconds).any())
-
-
 def _is_rising(table: pa.Table, name: str) -> bool:
     column = table.column(name)
-    if column.null_count or table.num_rows < 2:
+    if column.null_count or table.num_rows < 2 or not is_numeric(column.type):
         return False
     # Compared, not subtracted: infinite values have no difference.
     numbers = convert_to_floats(column)
@@ -471,7 +410,7 @@ def choose_columns(table: pa.Table, choices: ReadChoices) -> Layout:
             _require(table, name)
             if not is_numeric(table.field(name).type):
                 raise LogError(f"column {name!r} is not numeric")
-        keep = layout.variable if len(values) == 1 and layout.variable else ""
+        keep = layout.variable if len(values) == 1 else ""
         layout = replace(layout, variable=keep, values=values, sure=True)
     return _set_time_unit(layout, table, SECONDS[choices.unit] if choices.unit else None)
 

@@ -24,7 +24,7 @@ _C_TIME = (
 """A date and time as `time.ctime` writes it."""
 MOMENT = (
     rf"(?:{_DATE}(?:{_GAP}\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?{_ZONE}?)?"
-    rf"|\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?|{_C_TIME})"
+    rf"|\d{{8}}T\d{{4,6}}|\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?|{_C_TIME})"
 )
 """Regular expression of a date, a time of day with seconds, or both."""
 _MOMENT_CELL = re.compile(rf"\s*[\[(<]?\s*{MOMENT}\s*[\])>]?\s*")
@@ -57,8 +57,8 @@ _LAST_MONTH = 12
 
 
 def is_moment(cell: str) -> bool:
-    """Return whether a cell is a date, a time of day with seconds, or both; also in brackets."""
-    return _MOMENT_CELL.fullmatch(cell) is not None
+    """Return whether a cell is a date, a time of day with seconds, both, also in brackets, or a time span."""
+    return (_MOMENT_CELL.fullmatch(cell) or re.fullmatch(SPAN, cell)) is not None
 
 
 def is_date(cell: str) -> bool:

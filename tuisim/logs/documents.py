@@ -134,4 +134,5 @@ def _list_rows(columns: Mapping[str, Any]) -> list[Any]:
         frame = pd.DataFrame(columns, dtype=object)
     except ValueError as error:
         raise LogError("has columns of different lengths", _ALLOWED) from error
-    return frame.where(frame.notna(), None).to_dict("records")
+    rows: list[Any] = frame.where(frame.notna(), None).to_dict("records")
+    return rows

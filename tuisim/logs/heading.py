@@ -27,8 +27,6 @@ SNIFFED_LINES = 400
 _COMMENT_SIGNS = ("#", "%", "//", ";")
 _EXCEL = re.compile(r"sep=(.)", re.IGNORECASE)
 """The first line of a CSV file for Excel."""
-_OWN_UNIT = re.compile(r"(?:^|[_. ])(?:[mun]|nano|micro|milli)?(?:s|secs?|seconds)$", re.IGNORECASE)
-"""The end of the name of a time that says its unit."""
 _WORD = re.compile(r'(?<!\S)"[^"]*"(?!\S)|\S+')
 """A cell between blanks."""
 _NUMBER = re.compile(
@@ -382,7 +380,11 @@ def _join_unit(name: str, unit: str) -> str:
     """Return a name with the unit from the row below it in brackets, unless the name has a unit itself."""
     name = name.strip()
     unit = unit.strip(" ()[]")
-    has_unit = unit in ("", "-", "1") or name.endswith((")", "]")) or _OWN_UNIT.search(name)
+    has_unit = (
+        unit in ("", "-", "1")
+        or name.endswith((")", "]"))
+        or parse_time_name(name).unit_s is not None
+    )
     return name if has_unit else f"{name} [{unit}]"
 
 

@@ -51,12 +51,8 @@ def find_nearest_greys(percents: FloatArray) -> list[Grey | None]:
     """Return the grey nearest to each level of 0 to 100 %, None if none is within NEAR_PERCENT."""
     named = list(list_greys().values())
     apart = np.abs(np.array([grey.percent for grey in named]) - percents[:, None])
-    return [
-        named[index] if near else None
-        for index, near in zip(
-            apart.argmin(axis=1), (apart <= NEAR_PERCENT).any(axis=1), strict=True
-        )
-    ]
+    nearest = np.where((apart <= NEAR_PERCENT).any(axis=1), apart.argmin(axis=1), -1)
+    return [None if index < 0 else named[index] for index in nearest.tolist()]
 
 
 def undo_clamping(percents: FloatArray, noise: int) -> FloatArray:

@@ -15,7 +15,7 @@ from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import convert_to_floats, read_numbers, wrap_int64
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
-from tuisim.logs.columns import ROW, Layout, read_seconds
+from tuisim.logs.columns import ROW, Layout, read_times
 
 LogTable = pa.Table
 
@@ -204,9 +204,9 @@ class Log:
         if self.layout.time == ROW:
             return np.arange(self.rows if rows is None else len(rows), dtype=np.float64)
         if self._cache.times_s is None:
-            self._cache.times_s = read_seconds(
+            self._cache.times_s = read_times(
                 self.table.column(self.layout.time), self.layout.unit_s, self.layout.since_first
-            )
+            ).seconds
         times = self._cache.times_s if rows is None else self._cache.times_s[rows]
         # Missing times are forward-filled.
         missing = ~np.isfinite(times)

@@ -393,6 +393,7 @@ def _extend_pieces(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
 
 def _extend_starts(values: FloatArray, pieces: Pieces, limits: IntArray, near: float) -> IntArray:
     """Return where pieces start, extended to no earlier than where the ones before them stop: `limits`."""
+    starts: IntArray
     starts, stops = pieces.T.copy()
     for ahead in starts - 1 - np.arange(STRAY_SAMPLES + 1)[:, None]:
         free = np.flatnonzero(ahead >= limits)

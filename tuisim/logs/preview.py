@@ -6,7 +6,7 @@ from typing import Any
 
 from tuisim.base.errors import shortened
 from tuisim.logs.choices import WORDS, ReadChoices
-from tuisim.logs.columns import ROW, UNIT_NAMES, is_numeric, time_columns
+from tuisim.logs.columns import ROW, UNIT_NAMES, is_numeric, list_time_columns
 from tuisim.logs.log import Log
 from tuisim.logs.reader import read_beginning, read_first_lines
 
@@ -64,7 +64,7 @@ class Preview:
             case "header":
                 return [(f"{row}: {text[:_MAX_LINE]}", row) for row, text in self.lines]
             case "time":
-                names = time_columns(self.log.table)
+                names = list_time_columns(self.log.table)
                 return [
                     *((shortened(column, self.MAX_CELL), column) for column in names),
                     ("row numbers", ROW),

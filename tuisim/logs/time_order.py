@@ -17,6 +17,7 @@ from tuisim.logs.arrow import convert_to_floats, make_names_unique, wrap_int64
 from tuisim.logs.columns import (
     COUNTS,
     ROW,
+    UNITS_S,
     Layout,
     Times,
     find_epoch_unit_s,
@@ -28,12 +29,8 @@ from tuisim.logs.columns import (
 from tuisim.logs.dates import is_clock, is_date
 from tuisim.logs.warnings import Notes, list_rows
 
-_SECONDS = re.compile(r"(.*?)[._ ]?\b_?(?:tv_)?(?:secs?|seconds)", re.IGNORECASE)
-_PARTS = {
-    10**9: re.compile(r"(.*?)[._ ]?\b_?(?:tv_)?(?:nsecs?|nanosecs?|nanoseconds)", re.IGNORECASE),
-    10**6: re.compile(r"(.*?)[._ ]?\b_?(?:tv_)?(?:usecs?|microsecs?|microseconds)", re.IGNORECASE),
-}
-"""Names of columns with a part of a second, by its number of parts."""
+_UNIT_NAME = re.compile(r"(.*?)[._ ]?([^\W_]+)")
+"""The name of a column whose last word may be a unit."""
 _RESTART_PART = 0.1
 """A time begins again if it goes back to this part of what had passed."""
 _MAX_RUNS = 1000
@@ -53,23 +50,20 @@ class Ordered(NamedTuple):
 
 def join_times(table: pa.Table) -> pa.Table:
     """Return a table whose time is in one column; two are joined: seconds and their parts, or date and time of day."""
-    for name, base in _list_matches(table, _SECONDS):
-        for per_s, pattern in _PARTS.items():
-            other = next((part for part, own in _list_matches(table, pattern) if own == base), "")
-            if other and (joined := _join_parts(table, name, other, per_s)):
-                return _replace_columns(table, name, other, base.strip("._ ") or "time", joined)
+    names = {}
+    for name in table.column_names:
+        if match := _UNIT_NAME.fullmatch(name):
+            names[match[1], UNITS_S.get(match[2].lower())] = name
+    for (base, unit_s), part in names.items():
+        whole = names.get((base, 1.0))
+        if whole and unit_s in (1e-6, 1e-9) and (joined := _join_parts(table, whole, part, unit_s)):
+            return _replace_columns(table, whole, part, base or "time", joined)
     dates, clocks = (list(find_texts(table, fits)) for fits in (is_date, is_clock))
     if len(dates) == 1 and clocks:
         texts = [table.column(name).cast(pa.string()) for name in (dates[0], clocks[0])]
         joined = pc.binary_join_element_wise(*texts, " ")
         return _replace_columns(table, dates[0], clocks[0], f"{dates[0]} {clocks[0]}", joined)
     return table
-
-
-def _list_matches(table: pa.Table, pattern: re.Pattern[str]) -> list[tuple[str, str]]:
-    """Return the columns whose names match a pattern, each with the text of the pattern's group."""
-    matches = ((name, pattern.fullmatch(name)) for name in table.column_names)
-    return [(name, match[1]) for name, match in matches if match]
 
 
 def _replace_columns(
@@ -82,15 +76,15 @@ def _replace_columns(
     )
 
 
-def _join_parts(table: pa.Table, seconds: str, parts: str, per_s: int) -> pa.ChunkedArray | None:
+def _join_parts(table: pa.Table, seconds: str, parts: str, unit_s: float) -> pa.ChunkedArray | None:
     if not all(is_numeric(table.field(name).type) for name in (seconds, parts)):
         return None
     whole, fraction = (
         np.asarray(convert_to_floats(table.column(name)), float) for name in (seconds, parts)
     )
-    if not (np.isfinite(whole).all() and ((fraction >= 0) & (fraction < per_s)).all()):
+    if not (np.isfinite(whole).all() and ((fraction >= 0) & (fraction * unit_s < 1)).all()):
         return None
-    nanoseconds = whole.astype(np.int64) * 10**9 + (fraction * (10**9 // per_s)).astype(np.int64)
+    nanoseconds = whole.astype(np.int64) * 10**9 + np.rint(fraction * unit_s * 1e9).astype(np.int64)
     is_date = find_epoch_unit_s(table.column(seconds), 1.0) is not None
     kind = pa.timestamp("ns") if is_date else pa.duration("ns")
     return pa.chunked_array([wrap_int64(nanoseconds)]).cast(kind)
