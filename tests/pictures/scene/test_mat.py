@@ -92,6 +92,19 @@ def test_a_thin_line_has_no_gaps(
     assert min(seen) > 0.5 * max(seen)
 
 
+@pytest.mark.parametrize("size", [(156, 34), (152, 40), (304, 76)], ids=str)
+def test_a_thin_black_line_is_black_wherever_it_lies(size: tuple[int, int]) -> None:
+    view = fit_field(*size, CellPoints(2, 2))
+    for start_mm in range(500, 540, 7):
+        for axis in (0, 1):
+            pixels = mat()
+            pixels.swapaxes(0, axis)[start_mm : start_mm + 10] = 0
+            picture = shrink(pixels, view, OUTSIDE)
+            lines = np.nonzero((picture == 0).all(axis=2).swapaxes(0, axis).any(axis=1))[0]
+            assert len(lines) == 1 or (len(lines) == 2 and view.mm_per_px < 10)
+            assert set(np.unique(picture)) <= {0, 255, *OUTSIDE}
+
+
 def test_a_view_finer_than_the_mat_repeats_pixels() -> None:
     pixels = mat()
     pixels[600, 1000] = 0

@@ -135,13 +135,13 @@ EVERYTHING = SceneState(
 @pytest.mark.parametrize(
     "view, options, checksum",
     [
-        (VIEW, {}, 69861790),
+        (VIEW, {}, 1902009757),
         (VIEW, {"for_file": True}, 2026224127),
-        (fit_field(240, 120, CellPoints(2, 4)), {}, 1009201567),
-        (fit_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 3802317320),
-        (fit_field(38, 19), {"grey": True}, 772926774),
-        (fit_field(76, 60, CellPoints(2, 3)), {"mono": True}, 3007351795),
-        (Viewport(140, 78, 4.0, 1003 - 280.0, 507 + 156.0), {"whole_cells": True}, 3678989251),
+        (fit_field(240, 120, CellPoints(2, 4)), {}, 3898089150),
+        (fit_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 2814133913),
+        (fit_field(38, 19), {"grey": True}, 3975190403),
+        (fit_field(76, 60, CellPoints(2, 3)), {"mono": True}, 1843021782),
+        (Viewport(140, 78, 4.0, 1003 - 280.0, 507 + 156.0), {"whole_cells": True}, 3233824671),
     ],
     ids=["middle", "for a file", "octants", "coarse", "small and grey", "mono", "close"],
 )
