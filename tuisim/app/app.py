@@ -282,11 +282,12 @@ class LabApp(PanelMessages):
 
     def _waits(self, event: events.Event) -> bool:
         """Return whether an event has to wait; keys that start or need a run also wait until the mat is prepared."""
-        is_of_run = (
-            isinstance(event, events.Key) and event.key in RUN_KEYS and len(self.screen_stack) == 1
+        if self.settings.welcomes and not self.has_greeted:
+            return True
+        needs_mat = getattr(event, "key", "") in RUN_KEYS and len(self.screen_stack) == 1
+        return super()._waits(event) or (
+            needs_mat and self.loader.is_preparing and not self.is_typed_into
         )
-        waits = is_of_run and self.loader.is_preparing
-        return super()._waits(event) or (waits and not self.is_typed_into)
 
     def prepare_suspension(self) -> None:
         """Pause the run and playback before the app is suspended, so that nothing resumes by itself."""
@@ -426,7 +427,7 @@ class LabApp(PanelMessages):
     def _wake(self) -> None:
         """Poll the run at frame rate for a while: something has happened."""
         self._awake_until_s = time.monotonic() + _AWAKE_S
-        if self._frame_timer is not None:
+        if self._frame_timer:
             self._frame_timer.resume()
 
     async def on_event(self, event: events.Event) -> None:
@@ -482,7 +483,7 @@ class LabApp(PanelMessages):
         self.document.mark_failure(ended.error_line, "" if good else notice)
         # The output, if it is shown, ends with the same words.
         if not self.panel_area.is_shown("output"):
-            self.notify(notice, severity="information" if good else "error", markup=False)
+            self.notify(notice, severity="information" if good else "error")
         self.debugger.handle_end()
         self.handle_situation_change()
         self.check_files()

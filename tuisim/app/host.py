@@ -19,6 +19,8 @@ class LabHost(ActionHost, TerminalApp):
 
     undo: Callable[[], None] | None = None
     """Undoes the last change; None if there is nothing to undo."""
+    has_greeted = False
+    """Whether the welcome has come, or will not come; until then, keys wait for it."""
 
     def action_act(self, name: str) -> None:
         self.notices.release()

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from textual import events
 from textual.widgets import OptionList
 
 from tests.app.app_help import (
@@ -56,6 +57,14 @@ async def test_the_welcome_appears_once(size: tuple[int, int], home: Path) -> No
                 await until_shown(pilot, "4 Open a file")
                 await pilot.press("escape")
                 await until(pilot, partial(is_closed, app))
+
+
+async def test_a_key_that_is_pressed_before_the_welcome_is_there_answers_it() -> None:
+    app = LabApp(FIRST)
+    async with app.run_test(size=(80, 24)) as pilot:
+        assert not app.has_greeted
+        app.post_message(events.Key("1", "1"))
+        await until(pilot, lambda: isinstance(app.screen, NewProgramDialog))
 
 
 CHOICES: dict[str, tuple[list[str], Any]] = {

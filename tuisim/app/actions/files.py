@@ -105,6 +105,7 @@ def show_welcome(context: ActionContext, *, is_greeting: bool = False) -> None:
         # At once with every entry, so that Enter takes the one that is seen as selected.
         if entries or not is_greeting:
             _push_welcome(context, entries)
+        context.app.has_greeted = True
 
     background.run(context.panels, partial(list_recent, NEW_NAME), show_entries, group="welcome")
 
