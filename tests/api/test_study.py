@@ -184,6 +184,14 @@ def test_a_table_that_is_replaced_is_told(tmp_path: Path) -> None:
         tuisim.experiment(PROGRAM, seeds=[0, 1], **how)
 
 
+def test_worlds_vary(tmp_path: Path) -> None:
+    (file := tmp_path / "lab.toml").write_text('background = "Loop"\n')
+    worlds: list[Path | tuisim.World] = [file, tuisim.World(x=300)]
+    frame = tuisim.experiment("A = 1\n", world=worlds, jobs=1)
+    assert frame["world"].tolist() == [str(file), "World(x=300)"]
+    assert frame["x_mm"].tolist() == [500, 300]
+
+
 def test_what_is_chosen_has_a_column_also_with_one_value() -> None:
     how: dict[str, Any] = {"constants": {"A": 3}, "motornoise": [20], "background": "Loop"}
     program = "A = 1\nprint('A:', A)\n"

@@ -141,7 +141,7 @@ def experiment(
     arguments: Sequence[str] = (),
     answers: Sequence[str] = (),
     timeout_s: float = DEFAULT_TIME_LIMIT_S,
-    world: File | World | None = None,
+    world: Vary[File | World] = None,
     {parameters},
 ) -> pd.DataFrame:
     """Run a program with all combinations of what varies, block until they end, and return a table of the runs.
@@ -170,7 +170,8 @@ def experiment(
             each combination takes the seeds in their order, ten first and then several at a time, until the mean is
             within this margin with 95 % (Student's t). Runs that raise do not count. Warns if the seeds do not suffice.
         scheduler: Address of a Dask scheduler whose workers run the programs, such as `tcp://host:8786`.
-        arguments, answers, timeout_s, world: As for `simulate`.
+        arguments, answers, timeout_s: As for `simulate`.
+        world: A world, or its file, or several.
 {help}
 
     Returns:

@@ -33,12 +33,12 @@ def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:
     Raises:
         ConfigError: there is no such program, or its first line is wrong.
     """
-    is_text = isinstance(program, str) and not program.endswith((".py", ".ipynb"))
-    if is_text and not _NO_NAME.isdisjoint(program):
-        return build_program(program, None, "program")
     if not isinstance(program, str | Path):
         return read_function(program)
-    return read_program(find_program(str(program)))
+    name = str(program)
+    if isinstance(program, Path) or name.endswith((".py", ".ipynb")) or _NO_NAME.isdisjoint(name):
+        return read_program(find_program(name))
+    return build_program(name, None, "program")
 
 
 def prepare_program(

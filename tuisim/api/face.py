@@ -231,7 +231,7 @@ def experiment(
     arguments: Sequence[str] = (),
     answers: Sequence[str] = (),
     timeout_s: float = DEFAULT_TIME_LIMIT_S,
-    world: File | World | None = None,
+    world: Vary[File | World] = None,
     background: Vary[File] = None,
     mats: Vary[File] = None,
     robot: Vary[File | Robot] = None,
@@ -279,7 +279,8 @@ def experiment(
             each combination takes the seeds in their order, ten first and then several at a time, until the mean is
             within this margin with 95 % (Student's t). Runs that raise do not count. Warns if the seeds do not suffice.
         scheduler: Address of a Dask scheduler whose workers run the programs, such as `tcp://host:8786`.
-        arguments, answers, timeout_s, world: As for `simulate`.
+        arguments, answers, timeout_s: As for `simulate`.
+        world: A world, or its file, or several.
         background: A mat from `tuisim backgrounds`, or an image file.
         mats: Folder of images that `-b` finds by name.
         robot: A robot from `tuisim robots`, or a file.

@@ -137,9 +137,9 @@ class Study:
     Args:
         program: As of `tuisim.experiment`.
         constants: Values of the programs' constants, or several of each.
-        parameters, world, arguments, answers, timeout_s: As of `tuisim.experiment`.
+        parameters, arguments, answers, timeout_s: As of `tuisim.experiment`.
         goals: The goals file; None for none.
-        options: Values by the names of options, or several of each.
+        options: Worlds, and values by the names of options, or several of each.
 
     Raises:
         ConfigError: one of them is wrong.
@@ -152,7 +152,6 @@ class Study:
         *,
         parameters: Mapping[str, Any] | None,
         goals: str | Path | None,
-        world: Any,
         arguments: Sequence[str],
         answers: Sequence[str],
         timeout_s: float,
@@ -171,7 +170,6 @@ class Study:
         if SEED in self._parameters:
             raise ConfigError("the seed varies by seeds=", key="parameters")
         self._task = load_goals(goals) if goals is not None else None
-        self._world = world
         self._options = build_run_options(
             timeout_s, answers or (self._task.answers if self._task else ())
         )
@@ -214,10 +212,11 @@ class Study:
         """Return a program with its settings for one combination of constants and options."""
         options = {name: value for name, value in variant.items() if name not in self._constants}
         values = {name: plain(value) for name, value in variant.items() if name not in options}
+        world = options.pop("world", None)
         chosen = read_options(options)
-        in_world = read_world(self._world, chosen.get("mats"))
+        in_world = read_world(world, chosen.get("mats"))
         if task := self._task:
-            in_world = task.settings if self._world is None else {**in_world, **task.presses}
+            in_world = task.settings if world is None else {**in_world, **task.presses}
         changed = set_constants(source, values)
         started, settings = prepare_program(changed, self._arguments, in_world, chosen)
         return Subject(started, settings.settings, frozenset(chosen), name)
