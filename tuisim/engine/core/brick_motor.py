@@ -192,7 +192,7 @@ class BrickMotor:
         )
 
     def glide(self, ticks: int) -> Glide:
-        """Advance the motor by several ticks in which only its ramp changes it; see `Motor.glide`."""
+        """Advance the motor by several ticks in which only the speed ramp changes it; see `Motor.glide`."""
         if self.mode == STOPPED:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
         sign = self.sign
@@ -251,7 +251,10 @@ class BrickMotor:
         return speeds
 
     def count_quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks nothing but its ramp changes the motor; see `Motor.count_quiet_ticks`."""
+        """Return the number of ticks after `tick` in which only the speed ramp changes the motor.
+
+        See `Motor.count_quiet_ticks`.
+        """
         if self.approach_dps2:
             return 0
         if self.mode == TIMED:

@@ -169,7 +169,10 @@ class BrowserMotor:
         return math.ceil(way / self._ramp_step) or int(way > 0)
 
     def count_quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks nothing but the speed register changes; see `Motor.count_quiet_ticks`."""
+        """Return the number of ticks after `tick` in which only the speed register changes.
+
+        See `Motor.count_quiet_ticks`.
+        """
         if self._command == FOREVER or (self.mode == STOPPED and self._command != POSITION):
             return ENDLESS
         if self._command == POSITION:

@@ -126,7 +126,7 @@ class Solids:
         return self._free.any_mm - math.hypot(pose[0] - x, pose[1] - y) - turned
 
     def find_leeway(self, pose: PoseTuple, forward_mm: float, turn_deg: float) -> Leeway:
-        """Return how much of the motion of a tick obstacles allow; `turn_deg` is positive counter-clockwise."""
+        """Return the part of a tick's motion that obstacles allow; `turn_deg` is positive counter-clockwise."""
         way = abs(forward_mm) + abs(math.radians(turn_deg)) * self.reach_mm
         if self.remaining_mm(pose) >= way:
             return UNHINDERED
@@ -181,7 +181,7 @@ class Solids:
         return Leeway(part, (0.0, 0.0))
 
     def _push_aside(self, body: Body, boxes: list[Box], floors: list[float]) -> Leeway:
-        """Return the displacement that makes each gap of a body at least its value in `floors`.
+        """Return the displacement after which each gap of a body is at least its value in `floors`.
 
         If there is no such displacement, the result allows no motion at all.
         """

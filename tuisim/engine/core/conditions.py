@@ -63,7 +63,7 @@ NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 
 
 class ValueSource(StrEnum):
-    """What the value comes from that a condition tests: a column, a sample or a printed line."""
+    """Where the value that a condition tests comes from: a column, a sample or a printed line."""
 
     COLUMN = ""
     """A column of a recording or of a log."""
@@ -75,7 +75,7 @@ class ValueSource(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class ValueCondition:
-    """A condition on a column, a sample or a printed line, as typed."""
+    """A condition on a column, a sample or a printed line, in the spelling in which a user has typed it."""
 
     name: str
     """The column, or the variable of a sample; empty for samples of any variable."""
@@ -86,7 +86,7 @@ class ValueCondition:
 
     @property
     def operator(self) -> Operator:
-        """The operator, whatever its spelling."""
+        """The operator of the condition; its spelling in the text makes no difference."""
         return _SPELLINGS.get(self.sign) or Operator(self.sign)
 
     @property
@@ -198,12 +198,12 @@ def parse_run_condition(text: str) -> ValueCondition | None:
 
 
 def list_operators(operators: Iterable[str] = COMPARE) -> str:
-    """Return operators for a hint, separated by spaces, each in its shortest spelling."""
+    """Return operators as one text for a hint, separated by spaces, each in its shortest spelling."""
     return " ".join(Operator(operator).short for operator in operators)
 
 
 def describe_comparison(operators: Iterable[str] = COMPARE) -> str:
-    """Return the form of a comparison in words, for the hint of an error."""
+    """Return how a comparison is written, `NAME OP VALUE` with all operators, for the hint of an error."""
     return f"NAME OP VALUE, OP one of {list_operators(operators)}"
 
 

@@ -273,7 +273,7 @@ class WrongGyro:
         self._drifts = not drift.is_none
 
     def roll(self, left_deg: float, right_deg: float) -> None:
-        """Move the robot by one tick's rotation of its wheel motors, and change the gyro's angle with its errors."""
+        """Move the robot by one tick of its wheel motors, and add errors to the angle that its gyro shows."""
         drive = self._drive
         angle_deg = drive.gyro_zero_deg - drive.heading_deg
         drive.roll(left_deg, right_deg)
@@ -290,7 +290,7 @@ class WrongGyro:
 
 
 def build_slipping_wheels(spec: RunSpec) -> SlippingWheels | None:
-    """Return the wheels of a run with drift; None if nothing drifts."""
+    """Return the wheels of a run with drift errors; None if all drift errors are 0."""
     return None if find_drift(spec).is_none else SlippingWheels(spec)
 
 
@@ -301,7 +301,7 @@ def build_gyro(spec: RunSpec, drive: Drive) -> WrongGyro | None:
 
 
 def can_strain_gyro(spec: RunSpec) -> bool:
-    """Return whether the motors, without noise, can turn the robot faster than its gyro can sense."""
+    """Return whether the motors can turn the robot faster than its gyro can measure; noise is not considered."""
     if not spec.profile.gyro_max_dps:
         return False
     fastest_mm = sum(

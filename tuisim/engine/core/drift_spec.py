@@ -107,7 +107,7 @@ class DriftSpec(Spec):
 
     @property
     def is_none(self) -> bool:
-        """Whether nothing drifts."""
+        """Whether all of these errors are 0."""
         return self is NO_DRIFT or not any(self._list_contents())
 
 

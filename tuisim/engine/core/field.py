@@ -138,7 +138,7 @@ class Field:
 
 
 def find_floor_rgb(width_px: int, height_px: int, pixels: memoryview) -> Rgb:
-    """Return the colour in which a mat goes on beyond its edges: the most frequent colour of its edge pixels."""
+    """Return the colour of the floor around a mat: the most frequent colour of the pixels at the mat's edges."""
     line = 3 * width_px
     ends = range(0, line, 3), range(line * (height_px - 1), line * height_px, 3)
     sides = range(0, line * height_px, line), range(line - 3, line * height_px, line)

@@ -295,7 +295,7 @@ class Motion:
         return done
 
     def _count_quiet_ticks(self, most: int) -> int:
-        """Return for how many ticks, at most `most`, nothing happens but ramps of motors and motion of the robot."""
+        """Return the number of ticks, at most `most`, in which only the motors' ramps and the robot's pose change."""
         left, right = self.left, self.right
         if self._slipping is not None or (self.noise.motor and not self._can_glide_with_noise()):
             return 0
@@ -305,7 +305,10 @@ class Motion:
         return min(most, quiet, self._clear_ticks(most)) if quiet > 0 else 0
 
     def _can_glide_with_noise(self) -> bool:
-        """Return whether motors with noise can run several ticks at once: without obstacles, and without a goal."""
+        """Return whether several ticks of motors with noise can be computed together.
+
+        They can if the world has no obstacles, and no wheel's motor moves to a position.
+        """
         left, right = self.left, self.right
         if self._solids is not None or left.mode == POSITION or right.mode == POSITION:
             return False
@@ -489,7 +492,7 @@ class Motion:
         return self._buffer
 
     def _glide(self, ticks: int) -> None:
-        """Advance the simulation by ticks in which nothing happens but ramps of the motors and motion of the robot."""
+        """Advance the simulation by ticks in which only the motors' ramps and the robot's pose change."""
         while ticks:
             noise = self.noise.motor
             ramping = (

@@ -84,10 +84,10 @@ class Motor(Protocol):
         """
 
     def count_quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks after `tick` nothing but the ramp of its speed changes this motor."""
+        """Return the number of ticks after `tick` in which only the ramp of its speed changes this motor."""
 
     def glide(self, ticks: int) -> Glide:
-        """Advance the motor by several ticks in which nothing but the ramp of its speed changes it."""
+        """Advance the motor by several ticks in which only the ramp of its speed changes it; return how it moves."""
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
         """Return how the motor moves in several ticks of constant speed; the caller sets `position_deg` afterwards."""

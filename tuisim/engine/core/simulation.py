@@ -122,7 +122,7 @@ class Simulation(Motion):
     # Changing
 
     def find_number(self, motor: Motor) -> int:
-        """Return the number that stands for a motor in commands."""
+        """Return the index of a motor among all motors, which identifies it in commands."""
         return self.motors.index(motor)
 
     def press(self, hand_flags: int) -> None:
@@ -149,7 +149,7 @@ class Simulation(Motion):
             self._free_wheels()
 
     def reset_gyro(self, shown_deg: float = 0.0) -> None:
-        """Let the gyro show `shown_deg` at the current heading, clockwise."""
+        """Make the gyro show the angle `shown_deg`, clockwise, at the current heading."""
         self.drive.gyro_zero_deg = round_to_float32(self.drive.heading_deg + shown_deg)
 
     @property

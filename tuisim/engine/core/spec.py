@@ -513,7 +513,7 @@ class RobotSpec(Spec):
         )
 
     def list_sensors(self, mount: Mount) -> tuple[SensorSpec, ...]:
-        """Return the sensors of one mount."""
+        """Return the robot's sensors in the field that a mount names; empty if it has none."""
         sensors = getattr(self, mount.field)
         if mount.many:
             return tuple(sensors)

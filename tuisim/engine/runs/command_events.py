@@ -76,7 +76,7 @@ class CommandEvent:
 
     @property
     def words(self) -> str:
-        """The command, how often it was given, and what it led to, in one line."""
+        """The command, how often it was given, and its result, in one line."""
         repeats = f", {self.count:,} times" if self.count > 1 else ""
         if self.last_s - self.time_s >= 0.01:
             repeats += f" until {self.last_s:.2f} s"
@@ -234,7 +234,10 @@ class CommandIndex:
     # Finding
 
     def find_scales(self, tick: int) -> dict[str, float]:
-        """Return the program's degrees per degree of a motor at a tick, by port; 1 for a port without a value."""
+        """Return the program's number of degrees per degree of a motor at a tick, by port.
+
+        The number is 1 for a port that is missing in the result.
+        """
         return {port: factor for when, port, factor in self._scales if when <= tick}
 
     def find_events(self, text: str = "") -> list[int]:
@@ -289,7 +292,7 @@ class CommandIndex:
     # What came
 
     def _measure(self, number: int, aim: Aim) -> str:
-        """Return a text with what a command to the wheels led to, from telemetry; empty for other commands."""
+        """Return a text about the result of a command to the wheels, such as the driven way; empty for others."""
         import numpy as np
 
         part = self._codes[number] & 0xFF

@@ -86,7 +86,7 @@ class Recording:
         return self._source.plugged
 
     def hold(self) -> None:
-        """Let telemetry and output stay as they are now, until the next `RunHandle.pump` of a running run."""
+        """Read telemetry and output up to now; later data stays unread until the next `RunHandle.pump`."""
         for view in (self.telemetry, self.output):
             view.read_new()
             view.holds = True

@@ -277,7 +277,7 @@ class OutputRow:
     stream: Stream
 
     def format_line(self) -> str:
-        """Return the display text of a row; speech and answers are marked."""
+        """Return the display text of a row: speech begins with `says: `, and an answer to `input()` with `> `."""
         if self.stream is Stream.SPEECH and not self.text.startswith("["):
             # A text in brackets describes a sound, which is not spoken.
             return f"says: {self.text}"

@@ -130,7 +130,7 @@ class ReplayDebugger:
     def lines_back(
         self, recording: Recording, at: Position, count: int, look: protocol.Inspect
     ) -> None:
-        """Pause `count` lines of the program before an instant."""
+        """Pause at the line that the program executed `count` lines before an instant."""
         self._line = 0
         self._request = look
         self._back = count

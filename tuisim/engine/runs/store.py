@@ -454,7 +454,7 @@ def count_bytes(folder: Path) -> int:
 
 
 def _match(text: str, rows: Sequence[RunInfo]) -> RunInfo:
-    """Return the one of `rows` that a text names; see `RunStore.find`."""
+    """Return the row that a text names; see `RunStore.find`."""
     if text == LAST:
         return rows[-1]
     tests = (

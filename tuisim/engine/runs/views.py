@@ -377,7 +377,7 @@ class TelemetryView(_View):
         return self._find_sound_ticks(data[first:after], begin)
 
     def _find_sound_ticks(self, part: memoryview, begin: int) -> int:
-        """Return the tick up to which records, beginning with that of tick `begin`, are what the simulation writes."""
+        """Return the tick up to which records are valid; the first record is that of tick `begin`."""
         end = begin + len(part) // TICK_RECORD.size
         # Ticks are numbered from 0, and all other fields are finite numbers. Whole columns are checked first: it is
         # faster.
@@ -434,7 +434,7 @@ class TelemetryView(_View):
         )
 
     def array(self, first: int = 0) -> np.ndarray[Any, Any]:
-        """Return all present records from one on as a read-only structured array of `TICK_FIELDS`.
+        """Return all present records from index `first` on, as a read-only structured array of `TICK_FIELDS`.
 
         It is a view, not a copy, unless the run is running and the first of them are no longer in memory.
         """
@@ -466,7 +466,7 @@ class OutputView(_View):
 
     @property
     def length(self) -> int:
-        """Number of bytes that the rows take in the file."""
+        """Number of bytes that the rows of output take in their file."""
         return self._measure_length()
 
     def _describe_lost(self, count: int) -> str:

@@ -9,7 +9,9 @@ from tuisim.engine.runtime import wallclock
 
 
 class Channel:
-    """The child's ends of two pipes: it receives commands without blocking, and sends events immediately.
+    """The child's ends of two pipes to the host, the process that has started the run.
+
+    It receives commands without blocking, and sends events immediately.
 
     Args:
         command_fd: Read end of the command pipe.
@@ -22,7 +24,7 @@ class Channel:
         self._rest = b""
 
     def send(self, event: Message) -> None:
-        """Send an event to the host; if the host has ended, do nothing."""
+        """Send an event to the host, the process that has started the run; if that has ended, do nothing."""
         data = event.encode()
         try:
             while data:

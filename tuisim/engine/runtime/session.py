@@ -261,7 +261,7 @@ class Session:
         return PluggedPart(port, part, self.sim.tick, self.program_line(), role)
 
     def tell_plugged(self, parts: Sequence[PluggedPart]) -> None:
-        """Send to the host which parts have been plugged in."""
+        """Report to the host, the process that started the run, which parts have been plugged in."""
         for part in parts:
             self.channel.send(Plugged(part.port, part.part, part.tick, part.line, part.role))
 

@@ -158,7 +158,7 @@ class Tacho(ABC):
 
 
 class SignedTacho(Tacho):
-    """A motor of inversed polarity has the opposite sign in all that a program reads and writes."""
+    """Base class of motor drivers: with inversed polarity, all that programs read and write has the opposite sign."""
 
     _sign = 1
 

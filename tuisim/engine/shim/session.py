@@ -82,7 +82,7 @@ class DeviceSession(Protocol):
         """Record what the brick shows; `row` has the format of `engine.runs.brick_state`."""
 
     def tell_plugged(self, parts: Sequence[PluggedPart]) -> None:
-        """Tell the process of the app which parts have been plugged in."""
+        """Report to the process that started the run which parts have been plugged in."""
 
     def describe_part(self, port: str, part: str, role: str = "") -> PluggedPart:
         """Return a description of a part that is plugged in now; arguments as of `PluggedPart`."""

@@ -69,11 +69,11 @@ class PlayedSound:
         return b"", b""
 
     def kill(self) -> None:
-        """End the sound."""
+        """End the process that plays the sound, with the exit status of SIGKILL."""
         self._end(_KILLED)
 
     def terminate(self) -> None:
-        """End the sound."""
+        """End the process that plays the sound, with the exit status of SIGTERM."""
         self._end(_TERMINATED)
 
     def _end(self, status: int) -> None:

@@ -47,7 +47,7 @@ def set_duty(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
 
 
 def set_position(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
-    """Set the number that the motor shows as its present position, without moving it."""
+    """Set the value that the motor reports for its present position, without moving it."""
     motor.wake(time_ns)
     motor.set_position(int(values[0]))
 

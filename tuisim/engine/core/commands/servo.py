@@ -28,7 +28,7 @@ def _read_optional(number: float) -> int | None:
 
 
 def _change_setting(control: Controller, values: Values) -> None:
-    """Change one setting of a controller. Values: the setting's index in `SETTINGS`, and its new value."""
+    """Change one setting of a controller; `values` are the setting's index in `SETTINGS` and its new value."""
     name = SETTINGS[find_index(values, 0, len(SETTINGS))]
     control.settings = replace(control.settings, **{name: int(values[1])})
 
@@ -52,7 +52,7 @@ def run_freely(motor: ServoMotor, time_ns: int, values: Values) -> None:
 
 
 def set_milli(motor: ServoMotor, time_ns: int, values: Values) -> None:
-    """Set the number that the motor shows as its present position, in thousandths of a count, without moving it."""
+    """Set the value that the motor reports for its present position, in thousandths of a count, without moving it."""
     motor.set_position(time_ns // 1000, int(values[0]))
 
 
@@ -142,13 +142,13 @@ def build_base(sim: Simulation, _time_ns: int, values: Values) -> None:
 
 
 def move_base(base: DriveBase, time_ns: int, values: Values) -> None:
-    """Make a drive base drive a distance and turn by an angle. Values: mm, degrees, and an `Ending`."""
+    """Make a drive base drive a distance and turn by an angle; `values` are mm, degrees and an `Ending`."""
     distance_mm, turn_deg, _ = values
     base.move(time_ns // 1000, distance_mm, turn_deg, _find_ending(values, 2))
 
 
 def drive_base(base: DriveBase, time_ns: int, values: Values) -> None:
-    """Make a drive base drive on without an end. Values: speed in mm/s, and rate of turn in degrees per second."""
+    """Make a drive base drive until the next command; `values` are mm/s and a rate of turn in degrees per second."""
     base.drive(time_ns // 1000, *map(int, values))
 
 

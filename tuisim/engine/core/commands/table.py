@@ -30,12 +30,12 @@ def start(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
 
 
 def start_timed(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
-    """Run a motor at a speed until a tick. Values: the speed in degrees per second, and the tick."""
+    """Run a motor at a speed until a tick; `values` are the speed in degrees per second, and the tick."""
     motor.run_until(*values)
 
 
 def start_move(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
-    """Run a motor to a position. Values: the position in degrees, the speed, and whether to turn backwards (1 or 0)."""
+    """Run a motor to a position; `values` are the position in degrees, the speed, and 1 to turn backwards, else 0."""
     goal_deg, speed_dps, backwards = values
     motor.run_to(goal_deg, speed_dps, bool(backwards))
 
@@ -46,7 +46,7 @@ def stop(motor: DrivenMotor, _time_ns: int, _values: Values) -> None:
 
 
 def set_count(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
-    """Set the number that the encoder shows as its present position, in degrees, without moving the motor."""
+    """Set the value that the encoder reports for its present position, in degrees, without moving the motor."""
     motor.position_deg = values[0]
 
 
@@ -77,7 +77,10 @@ def set_roll(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
 
 
 def set_polarity(_motor: Any, _time_ns: int, _values: Values) -> None:
-    """Note how the program counts, from now on: as the motor does (0), or with the opposite sign (1)."""
+    """Do nothing: the record of commands shows the sign with which the program counts degrees from now on.
+
+    The value is 0 if the sign is that of the motor, and 1 if it is the opposite one.
+    """
 
 
 Range = tuple[float, float]

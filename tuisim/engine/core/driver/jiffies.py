@@ -21,7 +21,7 @@ COARSER = 8
 
 @dataclass(frozen=True, slots=True)
 class Jiffies:
-    """The clock of the kernel in a run: it counts jiffies of 10 ms, and has begun to count before the run."""
+    """The clock of the kernel in a run: it counts jiffies of 10 ms, and was already running before the run."""
 
     first: int = 0
     """Jiffies at the start of the run."""

@@ -63,7 +63,7 @@ MEDIUM = PlantSpec(
 
 @dataclass(frozen=True, slots=True)
 class Circuit:
-    """Values derived from a motor's constants, either with the bridge powered (braking is a duty of 0) or coasting."""
+    """Values that follow from a motor's constants, for a motor with power (duty 0 brakes it) or one that coasts."""
 
     dps_per_percent: float
     """Steady speed per percent of duty, without friction; 0 while it coasts."""
@@ -95,7 +95,7 @@ def build_circuit(plant: PlantSpec, battery_v: float | None) -> Circuit:
 
 
 class Axle:
-    """The axle of a motor. At first it is at rest and coasts.
+    """The axle of a motor, which first is at rest and coasts.
 
     Args:
         plant: The motor, with its load.

@@ -154,7 +154,7 @@ class MotorDriver:
             self.axle.power(None if action is COAST else 0)
 
     def set_position(self, position: int) -> None:
-        """Set the number that the present position is given as; it also becomes the target."""
+        """Set the value that the motor reports for its present position; it also becomes the target."""
         self._offset = position - self._raw
         self.position = self.target = self.hold_control.setpoint = position
 

@@ -31,7 +31,8 @@ KEPT_COUNTS = 3 * STRIDE
 class Roll:
     """A stretch of time in which an axle turns freely under a constant duty.
 
-    Angle and speed are computed for any time at once. The counter is updated only when the roll ends.
+    A formula gives angle and speed at any time in it, without single steps. The counter is updated only when the roll
+    ends.
 
     Args:
         axle: The axle, which turns at a speed of at least `MIN_ROLL_DPS`.

@@ -180,7 +180,7 @@ class SimulatedMotor(DriverMotor):
         return 0 if self.is_at_rest or self._cruise_dps else 1
 
     def set_position(self, position: int) -> None:
-        """Set the number that the present position is given as; it also becomes the target."""
+        """Set the value that the motor reports for its present position; it also becomes the target."""
         before = self.position
         super().set_position(position)
         self.position_deg += position - before
@@ -295,7 +295,7 @@ class SimulatedMotor(DriverMotor):
         self.read_counts(floor(2 * (self._angle_deg + self._cruise_dps * since_s)))
 
     def _turn_axle(self, time_ns: int, angle_deg: float) -> None:
-        """Set the axle's angle to another one, in no time, as noise or an obstacle does."""
+        """Set the axle to an angle that noise or an obstacle gives it, without any time passing."""
         self.leave_roll()
         axle = self.axle
         before_deg = self.axle.angle_deg
@@ -303,7 +303,7 @@ class SimulatedMotor(DriverMotor):
         self.counter.record(time_ns * TICKS_PER_NS, 0.0, before_deg, axle.angle_deg, 0.5)
 
     def count_quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks after `tick` the motor is at rest or runs at constant speed."""
+        """Return the number of ticks after `tick` in which the motor is at rest or runs at constant speed."""
         self._tick = tick
         if self.is_at_rest:
             return ENDLESS

@@ -182,7 +182,7 @@ def list_mounted(robot: RobotSpec) -> tuple[MountedSensor, ...]:
 def measure_obstacle(
     sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, world: WorldSpec, pose: Pose
 ) -> float:
-    """Return the reading of a sensor that sees an obstacle of a world: mm, or percent of an infrared sensor.
+    """Return the reading of a sensor that sees an obstacle of a world: in mm, or in percent for an infrared sensor.
 
     The result is infinite if the sensor sees no obstacle, or if the robot would touch one.
     """

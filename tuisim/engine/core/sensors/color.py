@@ -145,7 +145,7 @@ MIN_BROWN_SATURATION = 20
 
 
 class LightRead(StrEnum):
-    """The readings that a program can ask of a colour sensor, by the names that it uses."""
+    """The readings that a program can get from a colour sensor, by the names that it uses."""
 
     REFLECTED = "reflected_light_intensity"
     PERCENT = "reflected_light_intensity_pc"
@@ -218,7 +218,7 @@ EVEN = Response(0, WHITE)
 
 
 def find_response(spec: ColorSensorSpec, profile: ProfileSpec) -> Response:
-    """Return the response of a sensor, in whole channels that give at least its percentages of black and white."""
+    """Return the response of a sensor, computed from its percentages of black and white, which are rounded up."""
     white = profile.white_percent if spec.white_percent is None else spec.white_percent
     black = profile.black_percent if spec.black_percent is None else spec.black_percent
     dark = ceil(WHITE * black / 100)
@@ -445,7 +445,7 @@ def _compute(name: str) -> Callable[[Iterable[Sequence[float]], RunSpec], list[f
 
 
 def columns(spec: ColorSensorSpec) -> tuple[Column, ...]:
-    """Return the columns of a colour sensor: its channels, and the readings that a program gets."""
+    """Return the telemetry columns of a colour sensor: red, green and blue, and the readings that a program gets."""
     name = spec.name
     return (
         Column(f"{name}_red"),

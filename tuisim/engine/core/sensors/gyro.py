@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def columns(spec: GyroSpec) -> tuple[Column, ...]:
-    """Return the columns of a gyro."""
+    """Return the telemetry columns of a gyro: its angle and its rate of turn."""
     name = spec.name
     return (
         Column(f"{name}_deg", is_traced=True, also=(name, f"{name} °")),

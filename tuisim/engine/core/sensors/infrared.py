@@ -116,7 +116,7 @@ def compute_remote_bits(time_s: float, world: WorldSpec, by_hand: Collection[str
 
 
 def columns(spec: InfraredSpec) -> tuple[Column, ...]:
-    """Return the column of an infrared sensor."""
+    """Return the only telemetry column of an infrared sensor: its proximity."""
     return (Column(f"{spec.name}_proximity", is_traced=True),)
 
 

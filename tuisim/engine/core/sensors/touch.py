@@ -69,7 +69,7 @@ def find_hand_flags(pressed: Collection[str]) -> int:
 
 
 def columns(spec: TouchSpec) -> tuple[Column, ...]:
-    """Return the column of a touch sensor."""
+    """Return the only telemetry column of a touch sensor: whether it is pressed."""
     return (Column(f"{spec.name}_pressed", is_traced=True),)
 
 

@@ -206,7 +206,7 @@ def measure_noisy_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -
 
 
 def columns(spec: UltrasonicSpec) -> tuple[Column, ...]:
-    """Return the column of an ultrasonic sensor."""
+    """Return the only telemetry column of an ultrasonic sensor: its distance."""
     return (Column(f"{spec.name}_mm", is_traced=True, also=(spec.name,)),)
 
 

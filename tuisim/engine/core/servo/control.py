@@ -35,7 +35,7 @@ class Ending(IntEnum):
 
 
 class Controller:
-    """A controller, which makes a motion follow a trajectory; while it has none, it is passive.
+    """A controller, which makes a motion follow a trajectory; without a trajectory it is passive.
 
     Args:
         settings: The settings, in counts.

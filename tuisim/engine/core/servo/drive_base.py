@@ -299,7 +299,7 @@ class DriveBase:
         self._take(Ending.HOLD)
 
     def drive(self, now_us: int, speed_mm_s: int, turn_rate_dps: int) -> None:
-        """Begin to drive at a speed and a rate of turn, without an end."""
+        """Begin to drive at a speed and a rate of turn, until the next command."""
         runs = self.active and all(
             motor.mode == FOREVER and not motor.blocked_ticks for motor in self.motors
         )
@@ -320,7 +320,7 @@ class DriveBase:
             self._take(Ending.HOLD)
 
     def stop(self, now_us: int, duty: int | None) -> None:
-        """Stop controlling the motors, and run them with a constant power; see `ServoMotor.run_freely`."""
+        """Stop controlling the motors, and run them with a constant power; `duty` is as of `ServoMotor.run_freely`."""
         for motor in self.motors:
             motor.run_freely(now_us, duty)
         self.distance.release(now_us)

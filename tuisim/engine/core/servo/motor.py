@@ -243,7 +243,7 @@ class ServoMotor:
         self.mode = FOREVER if self.duty or self._free_dps or self._jump_deg else STOPPED
 
     def set_position(self, now_us: int, milli: int) -> None:
-        """Set the number that the present position is given as, in thousandths of a count.
+        """Set the value that the motor reports for its present position, in thousandths of a count.
 
         A motion under way ends there, and the motor holds the position.
         """
@@ -327,7 +327,7 @@ class ServoMotor:
         return 0 if self.mode == STOPPED else self._quiet
 
     def count_quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks the motor only follows one segment of its trajectory, or is at rest."""
+        """Return the number of ticks in which the motor rests, or only follows one segment of its trajectory."""
         self._tick, self._quiet = tick, self._count_following_ticks(tick)
         return self._quiet
 

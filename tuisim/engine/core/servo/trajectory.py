@@ -33,7 +33,7 @@ def compute_duration_us(change: int, rate: int) -> int:
 
 
 def rate_change(acceleration: int, time_us: int) -> int:
-    """Return by how much a rate changes in a time in microseconds under an acceleration."""
+    """Return how much an acceleration changes a rate in a time, which is in microseconds."""
     return divide(acceleration * (time_us // MS_US), 1000)
 
 
@@ -193,13 +193,13 @@ def build_angle_move(
 def _speed_up(
     length: int, from_rest: int, top_rate: int, acceleration: int, slowing: int
 ) -> tuple[int, int, int]:
-    """Return where the part of a move with constant rate begins and ends, and the rate; the move speeds up before.
+    """Return where the part of a move with constant rate begins and ends, and that rate.
 
     Args:
         length: How far the move goes.
-        from_rest: Where it would have begun at rest.
+        from_rest: Where a move with the same ramp would have begun at rest.
         top_rate: The highest rate.
-        acceleration, slowing: How it speeds up, and how it stops.
+        acceleration, slowing: How the move speeds up before that part, and how it stops after it.
     """
     ramps = top_rate * top_rate * (acceleration + slowing) // (2 * acceleration * slowing)
     if length - from_rest >= ramps:

@@ -286,8 +286,8 @@ def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:
 
     Args:
         session: The run.
-        turns: After this number of iterations without time passing …
-        cost_ns: … this much time passes.
+        turns: The number of iterations without simulated time passing, after which some time passes.
+        cost_ns: How much time passes then.
     """
     left = turns
     mark = -1

@@ -45,7 +45,7 @@ _WRITES = ("send", "sendto")
 
 
 class FileWaits:
-    """Waits in simulated time for sockets and the brick's files, which it polls without blocking.
+    """Makes calls that wait for sockets and the brick's files wait in simulated time: they poll instead of blocking.
 
     Args:
         session: The run.

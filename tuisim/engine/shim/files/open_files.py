@@ -170,7 +170,7 @@ class DeviceIO(_real_file):
 
 @cache
 def _in_turn(kind: Any) -> Any:
-    """Return a subclass of a buffered file class that lets only one thread of the program in at a time.
+    """Return a subclass of a buffered file class whose methods only one thread of the program can run at a time.
 
     The class's own lock knows nothing of the program's simulated threads: a thread that waits for it would wait for
     ever if the thread inside lets time pass in the driver.

@@ -116,7 +116,7 @@ class DCMotor(Connected):
         self._run_freely(None)
 
     def brake(self) -> None:
-        """Stop the motor by its own brake, without holding its angle."""
+        """Brake the motor, without holding its angle afterwards."""
         self._run_freely(0)
 
 
@@ -166,7 +166,7 @@ class Motor(DCMotor):
         self._follow()
 
     def run(self, speed: float) -> None:
-        """Run the motor at a speed in degrees per second, without an end."""
+        """Run the motor at a speed in degrees per second, until the next command."""
         self._command()
         settings = self.simulated.control.settings
         rate = settings.counts(whole(speed))
@@ -187,7 +187,14 @@ class Motor(DCMotor):
     def run_time(
         self, speed: float, time: float, then: Stop = Stop.HOLD, wait: bool = True
     ) -> None:
-        """Run the motor at a speed for `time` ms."""
+        """Run the motor at a speed in degrees per second for `time` ms.
+
+        Args:
+            speed: The speed.
+            time: How long the motor runs.
+            then: What the motor does afterwards.
+            wait: Whether the call blocks until the move is over.
+        """
         self._command()
         settings = self.simulated.control.settings
         time_us = whole(time) * MS_US
@@ -200,7 +207,14 @@ class Motor(DCMotor):
     def run_angle(
         self, speed: float, rotation_angle: float, then: Stop = Stop.HOLD, wait: bool = True
     ) -> None:
-        """Turn the motor by an angle in degrees."""
+        """Turn the motor by an angle in degrees.
+
+        Args:
+            speed: The speed in degrees per second; a negative one changes the direction.
+            rotation_angle: The angle.
+            then: What the motor does afterwards.
+            wait: Whether the call blocks until the move is over.
+        """
         speed = whole(speed)
         angle = whole(rotation_angle)
         return self._move(
@@ -210,7 +224,14 @@ class Motor(DCMotor):
     def run_target(
         self, speed: float, target_angle: float, then: Stop = Stop.HOLD, wait: bool = True
     ) -> None:
-        """Turn the motor to an angle in degrees."""
+        """Turn the motor to an angle in degrees.
+
+        Args:
+            speed: The speed in degrees per second; its sign is ignored.
+            target_angle: The angle.
+            then: What the motor does afterwards.
+            wait: Whether the call blocks until the move is over.
+        """
         return self._move(
             whole(speed), whole(target_angle), then, wait, "run_target()", relative=False
         )
@@ -312,11 +333,11 @@ class Control(Connected):
 
     @property
     def scale(self) -> float:
-        """How many counts of the controller are one unit of the program."""
+        """The number of counts of the controller per unit of the program."""
         return self._control.settings.counts_per_unit
 
     def _access(self, **values: float | None) -> tuple[int, ...] | None:
-        """Return settings by their names, in the program's units, or set those that are not None.
+        """Set those settings whose values are not None; if all are None, return the settings in the program's units.
 
         Raises:
             OSError: a move is under way, or the motor holds.

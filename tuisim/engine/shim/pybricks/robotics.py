@@ -118,7 +118,7 @@ class DriveBase(Connected):
         *,
         drive_speed: float | None = None,
     ) -> None:
-        """Drive at a speed in mm/s and a rate of turn in degrees per second, without an end.
+        """Drive at a speed in mm/s and a rate of turn in degrees per second, until the next command.
 
         Args:
             speed, turn_rate: Both are needed.

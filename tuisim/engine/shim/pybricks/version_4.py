@@ -190,7 +190,13 @@ class DriveBase(robotics.DriveBase):
         super()._take_place(earlier)
 
     def straight(self, distance: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
-        """Drive a distance in mm; `then` says what the motors do afterwards."""
+        """Drive a distance in mm.
+
+        Args:
+            distance: The distance.
+            then: What the motors do afterwards.
+            wait: Whether the call blocks until the move is over.
+        """
         return self._move(whole(distance), 0, "straight()", then, wait=wait)
 
     def move_by(self, dx: float, dy: float, then: Stop = Stop.HOLD) -> None:

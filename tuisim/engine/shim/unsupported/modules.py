@@ -347,7 +347,7 @@ _TERMINALS = ("termios", "_curses")
 
 
 def point_at_keys(error: BaseException, library: Library) -> None:
-    """Add a note to the error of a program that reads single keys from a terminal: what it can do instead."""
+    """Add a note to the error of a program that reads single keys from a terminal; it says what to use instead."""
     # The classes are compared, not their names: a program's own class may raise an error when its name is read.
     kinds = [vars(sys.modules[name]).get("error") for name in _TERMINALS if name in sys.modules]
     if type(error) in kinds:
@@ -356,7 +356,7 @@ def point_at_keys(error: BaseException, library: Library) -> None:
 
 
 def point_at_package(error: BaseException, folder: str) -> None:
-    """Add a note to the error about a missing module: where to get the module.
+    """Add a note to the error about a missing module that says where to get the module.
 
     Args:
         error: Any error of the program.

@@ -35,7 +35,7 @@ def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
 
 
 def find_nearest(measured: tuple[int, int, int], colors: Sequence[Any]) -> Any:
-    """Return the one of `colors` that is nearest to a measured hue, saturation and value."""
+    """Return the colour in `colors` that is nearest to a measured hue, saturation and value."""
     hue, saturation, value = measured
     if not all(_is_ideal(color) for color in colors):
         place = _find_place(measured)

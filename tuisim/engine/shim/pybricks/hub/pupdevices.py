@@ -101,11 +101,11 @@ class ColorSensor(Sensor):
         return self._read_as("COL-AMBIENT", int)
 
     def hsv(self, surface: bool = True) -> Any:
-        """Return hue, saturation and value of what the sensor sees."""
+        """Return hue, saturation and value of what the sensor sees, as a `Color`."""
         return self._read_light(lambda *channels: Color(*measure_hsv(*channels)))
 
     def color(self, surface: bool = True) -> Any:
-        """Return the one of the detectable colours that is nearest to what the sensor sees."""
+        """Return the detectable colour that is nearest to what the sensor sees."""
         return self._read_light(
             lambda *channels: find_nearest(measure_hsv(*channels), self._colors)
         )
