@@ -127,7 +127,7 @@ class BrickMotor:
         self.sign = 1.0
 
     def state(self) -> MotorState:
-        """Return the state that `hold_back` needs to undo a tick."""
+        """Return the state of the motor before a tick, from which `hold_back` can undo the tick."""
         return self.mode, self.sign, self.target_dps, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:

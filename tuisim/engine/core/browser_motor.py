@@ -123,7 +123,7 @@ class BrowserMotor:
         return turned * self.roll_sign + 0.0
 
     def _step_register(self, speed: float, noise_dps: float = 0.0) -> float:
-        """Return the value of the speed register one tick later."""
+        """Return the value that the motor's speed register has one tick after the value `speed`."""
         target = self.speed_sp
         step = self._ramp_step
         if speed < target:
@@ -150,7 +150,7 @@ class BrowserMotor:
 
     @property
     def _aim(self) -> float:
-        """The value that the speed register approaches."""
+        """The speed in degrees per second that the motor's speed register approaches."""
         return min(self.speed_sp, self._limit_dps)
 
     @property
@@ -280,7 +280,7 @@ class BrowserMotor:
     # Collisions
 
     def state(self) -> MotorState:
-        """Return the state that `hold_back` needs to undo a tick."""
+        """Return the state of the motor before a tick, from which `hold_back` can undo the tick."""
         return self.mode, self._direction, self._aim, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:

@@ -107,7 +107,7 @@ class DriftSpec(Spec):
 
     @property
     def is_none(self) -> bool:
-        """Whether all of these errors are 0."""
+        """Whether all drift errors in this spec are 0."""
         return self is NO_DRIFT or not any(self._list_contents())
 
 

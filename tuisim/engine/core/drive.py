@@ -175,7 +175,7 @@ class BrickDrive:
         self.gyro_zero_deg = round_to_float32(start.heading_deg)
 
     def put(self, pose: Pose) -> None:
-        """Set the robot's pose."""
+        """Set the robot's pose, such as after a user has moved the robot."""
         self.x_mm = pose.x_mm
         self.y_mm = pose.y_mm
         self.heading_deg = pose.heading_deg
@@ -191,7 +191,7 @@ class BrickDrive:
         self.heading_deg += turned
 
     def glide(self, records: Records, left: Glide, right: Glide) -> None:
-        """Move the robot by several ticks and write a record for each."""
+        """Move the robot by several ticks of its wheels' motors, and write a tick record for each."""
         buffer, offsets, ticks, line, flags, actions, hz = records
         left_per_deg, right_per_deg = self._left_mm_per_deg, self._right_mm_per_deg
         spacing = self._spacing_mm
@@ -234,7 +234,11 @@ class BrickDrive:
     def glide_evenly(
         self, records: Records, left: EvenGlide, right: EvenGlide
     ) -> tuple[float, float]:
-        """Do the same as `glide`, with the same rotation in each tick; return the final encoder positions."""
+        """Move the robot by several ticks with equal rotations of the wheels, and write a tick record for each.
+
+        Returns:
+            The final positions of the left and the right encoder, in degrees.
+        """
         left_mm, right_mm = (
             left.roll_deg * self._left_mm_per_deg,
             right.roll_deg * self._right_mm_per_deg,
@@ -300,7 +304,7 @@ class BrowserDrive:
         self.gyro_zero_deg = round_to_float32(self.heading_deg)
 
     def put(self, pose: Pose) -> None:
-        """Set the robot's pose."""
+        """Set the robot's pose, such as after a user has moved the robot."""
         self.x_mm, self.y_mm = pose.x_mm, pose.y_mm
         self._heading = radians(pose.heading_deg)
         self.heading_deg = self._heading * 180.0 / math.pi
@@ -332,7 +336,7 @@ class BrowserDrive:
         return (left_mm + right_mm) / 2, (right_mm - left_mm) / self._spacing_mm
 
     def glide(self, records: Records, left: Glide, right: Glide) -> None:
-        """Move the robot by several ticks and write a record for each."""
+        """Move the robot by several ticks of its wheels' motors, and write a tick record for each."""
         buffer, offsets, ticks, line, flags, actions, hz = records
         left_rim, right_rim = self._left_rim_mm, self._right_rim_mm
         spacing = self._spacing_mm
@@ -385,7 +389,11 @@ class BrowserDrive:
     def glide_evenly(
         self, records: Records, left: EvenGlide, right: EvenGlide
     ) -> tuple[float, float]:
-        """Do the same as `glide`, with the same rotation in each tick; return the final encoder positions."""
+        """Move the robot by several ticks with equal rotations of the wheels, and write a tick record for each.
+
+        Returns:
+            The final positions of the left and the right encoder, in degrees.
+        """
         forward, turned = self._step(left.roll_deg, right.roll_deg)
         if not turned:
             return _glide_straight(self, forward, self._heading, records, left, right)

@@ -35,13 +35,13 @@ class EndStops:
 
     @property
     def flags(self) -> int:
-        """The flag of the stop that the motor is at; 0 between them."""
+        """The flag in a tick record for the end stop that the motor is at; 0 if it is at neither."""
         if self._at_deg - self._low_deg <= NEAR_DEG:
             return self._low_flag
         return self._high_flag if self._high_deg - self._at_deg <= NEAR_DEG else 0
 
     def step(self, motor: Motor, tick: int) -> None:
-        """Run one tick of the motor, as far as its stops allow."""
+        """Run one tick of the motor, as far as its end stops allow."""
         before = motor.state()
         turned_deg = motor.step(tick, 0.0)
         there_deg = self._at_deg + turned_deg

@@ -368,7 +368,7 @@ class Motion:
         self._publish(1)
 
     def _push(self, aside_mm: tuple[float, float]) -> None:
-        """Move the robot aside by a distance along x and along y."""
+        """Move the robot aside by a distance in mm along x and along y."""
         drive = self.drive
         drive.x_mm, drive.y_mm = drive.x_mm + aside_mm[0], drive.y_mm + aside_mm[1]
 
@@ -460,7 +460,7 @@ class Motion:
         return way_mm < STANDSTILL_DEG * abs(self._left_mm_per_deg)
 
     def _build_record(self) -> tuple[float, ...]:
-        """Return the record of the current tick."""
+        """Return the tick record of the current tick, with the fields of `TICK_RECORD`."""
         return (
             self.tick,
             self.line,

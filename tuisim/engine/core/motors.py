@@ -57,7 +57,7 @@ class Motor(Protocol):
 
     @property
     def end_tick(self) -> float:
-        """The tick at which a timed move ends."""
+        """The tick at which the motor's timed move ends."""
 
     @property
     def moving_dps(self) -> float: ...

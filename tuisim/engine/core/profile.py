@@ -64,7 +64,7 @@ class MotorLaw(StrEnum):
 
     @property
     def library(self) -> Library:
-        """The library whose programs can control such motors."""
+        """The library that programs use to control motors under this motor law."""
         return (
             Library.PYBRICKS
             if self in (MotorLaw.PYBRICKS, MotorLaw.PYBRICKS_4)

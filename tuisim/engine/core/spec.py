@@ -475,17 +475,17 @@ class RobotSpec(Spec):
 
     @property
     def output_ports(self) -> tuple[str, ...]:
-        """The ports for motors."""
+        """The names of the ports for motors on the robot's brick or hub."""
         return tuple(HUBS[self.hub].ports) if self.hub else OUTPUT_PORTS
 
     @property
     def input_ports(self) -> tuple[str, ...]:
-        """The ports for sensors."""
+        """The names of the ports for sensors on the robot's brick or hub."""
         return tuple(HUBS[self.hub].ports) if self.hub else INPUT_PORTS
 
     @property
     def has_wheels(self) -> bool:
-        """Whether motors drive the robot."""
+        """Whether the robot has wheels that motors drive."""
         return self.left_port != NO_PORT
 
     @property
@@ -497,12 +497,12 @@ class RobotSpec(Spec):
 
     @property
     def motors(self) -> tuple[MotorSpec, ...]:
-        """All motors, wheel motors first."""
+        """All motors of the robot, the two wheel motors first."""
         return *self.wheel_motors, *self.extra_motors
 
     @property
     def sensors(self) -> tuple[SensorSpec, ...]:
-        """All mounted sensors, in the order of the telemetry columns."""
+        """All sensors of the robot, in the order of the telemetry columns."""
         return tuple(sensor for mount in MOUNTS for sensor in self.list_sensors(mount))
 
     @property

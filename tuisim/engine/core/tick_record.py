@@ -54,7 +54,7 @@ class TickSink(Protocol):
         """Return a writable buffer in which record k of 64 bytes starts at 64 + 64·k; valid until the next call."""
 
     def publish(self, count: int) -> None:
-        """Make the first `count` records visible to readers."""
+        """Make the first `count` tick records visible to readers."""
 
 
 class MemoryRecording:
@@ -72,7 +72,7 @@ class MemoryRecording:
         return self.buffer
 
     def publish(self, count: int) -> None:
-        """Make the first `count` records visible to readers."""
+        """Make the first `count` tick records visible to readers."""
         self.count = count
 
 
@@ -82,8 +82,8 @@ class NoRecording:
     count = 0
 
     def reserve(self, records: int) -> Buffer:
-        """Return a buffer that nobody reads."""
+        """Return a buffer for tick records that nobody reads."""
         return bytearray(64 * (records + 1))
 
     def publish(self, count: int) -> None:
-        """Ignore the records: nobody reads them."""
+        """Ignore the tick records in the buffer: nobody reads them."""

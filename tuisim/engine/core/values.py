@@ -97,7 +97,7 @@ class Value(ABC):
     @property
     @abstractmethod
     def allowed(self) -> str:
-        """The allowed values, in words."""
+        """The values that are allowed, described in words for an error or a help text."""
 
     @property
     def metavar(self) -> str:
@@ -106,7 +106,7 @@ class Value(ABC):
 
     @property
     def choices(self) -> tuple[Any, ...]:
-        """All allowed values if they are few; empty for other values."""
+        """All allowed values if they are few, such as those of a list to choose from; empty otherwise."""
         return ()
 
     def check(self, value: Any) -> None:

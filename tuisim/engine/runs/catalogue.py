@@ -145,7 +145,7 @@ class Catalogue:
         self._write(lambda connection: connection.executemany("DELETE FROM runs WHERE id = ?", ids))
 
     def rows(self) -> list[RunInfo]:
-        """Return all rows, oldest first."""
+        """Return the rows of all runs in the catalogue, oldest first."""
         try:
             return self._do(_fetch_rows)
         except LogError:

@@ -57,7 +57,7 @@ class CommandsWriter(MappedWriter):
         """How many commands fit."""
 
     def add(self, time_ns: int, part: int, call: int, values: tuple[float, ...]) -> None:
-        """Append a command; arguments as of `SimulationCommand`."""
+        """Append a command to the record; arguments as of `SimulationCommand`."""
         count = self._count
         if count < self._room or self._extend(count):
             offset = HEADER_BYTES + count * COMMAND_RECORD.size
@@ -73,7 +73,7 @@ class CommandsWriter(MappedWriter):
         return True
 
     def close(self) -> None:
-        """Close the file, and cut off its unused space."""
+        """Close the file of commands, and cut off its unused space."""
         self._close(HEADER_BYTES + min(self._count, self._room) * COMMAND_RECORD.size)
 
 

@@ -218,7 +218,7 @@ class RunHandle:
 
     @property
     def answers(self) -> tuple[str, ...]:
-        """Scripted answers to `input()`."""
+        """Answers that the run's options give in advance to calls of `input()`."""
         return self._options.answers
 
     # Events

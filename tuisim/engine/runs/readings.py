@@ -126,7 +126,7 @@ class ReadingsWriter(MappedWriter):
         return True
 
     def close(self) -> None:
-        """Close the file, and cut off its unused space."""
+        """Close the file of readings, and cut off its unused space."""
         self._close(HEADER_BYTES + min(self._count, self._room) * READING_RECORD.size)
 
 

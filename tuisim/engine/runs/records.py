@@ -217,11 +217,11 @@ class TelemetryWriter(MappedWriter):
         return self._map
 
     def publish(self, count: int) -> None:
-        """Make the first `count` records visible to readers."""
+        """Make the first `count` tick records visible to readers of the file."""
         self.count = self._length[0] = count
 
     def close(self) -> None:
-        """Close the file, and cut off its unused space."""
+        """Close the file of tick records, and cut off its unused space."""
         self._close(HEADER_BYTES + self.count * TICK_RECORD.size)
 
 
@@ -262,7 +262,7 @@ class OutputWriter(MappedWriter):
         self.length = self._length[0] = end - HEADER_BYTES
 
     def close(self) -> None:
-        """Close the file, and cut off its unused space."""
+        """Close the file of output, and cut off its unused space."""
         self._close(HEADER_BYTES + self.length)
 
 

@@ -77,7 +77,7 @@ class RunStore:
         self._catalogue = Catalogue(self.home, self._scan)
 
     def folder(self, run_id: str) -> Path:
-        """Return the folder of a run."""
+        """Return the path of a run's folder in the home folder, whether it exists or not."""
         return self._runs / run_id
 
     # Writing

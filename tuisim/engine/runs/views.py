@@ -165,7 +165,7 @@ class _View(ABC):
 
     @property
     def is_missing(self) -> bool:
-        """Whether there is no recording at all, not even an empty one."""
+        """Whether the run has no such recording at all, not even an empty one."""
         return not self._measure_length() and not self._has_begun
 
     @property
@@ -192,7 +192,7 @@ class _View(ABC):
 
     @property
     def _done(self) -> int:
-        """Number of records that need no further check."""
+        """Number of records that have been checked and need no further check."""
         return self._there
 
     def _look(self) -> tuple[memoryview, int]:
@@ -364,7 +364,7 @@ class TelemetryView(_View):
 
     @property
     def count(self) -> int:
-        """Number of complete records; record k is that of tick k."""
+        """Number of complete tick records in the recording; record k is that of tick k."""
         return self._measure_length()
 
     def _describe_lost(self, count: int) -> str:
@@ -410,7 +410,7 @@ class TelemetryView(_View):
         return records.toreadonly()
 
     def last(self) -> TickRecord | None:
-        """Return the newest record; None if there is none."""
+        """Return the newest tick record; None if there is none yet."""
         count = self.count
         return self.record(count - 1) if count else None
 
@@ -506,7 +506,7 @@ class OutputView(_View):
         return rows
 
     def read_all_rows(self) -> list[OutputRow]:
-        """Return all rows so far, without an effect on `read_new_rows`."""
+        """Return all output rows so far, without changing what `read_new_rows` returns next."""
         return list(self.rows())
 
     def read_rows(self, position: int) -> Iterator[tuple[OutputRow, int]]:

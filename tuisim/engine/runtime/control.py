@@ -122,7 +122,7 @@ class ControlledRun(Protocol):
         """Return the debugger; it is created on first use."""
 
     def check_stop(self, before_tick: bool = False) -> None:
-        """Raise if the program has to stop."""
+        """Raise `StopProgram` if the program has to stop."""
 
     def ask_stop(self, end: End, summary: str) -> None:
         """Record that the run has to end at the next checkpoint."""

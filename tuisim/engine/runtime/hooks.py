@@ -52,7 +52,7 @@ class ErrorHooks:
         self._source = source
 
     def install(self) -> None:
-        """Replace the hooks of Python."""
+        """Replace the hooks of `sys` and `threading` through which Python shows errors."""
         # Imported here because the functions that `threading` uses must be patched before.
         import threading
 

@@ -239,7 +239,7 @@ class LineStream(io.TextIOBase):
 
     @property
     def name(self) -> str:
-        """Name of the stream, as Python's own stream has it."""
+        """Name of the stream: `<stdout>` or `<stderr>`, as Python's own stream has it."""
         return "<stdout>" if self._stream == Stream.STDOUT else "<stderr>"
 
     @property
@@ -258,7 +258,7 @@ class LineStream(io.TextIOBase):
         return int(self._stream)
 
     def writable(self) -> bool:
-        """Return True."""
+        """Return True: a program can write to this stream."""
         return True
 
     def detach(self) -> Any:
@@ -327,7 +327,7 @@ class ByteStream(io.RawIOBase):
 
     @property
     def name(self) -> str:
-        """Name of the stream, as Python's own stream has it."""
+        """Name of the stream: `<stdout>` or `<stderr>`, as Python's own stream has it."""
         return self._stream.name
 
     @property
@@ -340,11 +340,11 @@ class ByteStream(io.RawIOBase):
         return self._stream.fileno()
 
     def writable(self) -> bool:
-        """Return True."""
+        """Return True: a program can write to this stream."""
         return True
 
     def write(self, data: Any) -> int:
-        """Write bytes, decoded as UTF-8, and return their number."""
+        """Write bytes to the stream, decoded as UTF-8, and return their number."""
         if self.closed:
             raise ValueError("write to closed file")
         taken = bytes(data)
@@ -352,7 +352,7 @@ class ByteStream(io.RawIOBase):
         return len(taken)
 
     def put(self, data: bytes) -> None:
-        """Write bytes, even if the program has closed the stream."""
+        """Write bytes to the stream, even if the program has closed it."""
         self._stream.put(self._decoder.decode(data))
 
     def take_rest(self) -> str:

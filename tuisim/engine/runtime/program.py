@@ -54,7 +54,7 @@ class HomeFolder:
         self._own_folder = own_folder
 
     def patch(self) -> None:
-        """Replace the functions that take paths of files or folders."""
+        """Replace Python's functions that take paths, so that they find files of the brick's home folder."""
         self._wrap(builtins, "open", self._find_file)
         vars(io)["open"] = builtins.open
         for name in _FILE_CALLS:

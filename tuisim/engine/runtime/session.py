@@ -386,7 +386,7 @@ class Session:
         return False
 
     def skip_control(self, tick: int) -> None:
-        """Run without calling the control until this tick is due."""
+        """Run ticks without calling the control of the run until `tick` is due."""
         self.flags &= ~LIVE
         self._quick_ns = min(self._limit_ns, self.sim.compute_due_ns(tick) - 1)
 

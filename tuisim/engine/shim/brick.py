@@ -223,7 +223,7 @@ class BuiltBrick:
         return path
 
     def disconnect(self, port: str) -> None:
-        """Remove the device on a port."""
+        """Remove the device on a port of the brick."""
         path = self.paths.pop(port)
         del self.files.by_path[path]
         self.colors.pop(path, None)

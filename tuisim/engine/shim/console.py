@@ -174,7 +174,7 @@ class Terminal:
 
     @property
     def size(self) -> str:
-        """Rows and columns, in the format of `stty size`."""
+        """Rows and columns of the brick's console, in the format of `stty size`."""
         return f"{self._grid.rows} {self._grid.columns}\n"
 
     def _show(self) -> None:

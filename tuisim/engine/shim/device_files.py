@@ -117,11 +117,11 @@ class SimDevice:
         return write_slowly
 
     def attributes(self) -> list[str]:
-        """Return the names of the attributes that exist at present."""
+        """Return the names of the attributes that the device has at present."""
         return [name for name in {**self.readers, **self.writers} if self.has(name)]
 
     def has(self, name: str) -> bool:
-        """Return whether an attribute exists at present."""
+        """Return whether the device has an attribute at present."""
         if name in self._temporary:
             try:
                 self.readers[name]()
@@ -182,7 +182,7 @@ class DeviceFiles:
         self._next_numbers: dict[str, int] = {}
 
     def add(self, class_name: str, name: str, device: SimDevice) -> None:
-        """Add a device under its class and its name."""
+        """Add a device to the brick under its class and its name."""
         self.by_path[f"{CLASSES_FOLDER}/{class_name}/{name}"] = device
 
     def add_numbered(self, class_name: str, name: str, device: SimDevice) -> str:

@@ -63,7 +63,7 @@ class DisplayBuffer(mmap.mmap):
     """
 
     def __new__(cls, _session: DeviceSession, _screen: Screen) -> DisplayBuffer:
-        """Allocate memory without a file, instead of mapping one."""
+        """Allocate the display's memory without a file, instead of mapping one."""
         return super().__new__(cls, NO_FILE, LINE_BYTES * DISPLAY_HEIGHT)
 
     def __init__(self, session: DeviceSession, screen: Screen) -> None:
@@ -74,7 +74,7 @@ class DisplayBuffer(mmap.mmap):
         super().__setitem__(slice(None), bytes([WHITE]) * len(self))
 
     def __setitem__(self, key: Any, value: Any) -> None:
-        """Write bytes to a place in the memory, and display them."""
+        """Write bytes to a position in the display's memory, and display them."""
         super().__setitem__(key, value)
         self._update()
 
@@ -115,7 +115,7 @@ class DisplayFile(DeviceFile):
         return DisplayBuffer(self._session, self._screen)
 
     def read(self, opened: OpenFile, size: int) -> bytes:
-        """Return pixels from the present position on."""
+        """Return up to `size` bytes of the display's memory from the file's present position on."""
         end = len(self._memory) if size < 0 else opened.at + size
         part = self._memory[opened.at : end]
         opened.at += len(part)

@@ -38,7 +38,7 @@ class DeviceSession(Protocol):
 
     @property
     def field(self) -> Field:
-        """The mat in its current state."""
+        """The mat in its present state, with pen marks if sensors can see them."""
 
     def spend(self, duration_ns: int, code: int = -1) -> None:
         """Let simulated time pass, even while calls are free of charge.

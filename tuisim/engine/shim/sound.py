@@ -64,7 +64,7 @@ class PlayedSound:
         input: bytes | None = None,  # noqa: A002
         timeout: float | None = None,
     ) -> tuple[bytes, bytes]:
-        """Block until the sound ends; there is no output."""
+        """Block until the sound ends, and return empty output: the player writes nothing."""
         self.wait(timeout)
         return b"", b""
 
@@ -128,7 +128,7 @@ class Loudspeaker:
         """Collects the tones of a song while the library plays its notes."""
 
     def play(self, heard: Heard, wait_ns: int) -> None:
-        """Play a sound and let `wait_ns` pass."""
+        """Play a sound, and let `wait_ns` of simulated time pass."""
         self._session.speak(heard.text, wait_ns, heard.tones_row, heard.file)
 
     def rest(self, seconds: float) -> None:

@@ -43,7 +43,7 @@ class Controller:
         self.clear()
 
     def clear(self) -> None:
-        """Set the error of the last step and the sum of all errors to 0."""
+        """Set the controller's error of the last step and the sum of all its errors to 0."""
         self.error = self.total = 0
         """The error of the last step, and the sum of all."""
         self.overloaded = False

@@ -115,17 +115,17 @@ class MotorDriver:
     # Commands
 
     def run_regulated(self, speed_dps: int) -> None:
-        """Run at a speed that the speed control keeps, from its next step on."""
+        """Run the motor at a speed that the speed control keeps, from its next step on."""
         self.speed_control.setpoint = speed_dps
         self._start(self.speed_control)
 
     def run_direct(self, time_ns: int, duty: int) -> None:
-        """Run with a constant duty in percent, without any controller."""
+        """Run the motor with a constant duty in percent, without any controller."""
         self._start(None)
         self._set_duty(time_ns, duty)
 
     def run_to(self, target: int, speed_dps: int, action: StopAction) -> None:
-        """Run to the position `target`, with a stop action there; the sign of the speed is ignored."""
+        """Run the motor to the position `target`, with a stop action there; the sign of the speed is ignored."""
         self.speed_control.setpoint = -abs(speed_dps) if self.position > target else abs(speed_dps)
         self._start(self.speed_control)
         self.target = target
@@ -161,7 +161,7 @@ class MotorDriver:
     # Time
 
     def move_axle(self, time_ns: int) -> None:
-        """Turn the axle until a time, and count its turns."""
+        """Turn the motor's axle until a time in ns, and record the counts of its encoder."""
         axle = self.axle
         left_ns = float(time_ns - self._moved_ns)
         self._moved_ns = time_ns

@@ -149,7 +149,7 @@ class SimulatedMotor(DriverMotor):
 
     @property
     def goal_deg(self) -> float:
-        """Target of the last move to a position, in degrees."""
+        """Target of the motor's last move to a position, in degrees."""
         return float(self.target)
 
     @property

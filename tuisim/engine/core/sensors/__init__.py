@@ -77,7 +77,10 @@ Measure = Callable[[Instant, RunSpec, Field], tuple[float, ...]]
 
 
 def list_owners(run: RunSpec) -> list[tuple[tuple[Column, ...], Measure]]:
-    """Return the columns of the robot, of each sensor and of each motor with a driver, each with what measures them."""
+    """Return the columns of the robot, of each sensor and of each motor with a driver.
+
+    Each group of columns comes with the function that measures its values.
+    """
     of_sensors = [
         (mount.columns, partial(mount.kind.measure, mount.sensor))
         for mount in list_mounted(run.robot)

@@ -60,7 +60,7 @@ class ColorReading:
 
     @property
     def rgb(self) -> tuple[int, int, int]:
-        """The channels truncated to integers, as programs get them."""
+        """Red, green and blue of the reading, truncated to integers, as programs get them."""
         return int(self.red), int(self.green), int(self.blue)
 
     @property
@@ -82,12 +82,12 @@ class ColorReading:
 
     @property
     def code(self) -> int:
-        """Colour code, see `find_color_code` and `find_brick_color_code`."""
+        """Colour code of the reading, see `find_color_code` and `find_brick_color_code`."""
         return find_brick_color_code(*self.rgb) if self.is_bricks else find_color_code(*self.rgb)
 
     @property
     def name(self) -> str:
-        """Colour name, such as `Blue`."""
+        """Name of the reading's colour, such as `Blue`."""
         return COLOR_NAMES[self.code]
 
 
@@ -157,11 +157,11 @@ class LightRead(StrEnum):
 
     @property
     def is_color(self) -> bool:
-        """Whether the reading is a colour, not a number."""
+        """Whether this reading of a colour sensor is a colour, not a number."""
         return self in (LightRead.COLOR, LightRead.COLOR_NAME)
 
     def compute_value(self, seen: ColorReading, reflected_max: int) -> float:
-        """Return the value that a program gets for this reading; the code of a colour.
+        """Return the number that a program gets for this reading of a colour sensor; for a colour, its code.
 
         Args:
             seen: What the sensor sees.
@@ -182,11 +182,11 @@ class LightRead(StrEnum):
                 assert_never(self)
 
     def uses_all_channels(self, seen: ColorReading) -> bool:
-        """Return whether the value is computed from all channels, and not from the red one alone."""
+        """Return whether this reading is computed from red, green and blue, not from red alone."""
         return self is LightRead.MEAN or (self is LightRead.REFLECTION and seen.is_hubs)
 
     def find_white(self, reflected_max: int) -> int:
-        """Return the value that a program gets for this reading on a white surface."""
+        """Return the number that a program gets for this reading of a colour sensor on a white surface."""
         return reflected_max if self is LightRead.REFLECTED else 100
 
 

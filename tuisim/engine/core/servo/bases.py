@@ -28,7 +28,7 @@ class DriveBases:
 
     @property
     def newest(self) -> int:
-        """The number of the drive base that was made last."""
+        """The number of the drive base that the program has made last."""
         return (self._made - 1) % MAX_BASES
 
     def add(self, base: DriveBase) -> None:

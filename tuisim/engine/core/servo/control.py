@@ -81,13 +81,13 @@ class Controller:
 
     @property
     def actuation(self) -> int:
-        """The highest power, in hundredths of a percent."""
+        """The highest power that the controller may use, in hundredths of a percent."""
         return self.settings.actuation if self.duty_limit is None else self.duty_limit
 
     # The reference
 
     def milli(self, now_us: int) -> int:
-        """Return the position that the motion should have, in thousandths of a count."""
+        """Return the position that the controlled motion should have at a time, in thousandths of a count."""
         assert self.trajectory is not None
         then_us = now_us - self._paused_us
         return self.trajectory.find_segment(then_us).find_milli(then_us) - self._behind_milli
@@ -118,13 +118,13 @@ class Controller:
 
     @property
     def end_us(self) -> int | None:
-        """When the trajectory ends; None without a trajectory, or if that has no end."""
+        """Time in µs at which the controller's trajectory ends; None without a trajectory, or if that has no end."""
         if self.trajectory is None or self.trajectory.endless:
             return None
         return self.trajectory.end_us + self._paused_us
 
     def find_segment_end_us(self, now_us: int) -> int | None:
-        """Return when the current segment of the trajectory ends; None if it has no end."""
+        """Return the time in µs at which the current segment of the trajectory ends; None if it has no end."""
         if self.trajectory is None:
             return None
         end_us = self.trajectory.find_segment_end_us(now_us - self._paused_us)
@@ -145,7 +145,7 @@ class Controller:
         self._stalled_us = 0
 
     def hold(self, now_us: int, milli: int) -> None:
-        """Begin to hold a position, in thousandths of a count."""
+        """Make the controller hold a position, in thousandths of a count, from a time in µs on."""
         self._begin(build_rest(now_us, milli), timed=False)
 
     def move_to_position(
@@ -343,13 +343,13 @@ class Controller:
 
     @property
     def stalled(self) -> bool:
-        """Whether the motion has hardly moved at full power for the stall time of the settings."""
+        """Whether the controlled motion has hardly moved at full power for the stall time of the settings."""
         return (
             self.trajectory is not None and self._stalled_us >= self.settings.stall_time_ms * MS_US
         )
 
     def has_ended(self, now_us: int) -> bool:
-        """Return whether the time of a timed motion is over."""
+        """Return whether the controller's motion was for a given time, and this time is over."""
         return self.timed and (end_us := self.end_us) is not None and now_us >= end_us
 
     def done(self, now_us: int, milli: int, rate: int) -> bool:

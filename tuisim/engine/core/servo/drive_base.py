@@ -208,7 +208,7 @@ class DriveBase:
 
     @property
     def stalled(self) -> bool:
-        """Whether something has blocked the robot."""
+        """Whether something has blocked the robot that the drive base moves."""
         return self.distance.stalled or self.heading.stalled
 
     # The gyro
@@ -358,7 +358,7 @@ class DriveBase:
 
     @property
     def end_us(self) -> int | None:
-        """When the motion ends; None if it does not."""
+        """Time in µs at which the drive base's motion ends; None if the motion has no end."""
         one = self.distance.end_us
         other = self.heading.end_us
         return None if one is None or other is None else max(one, other)
@@ -390,7 +390,7 @@ class DriveBase:
         return (total + difference) / 2 if motor is self.left else (total - difference) / 2
 
     def find_segment_end_us(self, now_us: int) -> int | None:
-        """Return when the current segment of either trajectory ends; None if neither does."""
+        """Return the time in µs at which the current segment of either trajectory ends; None if neither ends."""
         if self.uses_gyro and (self.end_us is None or now_us < self.end_us):
             # The gyro corrects the motors at every tick, so no segment lasts longer.
             return now_us + 1

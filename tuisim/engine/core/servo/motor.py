@@ -41,7 +41,7 @@ class Guide(Protocol):
 
     @property
     def end_us(self) -> int | None:
-        """When the motion ends, in µs; None if it does not end."""
+        """Time in µs at which the motion that the motor follows ends; None if it has no end."""
 
     def find_target(self, now_us: int, motor: ServoMotor) -> int:
         """Return the position that the motor should have at a time, in half thousandths of a count."""
@@ -53,7 +53,7 @@ class Guide(Protocol):
         """Return the rate that the motor should have, in counts per second."""
 
     def find_segment_end_us(self, now_us: int) -> int | None:
-        """Return when the current segment of the motion ends; None if it has no end."""
+        """Return the time in µs at which the current segment of the motion ends; None if it has no end."""
 
     def note_lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
         """React to a motor that has lagged behind its trajectory for `passed_us`, until now."""
@@ -135,7 +135,7 @@ class ServoMotor:
 
     @property
     def follows_itself(self) -> bool:
-        """Whether the motor follows its own controller."""
+        """Whether the motor follows its own controller, not a drive base."""
         return self._guide is self.control
 
     @property
@@ -219,7 +219,7 @@ class ServoMotor:
         return self._guide is not None and self._ending in (Ending.COAST, Ending.BRAKE)
 
     def _limit_speed(self) -> None:
-        """Compute the highest speed that the motor's power allows."""
+        """Compute and store the highest speed that the motor's power allows."""
         self._actuation = self.control.actuation
         self._fastest_deg = find_steady_dps(self.kind, self._actuation) * self._tick_s
 
@@ -259,7 +259,7 @@ class ServoMotor:
 
     @property
     def goal_deg(self) -> float:
-        """Position at which the motion ends, in degrees; the present position if it has no end."""
+        """Position in degrees at which the motor's motion ends; its present position if the motion has no end."""
         guide = self._guide
         end_us = guide.end_us if guide else None
         return (
@@ -270,7 +270,7 @@ class ServoMotor:
 
     @property
     def end_tick(self) -> float:
-        """The tick at which the motion ends; `ENDLESS` if it does not."""
+        """The tick at which the motor's present motion ends; `ENDLESS` if it does not end."""
         end_us = self._guide.end_us if self._guide else None
         return ENDLESS if end_us is None else end_us / self._tick_us
 
@@ -278,7 +278,7 @@ class ServoMotor:
         return halves * self.sign / HALVES_PER_DEG
 
     def state(self) -> MotorState:
-        """Return the state that `hold_back` needs to undo a tick."""
+        """Return the state of the motor before a tick, from which `hold_back` can undo the tick."""
         return self.mode, self.sign, 0.0, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
@@ -412,7 +412,7 @@ class ServoMotor:
         return turned
 
     def _end(self, now_us: int) -> None:
-        """End the motion: from now on the motor stands still, and holds, brakes or coasts."""
+        """End the motor's motion: from now on it stands still, and holds, brakes or coasts."""
         guide = self._guide
         holds = self._ending == Ending.HOLD
         if not holds and guide is not None and not guide.lets_go(now_us, self._ending):
@@ -427,7 +427,7 @@ class ServoMotor:
             self.duty = 0 if self._ending == Ending.BRAKE else None
 
     def _run_freely(self, now_us: int) -> float:
-        """Run one tick without a guide; return the rotation in degrees."""
+        """Run one tick of the motor without a guide; return its rotation in degrees."""
         axle = self.axle
         left_ns = min(self._tick_us, now_us - self._free_us) * 1000.0
         begin_deg = axle.angle_deg

@@ -60,7 +60,7 @@ class ControlSettings:
 
     @property
     def counts_per_unit(self) -> float:
-        """Counts per unit of the program."""
+        """Number of the controller's counts per unit in which the program gives positions."""
         return self.scale / _ONE
 
     def counts(self, units: int) -> int:

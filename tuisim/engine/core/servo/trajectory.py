@@ -100,11 +100,11 @@ class Trajectory(NamedTuple):
 
     @property
     def end_us(self) -> int:
-        """When the motion stops, in microseconds."""
+        """Time in µs at which the motion of the trajectory stops."""
         return self.end.start_us
 
     def find_segment(self, time_us: int) -> Segment:
-        """Return the segment of the trajectory to which a time belongs."""
+        """Return the segment of the trajectory to which a time in µs belongs."""
         if time_us < self.even.start_us:
             return self.first
         if self.endless or time_us <= self.last.start_us:
@@ -112,7 +112,7 @@ class Trajectory(NamedTuple):
         return self.last if time_us <= self.end.start_us else self.end
 
     def find_segment_end_us(self, time_us: int) -> int | None:
-        """Return when the segment to which a time belongs ends; None if it has no end."""
+        """Return the time in µs at which the segment to which a time belongs ends; None if it has no end."""
         if time_us < self.even.start_us:
             return self.even.start_us
         if self.endless or time_us > self.end.start_us:

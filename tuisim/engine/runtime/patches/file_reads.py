@@ -33,7 +33,10 @@ _MODES = frozenset("rwxabt+")
 
 
 def _get_argument(index: int, name: str, given: Sequence[Any], named: Mapping[str, Any]) -> Any:
-    """Return an argument of a call by position or name; None if it is missing, which the real function then reports."""
+    """Return an argument of a call by its position or its name; None if the call lacks it.
+
+    The real function, which is called afterwards, raises the error about the missing argument.
+    """
     return given[index] if index < len(given) else named.get(name)
 
 

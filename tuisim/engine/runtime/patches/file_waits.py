@@ -288,7 +288,7 @@ class _RefusedEpoll:
         pass
 
     def close(self) -> None:
-        """Do nothing; only `selectors` calls this."""
+        """Do nothing: only `selectors` calls this, for the object that it has opened at its import."""
 
     def __getattr__(self, _name: str) -> NoReturn:
         raise NotSimulated("select.epoll is not part of the simulated brick", "use select.poll")
@@ -373,7 +373,7 @@ class _AtOnce(_Polling):
     """A `_Polling` that returns immediately, without waiting."""
 
     def poll(self, timeout_ms: Any = None, *more: Any) -> Any:
-        """Return the events that have happened."""
+        """Return the events that have happened, without waiting for any."""
         return self._look(*more)
 
 

@@ -127,7 +127,7 @@ def _patch_moves(motor: Any) -> None:
         start(self, "run_timed", brake, block)
 
     def on(self: Any, speed: Any, brake: bool = True, block: bool = False) -> None:
-        """Rotate the motor at `speed` indefinitely."""
+        """Rotate the motor at `speed` until the next command."""
         self.speed_sp = round_half_up(self._speed_native_units(speed))
         start(self, "run_forever", brake, block)
 
@@ -209,7 +209,7 @@ def _patch_pairs(motor: Any) -> None:
         brake: bool = True,
         block: bool = True,
     ) -> None:
-        """Rotate the motors for `seconds`."""
+        """Rotate both motors of a pair for `seconds`, each at its own speed."""
         _refuse_negative(seconds)
         speeds = self._unpack_speeds_to_native_units(left_speed, right_speed)
         for one, speed in zip(motors_of(self), speeds, strict=True):
@@ -218,7 +218,7 @@ def _patch_pairs(motor: Any) -> None:
         start(self, "run_timed", block)
 
     def on(self: Any, left_speed: Any, right_speed: Any) -> None:
-        """Rotate the motors indefinitely."""
+        """Rotate both motors of a pair until the next command, each at its own speed."""
         speeds = self._unpack_speeds_to_native_units(left_speed, right_speed)
         for one, speed in zip(motors_of(self), speeds, strict=True):
             one.speed_sp = round_half_up(speed)

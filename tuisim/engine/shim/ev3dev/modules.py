@@ -85,7 +85,7 @@ def virtual_module(session: DeviceSession) -> types.ModuleType:
         altitude = property(lambda self: self.position[2])
 
     class Pen:
-        """The pen of the robot."""
+        """The robot's pen, which a program can lower and lift."""
 
         def __init__(self, address: object = None) -> None:
             self.address = address

@@ -136,17 +136,17 @@ class KeyEvent(SynEvent):
 
     @property
     def scancode(self) -> int:
-        """The code of the key."""
+        """The number of the key that was pressed or released."""
         return self.event.code
 
     @property
     def keystate(self) -> int:
-        """1 for a press, 0 for a release."""
+        """1 if the key was pressed, 0 if it was released."""
         return self.event.value
 
     @property
     def keycode(self) -> str | list[str]:
-        """The name of the key; a list if the key has several names."""
+        """The name of the key that was pressed or released; a list if the key has several names."""
         names: str | list[str] = _CODES.keys.get(self.event.code, "?")
         return names
 
@@ -199,7 +199,7 @@ class InputDevice:
         return [KEY_CODES[name] for name in read_pressed(self._session)]
 
     def _changes(self) -> list[InputEvent]:
-        """Return the button events since the last call."""
+        """Return the button events since the last call of this method."""
         now = self._session.pressed
         before = self._seen
         self._seen = now

@@ -83,7 +83,7 @@ class DeviceFile:
         raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
 
     def ready(self, opened: OpenFile) -> int:
-        """Return the flags of events that `poll` reports."""
+        """Return the flags of those events that `poll` reports for the file."""
         return ALWAYS_READY
 
     def ioctl(self, request: int) -> bytes:

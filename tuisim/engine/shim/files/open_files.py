@@ -122,7 +122,7 @@ class DeviceIO(_real_file):
         return seek(self._opened, position, whence)
 
     def tell(self) -> int:
-        """Return the position."""
+        """Return the file's present position in bytes."""
         self._checkClosed()
         return self._opened.at
 
@@ -162,7 +162,7 @@ class DeviceIO(_real_file):
         return write(self._opened, data)
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the device file; later reads and writes fail."""
         if not self.closed and self.closefd:
             self._files.forget(self._opened.fd)
         super().close()

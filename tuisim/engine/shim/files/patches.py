@@ -58,7 +58,7 @@ class DeviceEntry:
         return f"<DirEntry {self.name!r}>"
 
     def inode(self) -> int:
-        """Return the number of the entry that `os.stat` reports."""
+        """Return the inode number of the entry, as `os.stat` reports it."""
         assert self._found is not None
         return _inode(self._found)
 
@@ -103,7 +103,7 @@ class Entries:
         self.close()
 
     def close(self) -> None:
-        """End the iteration."""
+        """End the iteration over the folder."""
         self._entries = iter(())
 
 
@@ -131,7 +131,7 @@ class FilePatches:
         self._replace = replace
 
     def apply(self) -> None:
-        """Replace all of the functions."""
+        """Replace the functions of Python that open, read and list files."""
         self._patch_open()
         self._patch_descriptors()
         self._patch_positions()

@@ -93,7 +93,7 @@ class ColorSensor(Sensor):
     KIND = "color"
 
     def color(self) -> Color | None:
-        """Return the colour; None if the sensor sees none."""
+        """Return the colour that the sensor sees, as a `Color`; None if it sees none."""
         code = self._read("COL-COLOR")[0]
         return CODES[code] if 0 <= code < len(CODES) else None
 
@@ -191,7 +191,7 @@ class GyroSensor(Sensor):
         return self._read("GYRO-ANG")[0] * self._sign
 
     def angle(self) -> int:
-        """Return the turned angle in degrees, clockwise."""
+        """Return the gyro's angle in degrees, which increases clockwise; `reset_angle` sets it."""
         return self._angle() - self._zero
 
     def speed(self) -> int:
@@ -199,5 +199,5 @@ class GyroSensor(Sensor):
         return self._read("GYRO-RATE")[0] * self._sign
 
     def reset_angle(self, angle: float) -> None:
-        """Set the angle that the gyro shows now, in degrees."""
+        """Set the angle that the gyro shows at the robot's present heading, in degrees."""
         self._zero = self._angle() - whole(angle)

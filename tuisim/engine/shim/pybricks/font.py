@@ -66,20 +66,20 @@ class Font(Connected):
 
     @cached_property
     def width(self) -> int:
-        """Width of the widest character in pixels."""
+        """Width of the font's widest character in pixels."""
         return max(self.text_width(chr(code)) for code in range(ord(BLANK), ord("~") + 1))
 
     @cached_property
     def height(self) -> int:
-        """Height of a line in pixels."""
+        """Height of a line of text in this font, in pixels."""
         return int(self.drawn.getbbox(BLANK)[3])
 
     def text_width(self, text: str, /) -> int:
-        """Return the width of a text in pixels."""
+        """Return the width of a text in this font, in pixels."""
         return int(self.drawn.getlength(drawable(text_of(text))))
 
     def text_height(self, text: str, /) -> int:
-        """Return the height of a text in pixels."""
+        """Return the height of a text in this font, in pixels."""
         text_of(text)
         return self.height
 

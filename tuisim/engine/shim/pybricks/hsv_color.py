@@ -60,7 +60,7 @@ class Color(metaclass=_NamedColors):
 
     @property
     def rgb(self) -> tuple[int, ...]:
-        """Red, green and blue, 0 to 255."""
+        """Red, green and blue of the colour, each from 0 to 255."""
         channels = hsv_to_rgb(self.h / 360, self.s / 100, max(0, self.v) / 100)
         return tuple(round(255 * channel) for channel in channels)
 

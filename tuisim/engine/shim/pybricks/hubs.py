@@ -48,7 +48,7 @@ class Buttons(Connected):
     """Makes the collections of buttons that it returns."""
 
     def pressed(self) -> Any:
-        """Return the buttons that are pressed."""
+        """Return those of the buttons that are pressed."""
         self.brick.read("pressed", self._place)
         pressed = self.brick.session.pressed
         return self.COLLECT(button for name, button in self._buttons.items() if name in pressed)
@@ -58,13 +58,13 @@ class Light(Connected):
     """The light around the brick's buttons."""
 
     def on(self, color: Enum | None, brightness: int = 100) -> None:
-        """Turn the light on in a colour; None turns it off."""
+        """Turn the light around the brick's buttons on in a colour; None turns it off."""
         if brightness != 100:
             raise refused("the light of the EV3 has one brightness")
         self._shine(*LIGHTS.get(color.name, (0, 0)) if color is not None else (0, 0))
 
     def off(self) -> None:
-        """Turn the light off."""
+        """Turn the light around the brick's buttons off."""
         self._shine(0, 0)
 
     def _shine(self, red: int, green: int) -> None:
@@ -77,12 +77,12 @@ class Battery(Connected):
     """The battery of the brick."""
 
     def voltage(self) -> int:
-        """Return the voltage in mV."""
+        """Return the voltage of the brick's battery in mV."""
         self.brick.read()
         return round(1000 * self.brick.built.battery.voltage_v())
 
     def current(self) -> int:
-        """Return the current in mA."""
+        """Return the current that the brick's battery supplies, in mA."""
         self.brick.read()
         return round(1000 * self.brick.built.battery.current_a())
 

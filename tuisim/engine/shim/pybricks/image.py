@@ -177,7 +177,7 @@ class Image(Connected):
 
     @classmethod
     def _on(cls, canvas: Canvas) -> Image:
-        """Return an image that covers a whole canvas."""
+        """Return an image that covers the whole of a canvas."""
         image: Image = cls.__new__(cls)
         image._set_up(canvas, (0, 0, canvas.width, canvas.height))
         return image
@@ -204,12 +204,12 @@ class Image(Connected):
 
     @property
     def width(self) -> int:
-        """Width in pixels."""
+        """Width of the image in pixels."""
         return self._box[2] - self._box[0]
 
     @property
     def height(self) -> int:
-        """Height in pixels."""
+        """Height of the image in pixels."""
         return self._box[3] - self._box[1]
 
     def _pixels(self) -> Picture:
@@ -242,7 +242,7 @@ class Image(Connected):
         self._print_x = self._print_y = 0
 
     def draw_pixel(self, x: float, y: float, color: Color | None = Color.BLACK) -> None:
-        """Draw a pixel."""
+        """Draw one pixel of the image in a colour; with None, draw nothing."""
         with self._drawing() as (_, pen):
             if paint := paint_of(color):
                 pen.point((whole(x), whole(y)), paint)
@@ -256,7 +256,7 @@ class Image(Connected):
         width: float = 1,
         color: Color | None = Color.BLACK,
     ) -> None:
-        """Draw a line of a width in pixels."""
+        """Draw a line between two points; `width` is in pixels."""
         with self._drawing() as (_, pen):
             if paint := paint_of(color):
                 pen.line((whole(x1), whole(y1), whole(x2), whole(y2)), paint, max(1, whole(width)))

@@ -30,7 +30,7 @@ class Matrix:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """The numbers of rows and columns."""
+        """The number of rows and the number of columns."""
         return len(self._rows), len(self._rows[0])
 
     @property

@@ -78,11 +78,11 @@ class LogicMailbox(Mailbox):
     """A mailbox for True and False."""
 
     def encode(self, value: Any) -> bytes:
-        """Return a truth value as one byte."""
+        """Return the byte that stands for True or False in a message."""
         return b"\x01" if value else b"\x00"
 
     def decode(self, payload: bytes) -> bool:
-        """Return whether the byte of a message is not 0."""
+        """Return the truth value of a message: whether its byte is not 0."""
         return bool(payload[0])
 
 
@@ -103,7 +103,7 @@ class TextMailbox(Mailbox):
     """A mailbox for texts."""
 
     def encode(self, value: Any) -> bytes:
-        """Return a text in UTF-8, with a zero byte at its end."""
+        """Return the bytes of a text in a message: UTF-8, with a zero byte at the end."""
         return f"{value}\0".encode()
 
     def decode(self, payload: bytes) -> str:
@@ -161,12 +161,12 @@ class MailboxHandlerMixIn(Connected):
             lock.release()
 
     def join(self, name: str, peer: MailboxHandlerMixIn) -> None:
-        """Connect this end with another one, whose brick is called `name`."""
+        """Connect this mailbox server or client with another one, whose brick is called `name`."""
         self._peers.append((name, peer))
         self._wake(_CONNECTION)
 
     def leave(self, peer: MailboxHandlerMixIn) -> None:
-        """End the connection of this end with another one."""
+        """End the connection of this mailbox server or client with another one."""
         self._peers = [one for one in self._peers if one[1] is not peer]
 
 

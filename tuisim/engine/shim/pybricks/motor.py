@@ -108,7 +108,7 @@ class DCMotor(Connected):
         self.tell(Call.RUN_FREELY, actuation)
 
     def dc(self, duty: float) -> None:
-        """Run at a power in percent, without control of the speed."""
+        """Run the motor at a power in percent, without control of its speed."""
         self._run_freely(max(-100, min(100, whole(duty))) * PERCENT)
 
     def stop(self) -> None:

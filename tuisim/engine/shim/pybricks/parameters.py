@@ -60,7 +60,7 @@ class Direction(NamedEnum):
 
     @property
     def sign(self) -> int:
-        """1 for clockwise, -1 for counter-clockwise."""
+        """1 if the motor's angle increases clockwise, -1 if it increases counter-clockwise."""
         return 1 if self is Direction.CLOCKWISE else -1
 
 

@@ -146,11 +146,11 @@ class DriveBase(Connected):
         return self.brick.read("position", *self.port_names)
 
     def distance(self) -> int:
-        """Return the driven distance in mm."""
+        """Return the distance in mm that the robot has driven; `reset` sets it."""
         return self._position(self._read())[0]
 
     def angle(self) -> int:
-        """Return the turned angle in degrees, clockwise."""
+        """Return the angle in degrees by which the robot has turned clockwise; `reset` sets it."""
         return self._position(self._read())[1]
 
     def _position(self, now_us: int) -> tuple[int, int]:
@@ -173,7 +173,7 @@ class DriveBase(Connected):
         )
 
     def reset(self) -> None:
-        """Set the current distance and angle to 0."""
+        """Set the distance and the angle that the drive base measures to 0."""
         total, difference = self._base.find_millis(self.brick.command())
         self._zeros = round(total / MILLI), round(difference / MILLI)
 

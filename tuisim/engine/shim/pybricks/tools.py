@@ -67,7 +67,7 @@ class StopWatch(Connected):
         self._runs = False
 
     def resume(self) -> None:
-        """Let the stopwatch run on from its time."""
+        """Make a paused stopwatch run on from its time."""
         self._counted_ns = self._passed_ns()
         self._began_ns = self.brick.session.now
         self._runs = True

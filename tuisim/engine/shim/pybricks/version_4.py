@@ -246,7 +246,7 @@ class DriveBase(robotics.DriveBase):
         return self._move(way, degrees(way / radius), "arc()", then, wait=wait)
 
     def angle(self) -> float:  # type: ignore[override]
-        """Return the turned angle in degrees, clockwise."""
+        """Return the angle in degrees by which the robot has turned clockwise; `reset` sets it."""
         now_us = self._read()
         base = self._base
         counts = base.find_millis(now_us)[1] / MILLI - self._zeros[1]

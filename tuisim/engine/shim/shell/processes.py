@@ -41,11 +41,11 @@ class OutPipe(io.RawIOBase):
         self.process, self._data = process, bytearray()
 
     def take(self, data: bytes) -> None:
-        """Append output of the process to the pipe."""
+        """Append bytes that the process has written to the pipe."""
         self._data += data
 
     def readable(self) -> bool:
-        """Return True: the program reads from this end."""
+        """Return True: the program can read the process's output from this pipe."""
         return True
 
     def readinto(self, buffer: Any) -> int:
@@ -160,7 +160,7 @@ class Process:
         self.wait()
 
     def poll(self) -> int | None:
-        """Return the exit status; None while the process runs."""
+        """Return the process's exit status; None while it runs."""
         self.system.session.command()
         self.running.go_on()
         return self._current_status()

@@ -84,12 +84,12 @@ class RemoteLight:
         self._remote = remote
 
     def on(self, color: Any) -> None:
-        """Turn the light on in a colour."""
+        """Turn the light of the remote control on in a colour."""
         self._remote.check()
         shine(color, self._remote.PORT)
 
     def off(self) -> None:
-        """Turn the light off."""
+        """Turn the light of the remote control off."""
         self.on(None)
 
 

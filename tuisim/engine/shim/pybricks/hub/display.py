@@ -83,11 +83,11 @@ class Display(Connected):
         self._draw(self._pixels)
 
     def on(self, brightness: float = 100) -> None:
-        """Turn all pixels on, with a brightness in percent."""
+        """Turn all pixels of the matrix of lights on, with a brightness in percent."""
         self._show((whole(brightness),) * len(DARK))
 
     def off(self) -> None:
-        """Turn all pixels off."""
+        """Turn all pixels of the matrix of lights off."""
         self._show(DARK)
 
     def pixel(self, row: int, column: int, brightness: float = 100) -> None:
@@ -106,7 +106,7 @@ class Display(Connected):
         self._animation.play(self._draw, [(_read_icon(icon), interval) for icon in icons])
 
     def char(self, char: str) -> None:
-        """Show a character."""
+        """Show a character on the matrix of lights."""
         if len(text_of(char)) != 1 or not " " <= char <= "~":
             raise invalid_argument()
         self._show(_spread_bits(int(CHARACTERS[ord(char) - ord(" ")], 32)))

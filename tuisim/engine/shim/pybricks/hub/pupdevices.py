@@ -47,11 +47,15 @@ class Lights:
     """The lights around the eye of a sensor, which are not shown."""
 
     def on(self, brightness: Any = 100) -> None:
-        """Turn the lights on: one brightness in percent for all, or one for each."""
+        """Turn the lights around the eye of the sensor on.
+
+        Args:
+            brightness: In percent, one number for all lights, or one for each.
+        """
         return wait(10)
 
     def off(self) -> None:
-        """Turn the lights off."""
+        """Turn all lights around the eye of the sensor off."""
         return wait(10)
 
 
@@ -64,11 +68,11 @@ class Light(Connected):
             raise no_device(self.brick.hint(SENSOR_CLASS))
 
     def on(self, brightness: float = 100) -> None:
-        """Turn the light on with a brightness in percent."""
+        """Turn the connected light on with a brightness in percent."""
         show_light(self.port.device_port, whole(brightness))
 
     def off(self) -> None:
-        """Turn the light off."""
+        """Turn the connected light off."""
         self.on(0)
 
 
