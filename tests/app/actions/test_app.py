@@ -45,6 +45,7 @@ async def test_the_key_of_a_panel_that_is_shown_focuses_it_first(panel: str, key
         await pilot.press(key)
         await until(pilot, lambda: app.panel_area.find_focused_panel() == "world")
         assert not app.panel_area.is_shown(panel)
+        assert notices(app) == [f"{PANELS[panel].title} is hidden: {key} shows it again"]
 
 
 @pytest.mark.slow

@@ -20,10 +20,14 @@ if TYPE_CHECKING:
 
 def toggle(context: ActionContext, panel: str) -> None:
     """Focus a panel that is shown without the focus; else, show a hidden panel and focus it, or hide it."""
-    if not context.panels.can_take_focus(panel):
-        context.panels.toggle(panel)
+    area = context.panels
+    was_shown = area.is_shown(panel)
+    if not area.can_take_focus(panel):
+        area.toggle(panel)
+    if was_shown and not area.is_shown(panel) and not area.is_single:
+        context.app.say(f"{PANELS[panel].title} is hidden: {{panel-{panel}}} shows it again")
     context.app.handle_situation_change()
-    context.app.call_after_refresh(context.panels.focus_opened, panel)
+    context.app.call_after_refresh(area.focus_opened, panel)
 
 
 def enlarge(context: ActionContext) -> None:
