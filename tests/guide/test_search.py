@@ -56,6 +56,10 @@ def test_what_is_shown_of_an_answer_fits_its_width(width: int) -> None:
             assert max(map(len, lines)) <= width
 
 
+def test_a_mistyped_word_finds_the_page_of_the_right_one() -> None:
+    assert search("brekpoint")[0].name == "breakpoints"
+
+
 @pytest.mark.parametrize(
     "parts", [("gyro drift", "compare runs"), ("keyboard shortcuts", "own mat")]
 )

@@ -14,6 +14,7 @@ import sqlite3
 import tomllib
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from difflib import get_close_matches
 from functools import cache
 from itertools import pairwise, takewhile
 from pathlib import Path
@@ -55,6 +56,8 @@ _NO_ANSWER = re.compile(r"# .*|")
 """The title of a page."""
 _MIN_PREFIX_LETTERS = 3
 """Letters from which a word may be the beginning of another."""
+_ALIKE = 0.8
+"""A word with a typing error is as much like the right one, as `difflib` compares them."""
 _PASSAGE_WEIGHT = 1.0
 _HEADINGS_WEIGHT = 0.6
 _PAGE_WORDS_WEIGHT = 1.0
@@ -209,11 +212,13 @@ class _Index:
         }
 
     def expand_stems(self, typed: _Stems) -> _Stems:
-        """Return the known stems of a question; for an unknown one, all known stems that begin with it."""
-        begun = tuple(stem for stem in typed - self.stems if len(stem) >= _MIN_PREFIX_LETTERS)
-        return (typed & self.stems).union(
-            stem for stem in self.stems if begun and stem.startswith(begun)
-        )
+        """Return the known stems of a question; for an unknown one, those that begin with it, or the most like it."""
+        unknown = [stem for stem in typed - self.stems if len(stem) >= _MIN_PREFIX_LETTERS]
+        return (typed & self.stems).union(*map(self._find_alike, unknown))
+
+    def _find_alike(self, stem: str) -> Iterable[str]:
+        begun = [known for known in self.stems if known.startswith(stem)]
+        return begun or get_close_matches(stem, sorted(self.stems), 1, _ALIKE)
 
 
 def _count_passages(
@@ -334,8 +339,8 @@ def search(question: str) -> list[SearchResult]:
     """Return the passages that answer a question best, the best one first.
 
     Args:
-        question: Words; a word that is on no page may be the beginning of another. If the question asks for several
-            things, the best answers to its parts follow the first two.
+        question: Words; a word that is on no page may be the beginning of another, or mistyped. If the question asks
+            for several things, the best answers to its parts follow the first two.
     """
     index = _load_index()
     rows = _rank_passages(index, question)

@@ -35,6 +35,8 @@ ENTRIES = [
         ("stored runs", "runs"),
         ("runs", "runs"),
         ("charts", "panel-chart"),
+        ("chrat", "panel-chart"),
+        ("brekpoint", "break"),
     ],
 )
 def test_words_that_people_use_find_an_action(typed: str, first: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from difflib import get_close_matches
 from typing import Any, ClassVar, NamedTuple
 
 from rich.text import Text
@@ -40,7 +41,7 @@ class Entry(NamedTuple):
 
 
 def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
-    """Return the entries that contain every word of a text; if none does, the words count without a plural s.
+    """Return the entries that contain every word of a text; for a word that none contains, the one most like it counts.
 
     They are ranked by where the words are: the start of the title, or of what it shows or hides; the starts of words of
     the title; anywhere in title or group; among the further words. Of equals, entries that show or hide something come
@@ -48,8 +49,11 @@ def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
     """
     words = typed.lower().split()
     texts = {entry.id: " ".join(entry[1:5]).lower() for entry in entries}
-    if not any(all(word in text for word in words) for text in texts.values()):
-        words = [word.removesuffix("s") for word in words]
+    known = " ".join(texts.values())
+    words = [
+        word if word in known else (get_close_matches(word, known.split(), 1) or [word])[0]
+        for word in words
+    ]
 
     def rank(entry: Entry) -> tuple[int, bool]:
         title, title_and_group = entry.title.lower(), f"{entry.title} {entry.group}".lower()
