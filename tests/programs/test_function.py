@@ -333,11 +333,6 @@ def test_the_method_of_an_object_is_a_program_and_locks_are_made_again(load: Imp
     assert run.output == "two 1\n", run.error
 
 
-def test_a_coroutine_of_pybricks_is_a_program() -> None:
-    run = tuisim.simulate(wait_for_a_second)
-    assert (run.output, round(run.time_s)) == ("Done: 1\n", 1)
-
-
 DECORATORS = """\
 from functools import wraps
 FACTOR = 7
@@ -386,13 +381,6 @@ def test_a_lambda_as_a_helper_is_refused(load: Import) -> None:
 
 async def wait_for_nothing() -> None:
     pass
-
-
-async def wait_for_a_second() -> None:
-    from pybricks.tools import wait  # type: ignore[import-not-found]
-
-    await wait(1000)
-    print("Done: 1")
 
 
 def _without_source() -> Any:

@@ -14,7 +14,7 @@ from types import FunctionType, MethodType, ModuleType, SimpleNamespace
 from typing import Any, NamedTuple
 
 from tuisim.base.errors import ConfigError
-from tuisim.base.source import PRELUDE_TEXTS, PYBRICKS, source_lines
+from tuisim.base.source import PRELUDE_TEXTS, source_lines
 from tuisim.base.syntax_tree import parse_module
 from tuisim.programs.constants import quote_annotations
 from tuisim.programs.program_file import ProgramSource, parse_program
@@ -24,7 +24,7 @@ from tuisim.programs.values import ValueWriter, is_library, is_own, is_plain, wr
 
 
 def read_function(function: Callable[..., object]) -> ProgramSource:
-    """Return a program that calls a function, or a coroutine of Pybricks; `partial` gives it arguments.
+    """Return a program that calls a function or a method of an object; `partial` gives it arguments.
 
     Each line has the number that it has in the file of the function. Imports of libraries for a brick and of Python's
     own, values, functions and classes that it uses are copied as they are written, or values as expressions that have
@@ -43,6 +43,10 @@ def read_function(function: Callable[..., object]) -> ProgramSource:
             f"{function!r} is not a program", "give the name of a file, or a function made by def"
         )
     name = function.__name__
+    if inspect.iscoroutinefunction(function) or inspect.isgeneratorfunction(function):
+        message = f"{name} does nothing when it is called"
+        hint = "call it from a function without async or yield; a coroutine of Pybricks by run_task"
+        raise ConfigError(message, hint)
     try:
         inspect.signature(method).bind(*called.args, **called.keywords)
     except TypeError as error:
@@ -51,13 +55,6 @@ def read_function(function: Callable[..., object]) -> ProgramSource:
     reader = _Reader()
     arguments = reader.write_arguments(called.args, called.keywords)
     call = f"{reader.write_called(method)}({arguments})"
-    if inspect.iscoroutinefunction(function) and f"from {PYBRICKS}." in inspect.getsource(function):
-        call = f"from {PYBRICKS}.tools import run_task; run_task({call})"
-    elif inspect.iscoroutinefunction(function) or inspect.isgeneratorfunction(function):
-        raise ConfigError(
-            f"{name} does nothing when it is called",
-            "call it from a function without async or yield",
-        )
     file = inspect.getsourcefile(function) or ""
     path = file if os.path.isfile(file) else ""
     label = ":".join(filter(None, (os.path.basename(path), name)))

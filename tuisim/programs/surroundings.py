@@ -142,16 +142,13 @@ class Surroundings:
         if not isinstance(module, ModuleType) or not is_own(module.__name__):
             return set()
         nodes = [*ast.walk(parse_module(text))]
-        read = [
-            node.attr
+        names = [node for node in nodes if isinstance(node, ast.Name) and node.id == name]
+        read = {
+            node.value: node.attr
             for node in nodes
-            if isinstance(node, ast.Attribute)
-            and isinstance(node.ctx, ast.Load)
-            and isinstance(node.value, ast.Name)
-            and node.value.id == name
-        ]
-        has_more = sum(isinstance(node, ast.Name) and node.id == name for node in nodes) > len(read)
-        return set() if has_more else set(read)
+            if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load)
+        }
+        return {read[node] for node in names} if read.keys() >= {*names} else set()
 
     def list_used(self, expression: ast.AST) -> set[str]:
         """Return the names around it that an expression uses."""
