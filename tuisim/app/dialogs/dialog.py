@@ -59,6 +59,9 @@ MOVE_KEYS = [
 ]
 """The keys that move the selection of a list also while a field has the focus."""
 
+_BETWEEN = " · "
+_HINT_EDGES = 6
+"""Cells of a frame that hints in its border cannot have."""
 _TRANSPARENT = Color(0, 0, 0, 0)
 
 
@@ -194,6 +197,14 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
         frame.border_subtitle = self.HINT
         with frame:
             yield from self.compose_content()
+
+    def on_resize(self) -> None:
+        """Leave out hints in the middle that the frame has no room for: the footer below tells the keys, too."""
+        frame = self.query_one(".dialog")
+        hints = self.HINT.split(_BETWEEN)
+        while len(_BETWEEN.join(hints)) > frame.region.width - _HINT_EDGES and len(hints) > 2:
+            del hints[-2]
+        frame.border_subtitle = _BETWEEN.join(hints)
 
     @property
     def keys(self) -> tuple[KeyWord, ...]:

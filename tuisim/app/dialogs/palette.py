@@ -22,6 +22,8 @@ from tuisim.terminal.text_runs import cut
 _WIDTH = 74
 _BESIDE = 10
 """Width of the frame in cells, and how many of them borders, padding and scroll bar take."""
+_OUTSIDE = 4
+"""Cells beside the frame in a narrow terminal."""
 _SHOW = "show or hide "
 _MIN_ROWS, _OTHER_ROWS = 16, 5
 """Minimum number of rows of a long list, and the number of rows of the frame around it."""
@@ -111,7 +113,7 @@ class SearchList(Dialog[str]):
     def _list(self, typed: str) -> None:
         matches = find_entries(self._entries, typed)
         listed = self.query_one(OptionList)
-        cells = min(_WIDTH, self.size.width) - _BESIDE
+        cells = min(_WIDTH, self.size.width - _OUTSIDE) - _BESIDE
         listed.clear_options()
         listed.add_options(Option(_build_line(entry, cells), id=entry.id) for entry in matches)
         names = [entry.id for entry in matches]
