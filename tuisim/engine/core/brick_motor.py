@@ -217,7 +217,7 @@ class BrickMotor:
         tick_s = self._tick_s
         limit = self._limit_dps
         steady = self.speed_dps
-        # The same results as by `step` and `_disturb`, without a call for each tick.
+        # These are the results of `step` and `_disturb`, computed without a call for each tick.
         if steady == self.target_dps:
             noisy: Sequence[float] = (
                 [round(steady + noise) for noise in noise_dps] if steady else [0] * ticks
@@ -240,7 +240,7 @@ class BrickMotor:
         if speed == target or step == 0.0:
             speeds = [speed if speed == target else target] * ticks
         else:
-            # The same sums as by `ramp_speed`, without a call for each tick; the target limits the values.
+            # These are the sums of `ramp_speed`, computed without a call for each tick; the target limits the values.
             change = step if speed < target else -step
             speeds = list(accumulate(repeat(change, ticks - 1), initial=speed + change))
             short = (

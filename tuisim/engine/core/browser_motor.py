@@ -243,7 +243,7 @@ class BrowserMotor:
             return [start] * len(turns)
         return list(accumulate(turns, initial=start))[1:]
 
-    # State for other modules
+    # State that other modules read
 
     @property
     def _direction(self) -> float:

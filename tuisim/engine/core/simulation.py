@@ -184,7 +184,7 @@ class Simulation(Motion):
         self._build_solids(self.spec)
         self._strains_gyro = can_strain_gyro(self.spec)
         if others:
-            # The robot had only wheel motors until now.
+            # Now that the robot has other motors than those of wheels, every tick must run these, too.
             self.__class__ = FurtherMotors
 
     def _take_others(self, sources: Sequence[int | None]) -> None:

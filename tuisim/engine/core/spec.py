@@ -241,7 +241,7 @@ class ColorSensorSpec(SensorSpec):
     port: str = choice((*INPUT_PORTS, *HUB_PORTS), what="port", label="Port", help=_INPUT_HELP)
     x_mm: float = _build_x()
     y_mm: float = _build_y()
-    # A disc of 1 pixel has no pixel strictly inside it.
+    # The minimum is 2, because a disc of 1 pixel has no pixel strictly inside it.
     diameter_mm: int = whole(
         2, 100, default=20, unit="mm", label="⌀ mm", help="of the visible disc, whole mm"
     )

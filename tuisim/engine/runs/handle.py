@@ -261,7 +261,7 @@ class RunHandle:
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
         now_s = time.monotonic()
-        # If a view has `holds` set, somebody follows the run, and the view reads on only in this check.
+        # A view with `holds` set reads new data only in this check, so the check must not wait.
         is_due = now_s >= self._look_at_s or self.telemetry.holds or self.output.holds
         if is_due or self._events.falsified or (exited and self._is_followed):
             self._look_for_falsified()

@@ -58,7 +58,7 @@ def measure_array(
     measure = _MEASURES.get(type(sensor))
     if measure is None:
         return None
-    # A ray may be parallel to an edge, and a damaged record may hold any numbers.
+    # NumPy must not warn: a ray may be parallel to an edge, and a damaged record may contain any numbers.
     with np.errstate(all="ignore"):
         return measure(sensor, records, run, field)
 

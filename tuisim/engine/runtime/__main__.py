@@ -16,6 +16,6 @@ prepared = None
 if sys.argv[1] == "--warm":
     from tuisim.engine.runtime.warm import serve
 
-    # Returns in each forked child, with the arguments of a child that was started by itself.
+    # `serve` returns only in a forked child; `sys.argv` is then that of a child which is started as a new process.
     prepared = serve(int(sys.argv[2]))
 main(sys.argv[1:], prepared)

@@ -108,7 +108,7 @@ def _compile(text: str, file: str, drops_annotations: bool) -> types.CodeType | 
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             return compile_program(text, file, drops_annotations)
-    except Exception:  # whatever it is, it is told by the program's own process
+    except Exception:  # any error is reported by the program's own process
         return None
     finally:
         wallclock.set_timer(signal.ITIMER_VIRTUAL, 0.0)

@@ -148,7 +148,7 @@ class ErrorHooks:
             try:
                 file.write(text)
                 file.flush()
-            except Exception:  # the program's own stream; an error must be told nevertheless
+            except Exception:  # the program's own stream may raise anything; write the text below
                 pass
             else:
                 return

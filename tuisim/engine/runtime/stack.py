@@ -69,7 +69,7 @@ def finish_traceback(module: types.ModuleType) -> None:
         """Walk a stack yielding the frame and line number for each frame."""
         frames = _walk_frames(sys._getframe(1) if f is None else f)
         for frame in _iterate_visible(frames, lambda frame: frame.f_code.co_filename):
-            # Without a frame it starts at the caller of this module's function.
+            # If no frame is given, the walk starts at the caller of the function of `traceback`.
             if f is not None or frame.f_code.co_filename != module.__file__:
                 yield frame, frame.f_lineno
 

@@ -21,7 +21,7 @@ class Call(IntEnum):
     MOVE_PEN = 1
     PLUG = 2
     SET_GYRO = 3
-    # A motor of a brick or of the browser simulator.
+    # Commands to a motor of a brick or of the browser simulator.
     RUN = 10
     RUN_UNTIL = 11
     RUN_TO = 12
@@ -32,7 +32,7 @@ class Call(IntEnum):
     SET_BACKWARDS = 17
     SET_ROLL = 18
     SET_POLARITY = 19
-    # A motor with the kernel's driver: in the order of `driver.motor.Command`.
+    # Commands to a motor with the kernel's driver, in the order of `driver.motor.Command`.
     RUN_FOREVER = 20
     RUN_TO_ABS_POS = 21
     RUN_TO_REL_POS = 22
@@ -43,7 +43,7 @@ class Call(IntEnum):
     SET_DUTY = 27
     RENUMBER = 28
     SET_CONSTANT = 29
-    # A motor of the Pybricks firmware, and its controller.
+    # Commands to a motor of the Pybricks firmware, and to its controller.
     SET_UP = 40
     RUN_FREELY = 41
     SET_MILLI = 42
@@ -54,7 +54,7 @@ class Call(IntEnum):
     FOLLOW = 47
     LIMIT_DUTY = 48
     SET_CONTROL = 49
-    # A drive base.
+    # Commands to a drive base.
     BUILD_BASE = 60
     MOVE_BASE = 61
     DRIVE_BASE = 62

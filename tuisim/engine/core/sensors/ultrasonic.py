@@ -172,7 +172,7 @@ def _find_echoing_surfaces(
         return None
     echoing = find_surfaces(world)
     by_upright, by_level = draw_numbers(instant.seed, instant.tick, f"{spec.name}/echo", 2)
-    # From 0 to 90 degrees off the normal of the upright surfaces, which points along x.
+    # The angle between the pulse and the normal of the upright surfaces, which points along x: 0 to 90 degrees.
     flat = abs((instant.pose.heading_deg + spec.angle_deg + 90.0) % 180.0 - 90.0)
     if by_upright < compute_lost_echoes(flat, drift):
         echoing = replace(echoing, upright=(), upright_at=())

@@ -354,7 +354,7 @@ class DriveBase:
         for motor in self.motors:
             motor.follow(self, ending)
 
-    # As the guide of its motors
+    # What its motors ask it for, because it is their guide
 
     @property
     def end_us(self) -> int | None:

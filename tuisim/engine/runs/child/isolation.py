@@ -343,9 +343,9 @@ def is_readable(descriptor: int, timeout_s: float | None) -> bool:
     return bool(events)
 
 
-# Nor may it do what would lead around the other limits: have a namespace of its own, where it could
-# mount memory; memory that belongs to no address space and no open file, also that which a socket or
-# a pipe holds; calls that a ring makes for it; and keys of the user.
+# An isolated program must not avoid its other limits either. Refused are: a namespace of its own, where it could
+# mount memory; memory that belongs to no address space and no open file, such as that in a socket or a pipe; calls
+# that the kernel makes for it through io_uring; and the user's keys.
 
 _LOAD = 0x20
 _EQUAL = 0x15

@@ -71,7 +71,8 @@ def measure_waited_s(pid: int) -> float:
 def measure_computed_s(pid: int) -> float:
     """Return the seconds that a process has used processors; 0 if it has ended or the system does not give it."""
     try:
-        # The name, in parentheses, may contain anything. Then the state, and 10 more: proc_pid_stat(5).
+        # The process's name in parentheses may contain anything, so the fields are counted after it. See proc_pid_stat(5):
+        # the fields at 11 and 12 are the times in user and in kernel mode.
         fields = Path(f"/proc/{pid}/stat").read_bytes().rpartition(b")")[2].split()
         return (int(fields[11]) + int(fields[12])) / _CLOCK_HZ
     except (OSError, ValueError, IndexError):
@@ -291,7 +292,7 @@ def mark(pid: int) -> int:
     new_mark = 1 << 62 | int.from_bytes(os.urandom(7))
     try:
         resource.prlimit(pid, FILE_LOCKS, (new_mark, new_mark))
-    # The system is not Linux, the child has exited already, or such a limit is set.
+    # This fails if the system is not Linux, if the child has exited already, or if such a limit is set.
     except (AttributeError, OSError, ValueError):
         return 0
     return new_mark
@@ -326,7 +327,7 @@ def end_descendants(pid: int, marked: int) -> None:
                 with suppress(ProcessLookupError, PermissionError):
                     os.kill(descendant, signal.SIGKILL)
     except OSError:
-        # No such file system, or no permission to read it.
+        # This system has no `/proc`, or does not let this process read it.
         marked = 0
     if not marked:
         end_group(pid)

@@ -100,7 +100,7 @@ class LineCondition:
         except NameError:
             # Names that do not exist yet make the condition false.
             return ""
-        except Exception as error:  # an expression can fail in any way; worth pausing for
+        except Exception as error:  # an expression can raise anything, which the user should see
             return f"cannot be evaluated: {type(error).__name__}: {error}"
 
 

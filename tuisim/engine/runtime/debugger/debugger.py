@@ -309,7 +309,7 @@ class Debugger:
         """Switch tracing on or off in the current thread, as the debugger needs it."""
         self._tracer.enter()
 
-    # Lines and rows
+    # Pauses at lines and at printed rows
 
     def _handle_line(self, frame: types.FrameType, line: int) -> None:
         session = self._session

@@ -276,7 +276,7 @@ def refuse_values(sensor: Any, plugs: Plugs) -> None:
     def value(self: Any, n: int = 0) -> Any:
         try:
             return read(self, n)
-        except Exception:  # the library's classes of errors differ
+        except Exception:  # the library raises errors of several classes
             if (refused := plugs.refuse_value(self._path, int(n))) is not None:
                 raise refused from None
             raise

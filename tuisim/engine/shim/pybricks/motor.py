@@ -157,7 +157,7 @@ class Motor(DCMotor):
         self._command()
         self.tell(Call.SET_MILLI, self.simulated.control.settings.counts(whole(angle)) * MILLI)
 
-    # Motions without an end
+    # Motions that only another command ends
 
     def hold(self) -> None:
         """Stop the motor, and hold its angle."""
