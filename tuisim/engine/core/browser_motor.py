@@ -155,7 +155,7 @@ class BrowserMotor:
 
     @property
     def _ended(self) -> bool:
-        """Whether a move to a position is over: the wheel stands, but the encoder still counts."""
+        """Whether the move to a position is over: the wheel stands still, while the encoder goes on counting."""
         return self._command == POSITION and self.mode == STOPPED
 
     # Ticks ahead

@@ -32,7 +32,7 @@ def build_disc_mask(diameter: int) -> list[list[bool]]:
 
 
 def count_disc_pixels(diameter: int) -> int:
-    """Return the number of pixels in a disc: 305 for 20, 69 for 10, 697 for 30."""
+    """Return the number of pixels in a disc of a diameter in pixels: 305 for 20, 69 for 10, 697 for 30."""
     return sum(map(sum, build_disc_mask(diameter)))
 
 

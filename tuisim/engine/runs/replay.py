@@ -64,7 +64,10 @@ class CommandCheck:
         """The ranges of the values of calls to parts, as far as they are known of this robot."""
 
     def find_disorder(self, time_ns: int) -> str:
-        """Return why the next command cannot have its time, in words as those of `find_fault`; empty if it can."""
+        """Return a text that says why the next command cannot have been given at a time; empty if it can.
+
+        The text has the same form as that of `find_fault`.
+        """
         if time_ns < self._newest_ns:
             return "goes back in time"
         self._count = self._count + 1 if time_ns == self._newest_ns else 1

@@ -60,7 +60,7 @@ class RawFile:
         """Begins with 0 unless something has been written; output that begins with a null byte is not noticed."""
 
     def drain(self) -> int:
-        """Pass what was written to `take`, and return its length."""
+        """Pass what was written to the descriptor to `take`, and return its length in bytes."""
         try:
             length = min(os.lseek(self._fd, 0, os.SEEK_CUR), RAW_BYTES)
             if not length or not os.path.samestat(os.fstat(self._fd), self._identity):
@@ -112,7 +112,7 @@ class RawOutput:
             self.drain_all()
 
     def drain_all(self) -> int:
-        """Pass on everything that was written, and return its length."""
+        """Pass on everything that was written to descriptors 1 and 2, and return its length in bytes."""
         if self._busy:
             return 0
         self._busy = True

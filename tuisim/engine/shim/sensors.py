@@ -168,7 +168,7 @@ class LegoSensor:
 
 
 class ColorDevice(LegoSensor):
-    """The driver of a colour sensor, with the additional readings of the course's overlay."""
+    """The driver of a colour sensor, with the readings that courses add to the library."""
 
     def __init__(self, session: DeviceSession, spec: ColorSensorSpec) -> None:
         profile = session.sim.spec.profile

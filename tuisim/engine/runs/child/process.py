@@ -71,8 +71,8 @@ def measure_waited_s(pid: int) -> float:
 def measure_computed_s(pid: int) -> float:
     """Return the seconds that a process has used processors; 0 if it has ended or the system does not give it."""
     try:
-        # The process's name in parentheses may contain anything, so the fields are counted after it. See proc_pid_stat(5):
-        # the fields at 11 and 12 are the times in user and in kernel mode.
+        # The process's name in parentheses may contain anything, so fields are counted after it. By proc_pid_stat(5),
+        # fields 11 and 12 are then the times in user and in kernel mode.
         fields = Path(f"/proc/{pid}/stat").read_bytes().rpartition(b")")[2].split()
         return (int(fields[11]) + int(fields[12])) / _CLOCK_HZ
     except (OSError, ValueError, IndexError):

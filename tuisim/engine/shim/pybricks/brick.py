@@ -247,7 +247,7 @@ def invalid_argument() -> ValueError:
 
 def refused(text: str) -> RuntimeError:
     """Return the error that MicroPython raises for a feature that the firmware does not have."""
-    return NotImplementedError(text)  # the class that the brick raises
+    return NotImplementedError(text)  # as on the brick
 
 
 FirmwareError: Any = type("OSError", (OSError,), {"__module__": "builtins"})
