@@ -41,6 +41,22 @@ def test_turning_back_counts_the_same_counts() -> None:
     assert counter.count == -7
 
 
+@pytest.mark.parametrize("speed_dps", [90.5, -300.3, 1050.2])
+def test_after_a_stretch_at_constant_speed_the_speed_reads_as_after_single_steps(
+    speed_dps: float,
+) -> None:
+    stepped = Counter()
+    skipped = Counter()
+    turn(stepped, 0, 600, speed_dps)
+    turn(skipped, 0, 300, speed_dps)
+    skipped.add_evenly(600 * LOOK, 0.25 + 0.6 * speed_dps, speed_dps)
+    for now_ms in range(600, 800, 2):
+        for counter in stepped, skipped:
+            turn(counter, now_ms, now_ms + 2, -0.7 * speed_dps)
+        assert stepped.count == skipped.count
+        assert stepped.measure_speed_dps() == pytest.approx(skipped.measure_speed_dps(), abs=1)
+
+
 @pytest.mark.parametrize("speed_dps", [500.0, -500.0])
 def test_what_an_obstacle_prevented_was_never_counted(speed_dps: float) -> None:
     counter = Counter()

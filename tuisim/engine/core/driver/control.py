@@ -52,17 +52,18 @@ class Controller:
     def compute_duty(self, value: int) -> int:
         """Return the duty of the next step, in percent; `value` is the measured position or speed."""
         error = self.setpoint - value
-        change = self.error - error
+        total = self.total + error
+        scaled = error * self.kp + total * self.ki
+        if self.kd:
+            scaled += (self.error - error) * self.kd
         self.error = error
-        self.total += error
-        scaled = error * self.kp + self.total * self.ki + change * self.kd
         self.overloaded = False
         if not -FULL < scaled < FULL:
             scaled = _wrap(scaled)
             if not -FULL < scaled < FULL:
                 self.overloaded = True
-                self.total -= error
                 return MAX_DUTY if scaled > 0 else -MAX_DUTY
+        self.total = total
         return scaled // SCALE if scaled > 0 else -(-scaled // SCALE)
 
     def is_steady(self, value: int, duty: int) -> bool:

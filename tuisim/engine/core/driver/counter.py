@@ -16,15 +16,19 @@ LOOK = CLOCK_HZ // 1000
 IDLE_LOOKS = 51
 """...and notes it at the first check more than 50 ms after the last note."""
 MIN_IDLE = 50.0 * LOOK
-CAPACITY = 256
-"""How many of the last changes are remembered."""
 LAST_NOTE = -43 * LOOK
 """Time of the last note before the run that the counter stands: the driver has been at work for 400 ms."""
-MAX_CHANGES = 2 * CAPACITY
-FIRST_NOTE = LAST_NOTE - (CAPACITY - 1) * IDLE_LOOKS * LOOK
 STRIDE = 4
 """The driver looks back by this many changes, or twice, three times … as many."""
 MAX_DEPTH = 16 * STRIDE
+KEPT_SPAN = CLOCK_HZ * 50 // 1000
+"""A speed is measured over fewer counts than those of this time, in ticks of the clock..."""
+KEPT_COUNTS = 3 * STRIDE
+"""...or than these."""
+CAPACITY = 2 * MAX_DEPTH
+"""How many of the last changes are remembered."""
+MAX_CHANGES = 2 * CAPACITY
+FIRST_NOTE = LAST_NOTE - (CAPACITY - 1) * IDLE_LOOKS * LOOK
 
 
 class Counter:
@@ -33,13 +37,14 @@ class Counter:
     At the start of a run the axle has been at rest at 0 for a while.
     """
 
-    __slots__ = ("_counts", "_depth", "_speed_dps", "_straight", "_times", "count")
+    __slots__ = ("_depth", "_earlier", "_speed_dps", "_straight", "_times", "count")
 
     def __init__(self) -> None:
         self._times: list[int] = [*range(FIRST_NOTE, LAST_NOTE + 1, IDLE_LOOKS * LOOK)]
-        self._counts = [0] * CAPACITY
         self._straight = 0
         """How many of the last changes went in one direction, negative if backwards."""
+        self._earlier = [0] * CAPACITY
+        """The count after each change before those; the counts after those follow from the newest one."""
         self._depth = STRIDE
         """Over how many changes the driver measured the last speed."""
         self._speed_dps: int | None = 0
@@ -78,14 +83,13 @@ class Counter:
             part = (last - 2.0 * begin_deg) / way
             per_count = -1.0 / way
             direction = -1
-        straight = self._straight
-        counts = self._counts
-        self._straight = count - last + (straight if straight * direction > 0 else 0)
+        if self._straight * direction < 0:
+            self._end_straight()
+        self._straight += count - last
         half_time = 0.5 * duration
         first_half, second_half = half_time / middle, half_time / (1.0 - middle)
         while last != count:
             last += direction
-            counts.append(last)
             times.append(
                 floor(
                     begin + part * first_half
@@ -97,7 +101,15 @@ class Counter:
         self.count = count
         self._speed_dps = None
         if len(times) > MAX_CHANGES:
-            del times[:-CAPACITY], counts[:-CAPACITY]
+            del times[:-CAPACITY]
+
+    def _end_straight(self) -> None:
+        """Move the last changes to the earlier ones: the next change does not go in their direction."""
+        straight = max(-CAPACITY, min(self._straight, CAPACITY))
+        direction = 1 if straight > 0 else -1
+        self._earlier += range(self.count - straight + direction, self.count + direction, direction)
+        self._straight = 0
+        del self._earlier[:-CAPACITY]
 
     def record_rest(self, end: float) -> None:
         """Record that the count has not changed until `end`, in ticks of the clock."""
@@ -108,22 +120,22 @@ class Counter:
         if look > end:
             return
         looks = range(look, int(end) + 1, IDLE_LOOKS * LOOK)[-CAPACITY:]
-        self._straight = 0
+        self._end_straight()
         times += looks
-        self._counts += repeat(self.count, len(looks))
+        self._earlier += repeat(self.count, len(looks))
         self._speed_dps = None
-        del times[:-MAX_CHANGES], self._counts[:-MAX_CHANGES]
+        del times[:-MAX_CHANGES]
 
     def take_back(self, angle_deg: float) -> None:
         """Remove the newest changes in one direction beyond the angle at which an obstacle stopped the axle."""
-        count = floor(2 * angle_deg)
-        counts = self._counts
-        direction = 1 if self.count > count else -1
-        while self.count != count and counts[-1] - counts[-2] == direction:
-            del counts[-1], self._times[-1]
-            self.count -= direction
-            self._straight -= direction
-            self._speed_dps = None
+        taken = self.count - floor(2 * angle_deg)
+        if taken * self._straight <= 0:
+            return
+        taken = min(taken, self._straight, key=abs)
+        del self._times[-abs(taken) :]
+        self.count -= taken
+        self._straight -= taken
+        self._speed_dps = None
 
     def is_straight(self, speed_dps: float) -> bool:
         """Return whether all changes that matter for the speed went in the direction of `speed_dps`."""
@@ -142,33 +154,29 @@ class Counter:
         """
         if not times:
             return
-        direction = 1 if count > self.count else -1
         self._straight += count - self.count
-        self._counts += range(count - direction * (len(times) - 1), count + direction, direction)
         self._times += times
         self.count = count
         self._speed_dps = None
-        del self._times[:-MAX_CHANGES], self._counts[:-MAX_CHANGES]
+        del self._times[:-MAX_CHANGES]
 
-    def fill_evenly(self, time: float, angle_deg: float, speed_dps: float) -> None:
-        """Replace all recorded changes by those of an axle that has turned at a constant speed.
+    def add_evenly(self, time: float, angle_deg: float, speed_dps: float) -> None:
+        """Add the changes of an axle that has turned at a constant speed for longer than speeds are measured.
 
         Args:
             time: Now, in ticks of the clock.
             angle_deg: The axle's angle now.
             speed_dps: The axle's speed, not 0.
         """
-        self.count = count = floor(2 * angle_deg)
+        count = floor(2 * angle_deg)
         per_count = CLOCK_HZ / (2 * speed_dps)
         edge, direction = (count, -1) if speed_dps > 0 else (count + 1, 1)
-        self._straight = -CAPACITY * direction
-        first = count + direction * (CAPACITY - 1)
-        self._counts = [*range(first, count - direction, -direction)]
-        self._times = [
+        oldest = max(KEPT_COUNTS, int(KEPT_SPAN / abs(per_count)))
+        times = [
             int(time - (2 * angle_deg - edge - direction * back) * per_count)
-            for back in range(CAPACITY - 1, -1, -1)
+            for back in range(oldest, -1, -1)
         ]
-        self._speed_dps = None
+        self.add_straight(count, times)
 
     def measure_speed_dps(self) -> int:
         """Return the speed that the driver computes from the last changes, in whole degrees per second."""
@@ -201,8 +209,13 @@ class Counter:
     def _search(self, time: int) -> tuple[int, int]:
         """Return the change of the count from which the driver computes a speed, and its time in ticks of the clock."""
         turned = span = 0
+        straight = self._straight
         for depth in range(STRIDE, MAX_DEPTH + 1, STRIDE):
-            turned = self.count - self._counts[-1 - depth]
+            earlier = depth - abs(straight)
+            if earlier < 0:
+                turned = depth if straight > 0 else -depth
+            else:
+                turned = self.count - self._earlier[-1 - earlier]
             if turned == 0:
                 return 0, 1
             span = time - self._times[-1 - depth]

@@ -7,6 +7,8 @@ from math import copysign, exp, expm1, floor, inf, log, sqrt
 from tuisim.engine.core.driver.counter import (
     CLOCK_HZ,
     HALF_CLOCK_HZ,
+    KEPT_COUNTS,
+    KEPT_SPAN,
     MAX_DEPTH,
     MIN_IDLE,
     MIN_SPAN,
@@ -22,10 +24,6 @@ MIN_ROLL_NS = 5 * STEP_NS
 ENDLESS_NS = 1 << 62
 MAX_ERROR_S = 1e-6
 """Error of a time at which Newton's method ends: another step, which squares it, is not worth its cost."""
-KEPT_SPAN = CLOCK_HZ * 50 // 1000
-"""A speed is measured over fewer counts than those of this time, in ticks of the clock..."""
-KEPT_COUNTS = 3 * STRIDE
-"""...or than these."""
 
 
 class Roll:

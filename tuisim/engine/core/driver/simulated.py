@@ -272,7 +272,7 @@ class SimulatedMotor(DriverMotor):
         self._even_ticks = 0
         axle.angle_deg = self._angle_deg
         self._moved_ns = now_ns
-        self.counter.fill_evenly(now_ns * TICKS_PER_NS, axle.angle_deg, cruise_dps)
+        self.counter.add_evenly(now_ns * TICKS_PER_NS, axle.angle_deg, cruise_dps)
         self._step_ns = (now_ns // STEP_NS + 1) * STEP_NS
         self.read_counts(self.counter.count)
 
