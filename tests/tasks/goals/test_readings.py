@@ -8,6 +8,12 @@ from textwrap import indent
 import pytest
 
 from tests.conftest import Command
+from tests.tasks.goals.recorded import world
+from tuisim.base.source import Program
+from tuisim.engine.core.profile import ROBOLAB
+from tuisim.engine.core.spec import RobotSpec, RunSpec
+from tuisim.engine.runs.store import RunStore
+from tuisim.tasks.goals.evidence import Evidence
 
 # Five readings and one that changes the mode, 100 ms apart.
 PROGRAM = """\
@@ -95,3 +101,10 @@ def test_honest_idioms_cost_no_points(tmp_path: Path, here: Command, idiom: str)
     lines = here("goals", "check", "goals.toml").stdout.splitlines()
     marks = [line.split()[:2] for line in lines if line.lstrip()[:1] in "✓✗" and line.strip()]
     assert marks[:3] == [["✓", "log"], ["✓", "print"], ["✓", "read"]], lines
+
+
+def test_a_run_that_has_just_begun_has_no_readings_and_no_error(home: Path) -> None:
+    store = RunStore()
+    spec = RunSpec(RobotSpec(), world(), ROBOLAB)
+    run = store.create_run(Program("reads.py", PROGRAM), spec)
+    assert not len(Evidence(store.load_run(run.id)).readings.rows)

@@ -158,7 +158,7 @@ class Evidence:
         Raises:
             LogError: the record of them is missing or damaged.
         """
-        return read_readings(self._run.folder, is_over=isinstance(self._run, StoredRun))
+        return read_readings(self._run.folder, is_over=self.ended)
 
     @cached_property
     def samples(self) -> list[tuple[int, Sample]]:
