@@ -60,6 +60,24 @@ async def test_an_answer_lies_where_the_borders_of_upper_and_lower_panels_meet()
         await wait_for_region(0, 19, 60, 1)
 
 
+async def test_a_notice_that_is_gone_before_the_panels_are_drawn_is_not_placed() -> None:
+    app = _Lab()
+    async with app.run_test(notifications=True) as pilot:
+        app.notify(LONG, timeout=inf)
+        await until(pilot, lambda: app.query(NoticeRow))
+        row = app.query_one(NoticeRow)
+        await row.remove()
+        app.notices.clear()
+        row.place()
+
+        app.notify(LONG, timeout=inf)
+        await until(pilot, lambda: app.query(NoticeRow))
+        app.notices.follow_panels()
+        app.notices.release()
+        await until(pilot, lambda: not app.query(NoticeRow))
+        await pilot.pause()
+
+
 async def test_an_error_stays_until_it_is_read_and_the_newest_notice_follows() -> None:
     app = TerminalApp()
     async with app.run_test(notifications=True) as pilot:

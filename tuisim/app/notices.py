@@ -83,7 +83,9 @@ class NoticeRow(Static):
         self.call_after_refresh(self._leave_dialog)
 
     def place(self) -> None:
-        """Move to the lowest border between panels."""
+        """Move to the lowest border between panels, unless it was removed before they were drawn."""
+        if not self.is_attached:
+            return
         widths: Counter[int] = Counter()
         for panel in self.screen.query(".panel"):
             widths[panel.region.y] += panel.region.width
@@ -95,9 +97,7 @@ class NoticeRow(Static):
 
     def _leave_dialog(self) -> None:
         """Move to the lower border of a dialog whose text the row would cover."""
-        if not self.is_attached:
-            return
-        for frame in self.screen.query(".dialog"):
+        for frame in self.screen.query(".dialog") if self.is_attached else ():
             if self.region.overlaps(frame.region.shrink((1, 1, 1, 1))):
                 self.styles.offset = (0, frame.region.bottom - 1 - self.region.y)
 
@@ -168,7 +168,7 @@ class Notices:
 
     def follow_panels(self) -> None:
         """Move the notice to where the panels' borders are now."""
-        if self._row is not None and self._row.is_attached:
+        if self._row is not None:
             self._app.call_after_refresh(self._row.place)
 
     def follow_screen(self) -> None:
