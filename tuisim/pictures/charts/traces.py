@@ -20,11 +20,11 @@ TRACE_COLORS: tuple[Rgb, ...] = (
     (0, 158, 115),
     (204, 121, 167),
     (255, 255, 255),
-    (230, 159, 0),
+    (180, 255, 165),
     (60, 110, 220),
 )
-"""Those of Okabe and Ito, with a lighter blue and white for a dark ground: they stay apart for people who see fewer
-colours. Source: https://jfly.uni-koeln.de/color/."""
+"""Those of Okabe and Ito, with a lighter blue and white for a dark ground, and a light green in place of a second
+orange: they stay apart for people who see fewer colours. Source: https://jfly.uni-koeln.de/color/."""
 MARKS = "o+x*#%=~&@"
 """For terminals without colours; more than there are colours, so that many traces differ in one or the other."""
 
