@@ -36,6 +36,12 @@ def test_each_band_is_named_by_its_level_and_grey() -> None:
     assert [(span.start, span.stop) for span in state.spans] == [(0.0, 1.9), (2.0, 3.9), (4.0, 5.9)]
 
 
+def test_the_steps_of_a_slope_are_no_bands() -> None:
+    slope = [level for level in (80.0, 65.0, 50.0, 35.0, 20.0) for _ in range(3)]
+    _, state = chart([100.0] * 40 + slope + [0.0] * 3)
+    assert [span.texts[1] for span in state.spans] == ["100", "0"]
+
+
 def test_names_are_all_long_or_all_short_and_never_touch() -> None:
     spans = find_spans(next(iter(chart([86.2745] * 9 + [82.745] * 9 + [0.0])[0])), PLAIN_LIGHT)
 
