@@ -74,7 +74,7 @@ class BrickMotor:
         self.speed_dps = 0.0
         self.target_dps = 0.0
         self.sign = 1.0
-        """-1 while a move runs backwards and its speed is given without sign."""
+        """-1 while a move whose speed is given without a sign runs backwards, else 1."""
         self.goal_deg = 0.0
         self.end_tick: float = 0
         self.slowest_ramp_dps2 = 0.0

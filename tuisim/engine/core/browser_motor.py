@@ -55,14 +55,14 @@ class BrowserMotor:
         self._ramp_step = ramp_step or math.inf
         self._command = STOPPED
         self.mode = STOPPED
-        """The command while the motor reports `running`."""
+        """What the motor does, while it reports `running`."""
         self.position_deg = 0.0
         self.speed_dps = 0.0
         """The speed register: a magnitude in moves to a position, otherwise a signed speed."""
         self.speed_sp = 0.0
         """The speed that the register follows, in every state."""
         self.backwards = False
-        """Direction of a move to a position; it may change during the move and afterwards."""
+        """Whether a move to a position turns backwards; this may change during the move and afterwards."""
         self.goal_deg = 0.0
         self.end_tick = 0.0
         self.roll_sign = 1.0

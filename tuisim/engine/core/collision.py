@@ -23,7 +23,7 @@ TOUCH_MM = 1e-4
 """Overlap that still counts as touching."""
 
 ROUNDING_MM = 1e-9
-"""Rounding takes a robot that drives along an obstacle no deeper into it than this."""
+"""Largest overlap that rounding causes while a robot drives along an obstacle."""
 
 BACK_OFF_MM = 1e-6
 """The robot stops this far before the contact, so that rounding cannot put it past it."""
@@ -95,7 +95,8 @@ class Solids:
         self._middle = (front + back) / 2
         self._half_length = (front - back) / 2
         self._turns_mm = robot.wheel_spacing_mm / 2 * (1.0 + 1e-9)
-        """Distance per radian of turn up to which a motion is a turn: its wheels do not push the same way."""
+        """Distance per radian up to which a motion counts as a turn, in which the wheels push in opposite
+        directions."""
         self.reach_mm = outline.reach_mm
         """Largest distance of the body from the centre of the axle."""
         self._near: list[Box] = []

@@ -37,7 +37,7 @@ class Column:
     is_traced: bool = False
     """Whether the chart offers the column."""
     also: tuple[str, ...] = ()
-    """Other names that are understood."""
+    """Other names by which the column is found."""
 
 
 def list_measured_names(columns: Iterable[Column]) -> tuple[str, ...]:

@@ -53,7 +53,7 @@ COMPARE: Mapping[str, Callable[[Any, Any], Any]] = {
 """Functions of the operators for numbers."""
 
 _SPELLINGS: Mapping[str, Operator] = {"=": Operator.EQUAL}
-"""Other spellings."""
+"""Operators by other spellings than their own."""
 _SIGNS = "|".join(
     map(re.escape, sorted((*COMPARE, Operator.CONTAINS, *_SPELLINGS), key=len, reverse=True))
 )

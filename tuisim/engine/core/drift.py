@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tuisim.engine.core.spec import RunSpec
 
 JERK_MM = 1.0
-"""How far a wheel slips at once: about the width of a contact patch that lets go."""
+"""How far a wheel slips in one jerk: about the width of the area in which it touches the floor."""
 
 MAX_DEVIATIONS = 3.0
 """Numbers from a normal distribution are limited to this many standard deviations."""
@@ -36,7 +36,7 @@ MAX_OVERSHOOT = 1.2
 """A motor turns no faster than this many times its top speed."""
 
 MAX_TIMES = 3.0
-"""A wheel that slips, of a robot with wrong sizes, never moves it as if it turned more than this many times as fast."""
+"""With its errors, a wheel moves the robot at most this many times as far as the faster wheel would without them."""
 
 _FIRST_LOSS_DEG, _LAST_LOSS_DEG = 15.0, 50.0
 """Between these angles off the normal of a surface, more and more pulses are lost: see `DriftSpec.echo_loss_pc`."""

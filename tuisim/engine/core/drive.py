@@ -60,7 +60,7 @@ class Records(NamedTuple):
 
     buffer: Buffer
     offsets: range
-    """Offset of each record in the buffer, in bytes."""
+    """Offset of each tick's record in the buffer, in bytes."""
     ticks: range
     line: int
     flags: int
@@ -83,18 +83,18 @@ class Glide(NamedTuple):
     """How one wheel's motor moves over several ticks."""
 
     rolls_deg: list[float]
-    """Rotation in each tick."""
+    """Rotation of the motor in each tick, in degrees."""
     counts_deg: list[float]
-    """Encoder position after each tick."""
+    """Encoder position after each tick, in degrees."""
 
 
 class EvenGlide(NamedTuple):
     """How one wheel's motor moves over several ticks at a steady speed."""
 
     roll_deg: float
-    """Rotation in each tick."""
+    """Rotation of the motor in each tick, in degrees."""
     counts_deg: Iterator[float]
-    """Encoder position after each tick."""
+    """Encoder position after each tick, in degrees."""
 
 
 class Drive(Protocol):
@@ -295,7 +295,7 @@ class BrowserDrive:
         self._left_rim_mm, self._right_rim_mm = _sign_wheels(
             math.pi * robot.wheel_diameter_mm / robot.gear_ratio, robot
         )
-        """How far each wheel rolls per turn of its motor."""
+        """How far each wheel rolls per turn of its motor, in mm."""
         self._spacing_mm = robot.wheel_spacing_mm
         self._early = early
         self._left_deg = self._right_deg = self._forward_mm = self._turn = 0.0

@@ -15,7 +15,7 @@ class HubKind(NamedTuple):
     ports: str
     """The hub's ports, for motors and sensors alike."""
     motor: str
-    """The kind of motor that is usual there, one of `HUB_MOTORS`."""
+    """The kind of motor that is usual with this hub, one of `HUB_MOTORS`."""
 
 
 HUB_PORTS = ("A", "B", "C", "D", "E", "F")
@@ -28,7 +28,7 @@ HUBS: Mapping[str, HubKind] = {
     "CityHub": HubKind("AB", "technic"),
     "MoveHub": HubKind("ABCD", "interactive"),
 }
-"""By the name of the class in `pybricks.hubs`."""
+"""All hubs, by the names of their classes in `pybricks.hubs`."""
 HUBS_WITH_MATRIX = frozenset({"PrimeHub", "InventorHub"})
 """Hubs with a matrix of lights, a speaker, and more than one button."""
 HUB_BUTTONS = ("enter", "left", "right", "up")
@@ -53,7 +53,7 @@ CONTROLLERS: Mapping[str, tuple[str, ...]] = {
 """What can be pressed by hand on a remote control and on a game controller, by what stands for their port."""
 EV3_MOTORS = ("large", "medium")
 INSIDE = "inside"
-"""In place of the port of a gyro that is in the hub."""
+"""Stands for the port of a gyro that is inside the hub."""
 
 
 def check_motor_kinds(hub: str, kinds: Mapping[str, str]) -> None:

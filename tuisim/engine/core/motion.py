@@ -192,7 +192,7 @@ class Motion:
         self._driven: tuple[SimulatedMotor, ...] = ()
         """The motors with a driver, which notices changes of their states late."""
         self.changed_ns = 0
-        """When a driver noticed the last such change."""
+        """When a driver noticed the last such change, in ns."""
         self._begin(spec, sink)
 
     def _build_solids(self, spec: RunSpec) -> None:
@@ -222,7 +222,7 @@ class Motion:
         self._start_clocks()
         self._buffer: Buffer = sink.reserve(ROOM_TICKS)
         self._room_end = ROOM_TICKS
-        """Number of records the buffer has space for."""
+        """Number of records for which the buffer has space."""
         self._motor_recorder = MotorRecorder(self._driven, motor_sink)
         self._motor_recorder.make_room(ROOM_TICKS)
         TICK_RECORD.pack_into(self._buffer, 64, *self._build_record())

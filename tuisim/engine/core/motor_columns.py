@@ -25,7 +25,7 @@ MOTOR_FIELDS = (
     ("duty_pc", "i1"),
     ("state", "u1"),
 )
-"""Name and type of each value, the type as numpy writes it."""
+"""Name and type of each recorded value of a motor; types are written as numpy does."""
 MOTOR_RECORD = Struct("<ihbB")
 
 

@@ -17,13 +17,13 @@ STOPPED, FOREVER, TIMED, POSITION = range(4)
 """Values of `Motor.mode`."""
 
 ENDLESS = 1 << 60
-"""More ticks than any run has."""
+"""A number of ticks that no run reaches; it stands for `never`."""
 
 MEDIUM_MAX_SPEED_DPS = 1560.0
 """Medium motor, no load (EV3 motor driver table)."""
 
 STANDSTILL_DEG = 1e-3
-"""A wheel that turns less than this in a tick does not turn."""
+"""A wheel that turns by less than this in a tick counts as standing."""
 
 
 def find_top_speed_dps(kind: str, profile: ProfileSpec) -> float:
@@ -41,7 +41,7 @@ class Motor(Protocol):
     position_deg: float
     """Encoder position."""
     blocked_ticks: int
-    """Number of consecutive ticks in which an obstacle or wall has blocked the wheel."""
+    """Number of consecutive ticks in which an obstacle or wall has blocked the wheel; 0 if it is free."""
 
     @property
     def mode(self) -> int:

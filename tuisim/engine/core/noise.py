@@ -56,9 +56,9 @@ class Clamping(NamedTuple):
     """Mean and variance of the error of a pixel's value after clamping to 0 … 255, for errors up to one level."""
 
     shift: tuple[float, ...]
-    """By value: its mean error, which is not 0 near the ends of the range, because values are clamped."""
+    """Mean error for each value; it is not 0 near the ends of the range, because values are clamped."""
     variance: tuple[float, ...]
-    """By value: the variance of its error."""
+    """Variance of the error for each value."""
     even: bytes
     """The values that are never clamped: their mean does not move, and their variance is `even_variance`."""
     even_variance: float

@@ -77,7 +77,7 @@ class PluggedPart:
     tick: int
     """The part was plugged in after this tick and before the next."""
     line: int
-    """The line of the program that asked for it; 0 if it is in none."""
+    """The line of the program that needed the part; 0 if no line did."""
     role: str = ""
     """One of `ROLES`. The entry of a left wheel is followed by that of the right one."""
 

@@ -52,7 +52,7 @@ class MotorLaw(StrEnum):
     """How motors move and execute commands, and which library controls them."""
 
     BRICK = "brick"
-    """Moves end exactly at their goal or time, as the course says."""
+    """Moves end exactly at their goal or time, as the course defines."""
     EV3DEV = "ev3dev"
     """As on a brick with ev3dev: the electric motor, and the driver's control."""
     NBEV3DEVSIM = "nbev3devsim"
@@ -60,7 +60,7 @@ class MotorLaw(StrEnum):
     PYBRICKS = "pybricks"
     """Motors follow trajectories, as in Pybricks 2.0."""
     PYBRICKS_4 = "pybricks-4"
-    """Likewise, with the settings of Pybricks 4."""
+    """Motors follow trajectories, as in Pybricks 4."""
 
     @property
     def library(self) -> Library:
@@ -107,7 +107,7 @@ class ProfileSpec(Spec):
         default=20 * MS,
         source=f"{_OLD}: it waits twice; ev3, lego-micropython: a reading like any other",
     )
-    """`color` and `color_name`."""
+    """Duration of reading `color` or `color_name`."""
     ultrasonic_read_ns: int = _build_cost(
         default=10 * MS,
         source=f"{_OLD}: it waits before it takes the value; ev3, lego-micropython: a reading like any other",
@@ -120,7 +120,7 @@ class ProfileSpec(Spec):
         default=1 * MS,
         source=f"{_NEW}, so that polling takes time; {_OLD}: nothing; {_BRICK}; {_FAST}",
     )
-    """Any other device attribute."""
+    """Duration of reading any other attribute of a device."""
     clock_read_ns: int = _build_cost(
         default=20_000, source=f"{_NEW}, so that loops on the clock end; {_OLD}: nothing"
     )
@@ -140,7 +140,7 @@ class ProfileSpec(Spec):
         "its inertia an estimate; "
         f"{MotorLaw.NBEV3DEVSIM}: {_OLD}; {MotorLaw.PYBRICKS}, {MotorLaw.PYBRICKS_4}: the firmware's own control code",
     )
-    """How motors obey commands and move."""
+    """How motors execute commands and move."""
     max_speed_dps: float = number(
         1,
         100_000,
@@ -193,7 +193,7 @@ class ProfileSpec(Spec):
         later=True,
         source="Pybricks 2.0, `pbdevice.c`, and ev3: 1100 ms (pybricks/support, issue 14)",
     )
-    """Likewise, of the infrared sensor."""
+    """Time that the infrared sensor needs for the first reading in another mode than before."""
     stale_reading_ns: int = _build_cost(
         default=0,
         later=True,
@@ -220,14 +220,14 @@ class ProfileSpec(Spec):
         source="measured with EV3 sensors: 2 to 6 on black (EV3 test 3, Port View); ev3: 5; the course, the old "
         "simulator: 0",
     )
-    """Likewise, of black."""
+    """Reflected light of black, unless a colour sensor has its own."""
     brick_colors: bool = flag(
         default=False,
         later=True,
         source="the EV3 driver's table of colours; ev3: 0 for nothing and 7 for brown, too, and white only if all "
         f"channels are high, from limits that are a {_NEW}; the course, the old simulator: 1 to 6",
     )
-    """Whether the colour sensor also tells 0, no colour, and 7, brown."""
+    """Whether the colour sensor also distinguishes 0, no colour, and 7, brown."""
     min_echo_mm: int = whole(
         0,
         255,
@@ -236,7 +236,7 @@ class ProfileSpec(Spec):
         unit="mm",
         source="measured (ETH Zürich, with the NXT sensor): ev3: no echo below 30 mm; the course, the old simulator: 0",
     )
-    """An ultrasonic sensor hears no echo of what is closer."""
+    """Smallest distance of a surface whose echo an ultrasonic sensor hears."""
     gyro_max_dps: int = whole(
         0,
         100_000,
@@ -259,13 +259,13 @@ class ProfileSpec(Spec):
         later=True,
         source="measured on a brick (ev3dev-lang-python, issue 732): 1.1 ms; the course, the old simulator: nothing",
     )
-    """Any write of a device attribute."""
+    """Duration of writing any attribute of a device."""
     cached_read_ns: int = _build_cost(
         default=0,
         later=True,
         source="measured on a brick (ev3dev-lang-python, issue 732): 0.14 ms; the course, the old simulator: nothing",
     )
-    """An attribute that the library has read before and remembers, such as `max_speed`."""
+    """Duration of reading an attribute that the library has read before and remembers, such as `max_speed`."""
 
 
 ROBOLAB = ProfileSpec(

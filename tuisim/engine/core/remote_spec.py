@@ -6,7 +6,7 @@ from tuisim.base.errors import ObstacleError
 from tuisim.engine.core.spec_fields import Spec, choice, number, some, spec
 
 MAX_POSITION_MM = 10_000
-"""No coordinate in the world is farther from 0."""
+"""Largest distance of a coordinate in the world from 0."""
 REMOTE_BUTTONS = ("top_left", "bottom_left", "top_right", "bottom_right", "beacon")
 """Buttons of the remote control, by their names in ev3dev2."""
 

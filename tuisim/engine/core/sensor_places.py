@@ -25,7 +25,7 @@ LOOKS: Mapping[str, tuple[float, float, float]] = {
     "back": (0.0, -100.0, 180.0),
     "middle": (0.0, 20.0, 0.0),
 }
-"""x, y and direction of a sensor that looks to a side."""
+"""x, y and direction of a sensor that looks to a side, by that side."""
 DOWN: Mapping[str, tuple[float, float]] = {
     "middle": (0.0, 30.0),
     "front": (0.0, 60.0),
@@ -33,7 +33,7 @@ DOWN: Mapping[str, tuple[float, float]] = {
     "right": (50.0, 30.0),
     "back": (0.0, -60.0),
 }
-"""x and y of a colour sensor."""
+"""x and y of a colour sensor, by its side."""
 ORDERS: Mapping[type[SensorSpec], tuple[str, ...]] = {
     ColorSensorSpec: ("middle", "front", "left", "right"),
     UltrasonicSpec: ("front", "right", "left", "back"),

@@ -55,7 +55,7 @@ FIELD_HEIGHT_MM = 1143
 
 OUTPUT_PORTS = ("outA", "outB", "outC", "outD")
 NO_PORT = "none"
-"""In place of the ports of both wheels: the robot has none."""
+"""Stands for the ports of both wheels if the robot has no wheels."""
 INPUT_PORTS = ("in1", "in2", "in3", "in4")
 
 ROBOT_WEIGHTS: Mapping[str, float] = {"weightless": 0.0, "light": 3.0, "medium": 6.0, "heavy": 9.0}
@@ -159,7 +159,7 @@ class MotorSpec(Spec):
         unit="°",
         help="end stop backwards, relative to the position at the start",
     )
-    """The motor turns no further backwards than here; 0 or below."""
+    """The end stop in the backward direction, 0 or below; None for no stop."""
     high_deg: float | None = number(
         0,
         _MAX_RANGE_DEG,
@@ -168,7 +168,7 @@ class MotorSpec(Spec):
         unit="°",
         help="end stop forwards, relative to the position at the start",
     )
-    """The motor turns no further forwards than here; 0 or above."""
+    """The end stop in the forward direction, 0 or above; None for no stop."""
 
     def check(self) -> None:
         if (
@@ -395,7 +395,7 @@ class RobotSpec(Spec):
         label="Weight",
         help=f"{', '.join(ROBOT_WEIGHTS)}, or a number",
     )
-    """0 changes speed at once; otherwise the acceleration is 5000 / weight degrees per second each second."""
+    """With 0 the speed changes immediately; otherwise the acceleration is 5000 / weight degrees per second squared."""
     left_port: str = _build_output_port("outB", "Left motor")
     """Port of the motor of the left wheel; `NO_PORT`, as `right_port`, on a robot without wheels."""
     right_port: str = _build_output_port("outC", "Right motor")
@@ -589,13 +589,13 @@ class Mount(NamedTuple):
     field: str
     """The field of `RobotSpec`."""
     spec: type[SensorSpec]
-    """Class of the sensors."""
+    """Class of the sensors in this field."""
     many: bool
     """Whether the field is a tuple; otherwise it is one sensor or None."""
     standard: bool
     """Whether panels and files have a dedicated place for it; all others are handled generically."""
     key: str
-    """Key in a robot file."""
+    """Key of the sensors in a robot file."""
 
 
 MOUNTS = tuple(

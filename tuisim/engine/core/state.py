@@ -37,7 +37,7 @@ class Instant:
     profile: ProfileSpec = ROBOLAB
     seed: int = 0
     motors: tuple[MotorValues, ...] = ()
-    """What the drivers know of all motors, if they have drivers and it was asked for."""
+    """The values of all motors' drivers; empty if the motors have no drivers, or the values were not requested."""
 
     @property
     def gyro_deg(self) -> int:

@@ -34,7 +34,7 @@ LIGHT_NAMES: Mapping[str, Sequence[str]] = {
 }
 """The LEDs of a hub's status light, and of connected controllers by what stands for their port."""
 PORT_LIGHT = "light "
-"""Before the port in the name of a light on a port of a hub."""
+"""Begins the name of a light on a port of a hub; the port follows."""
 SIDE_PIXELS = 5
 PIXEL_NAMES = tuple(f"{row}{column}" for row in range(SIDE_PIXELS) for column in range(SIDE_PIXELS))
 """The LEDs of a hub's matrix, row by row from the top."""
@@ -174,7 +174,7 @@ def unpack_display(picture: bytes) -> NDArray[np.uint8]:
 
 
 DRAWN_STREAMS = frozenset({Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MOTORS})
-"""Streams whose rows are data of the brick's own, and not texts."""
+"""Streams whose rows store the state of the brick in a format of this module, not texts."""
 
 
 def is_sound(stream: Stream, text: bytes) -> bool:

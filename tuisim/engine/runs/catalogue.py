@@ -79,7 +79,7 @@ class RunInfo:
 _MAX_RUNS = 1 << 40
 """A greater number than that of any run comes from a damaged file, and would leave none for the next run."""
 _MAX_ID = 255
-"""The longest name of a folder."""
+"""Longest name of a folder in bytes."""
 _NAMES = tuple(field.name for field in fields(RunInfo))
 _COLUMNS = ", ".join(f'"{name}"' for name in _NAMES)
 _INSERT = f"INSERT INTO runs ({_COLUMNS}) VALUES ({', '.join('?' * len(_NAMES))})"

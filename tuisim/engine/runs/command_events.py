@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 _REPEAT_NS = NS_PER_S // 4
-"""A call to a part that comes again within this time repeats the one before."""
+"""A command that a part gets again within this time is a repetition of the one before."""
 _MAX_EVENTS = 1 << 17
-"""Events of a run; further commands are left out. At four events a second, this is enough for nine hours."""
+"""Number of events of a run; further commands are left out. At four events a second, this is enough for nine hours."""
 _MAX_SCALES = 1 << 10
-"""Changes of what a program counts as a degree of a motor; further ones are left out."""
+"""Number of changes of what a program counts as a degree of a motor; further ones are left out."""
 _PIECE = 1 << 15
 """Number of commands that are read at a time."""
 _FINEST = 500
@@ -72,7 +72,7 @@ class CommandEvent:
     last_s: float
     """Simulated time of the last command."""
     came: str
-    """Its result, until the part got another command; empty if that is not known."""
+    """The result of the command until the part got another one; empty if it is not known."""
 
     @property
     def words(self) -> str:
@@ -114,7 +114,7 @@ class CommandIndex:
         self._firsts, self._lasts = array("q"), array("q")
         """Time of the first and the last command."""
         self._lows, self._highs = array("d"), array("d")
-        """The least and the highest main value."""
+        """The lowest and the highest main value of each event."""
         self._latest: dict[int, int] = {}
         """The latest event by its code."""
         self._ends: list[int] = []

@@ -54,7 +54,7 @@ class CommandsWriter(MappedWriter):
         )
         self._count = 0
         self._room = _FIRST_BYTES // COMMAND_RECORD.size
-        """How many commands fit."""
+        """Number of commands for which the file has space."""
 
     def add(self, time_ns: int, part: int, call: int, values: tuple[float, ...]) -> None:
         """Append a command to the record; arguments as of `SimulationCommand`."""
@@ -84,7 +84,7 @@ class RecordedCommands:
     rows: Array
     """One row of `COMMAND_FIELDS` for each."""
     left_out: int = 0
-    """Number of commands that the file had no room for."""
+    """Number of commands for which the file had no space."""
 
     def unpack(self) -> Iterator[SimulationCommand]:
         """Yield the commands; each has the number of values of a record, including values that its call does not use.

@@ -25,7 +25,7 @@ class Quantity:
     share: float = 1.0
     """Factor from the value to `unit`."""
     names: Sequence[str] = ()
-    """What the values 0, 1, … stand for; empty for a number."""
+    """Names that the values 0, 1, … stand for; empty if the value is a number."""
 
     def write(self, low: float, high: float) -> str:
         """Return a value as text, or a range of values if `low` and `high` differ."""
@@ -70,12 +70,12 @@ class CallWords:
     text: str
     """The words, with the index of each value in braces, such as `run {0}`."""
     quantities: tuple[Quantity, ...] = ()
-    """How its first values are written."""
+    """How the first values of the command are shown."""
     main: int = 0
     """The index of the value that differs most when the call is repeated."""
     aim: Aim = Aim.NONE
     part: str = ""
-    """The part that the call is for; empty for a motor or a drive base."""
+    """Name of the part that the command is for; empty for a motor or a drive base."""
 
 
 def _name_driver_calls() -> dict[Call, CallWords]:
@@ -147,14 +147,14 @@ CALL_WORDS: Mapping[Call, CallWords] = {
         "set {0} {1} {2}", (Quantity(names=("distance", "heading")), _SETTING, _PLAIN), 2
     ),
 }
-"""The words of each call."""
+"""How each kind of command is described in words."""
 _WITHOUT: Mapping[Call, str] = {
     Call.RUN_FREELY: "coast",
     Call.RUN_AT: "run {0}",
     Call.LIMIT_DUTY: "limit power no longer",
     Call.STOP_BASE: "stop, coast",
 }
-"""Words of calls without a value that `CALL_WORDS` names."""
+"""Words for commands that lack a value which `CALL_WORDS` names."""
 
 
 def describe_command(

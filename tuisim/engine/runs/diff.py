@@ -27,7 +27,7 @@ DIFF_LINES = 20
 """Maximum number of lines of the unified diff of two programs."""
 EXCEEDED_MM = (1.0, 10.0, 100.0)
 PARTED_MM, PARTED_DEG = 1.0, 1.0
-"""Robots that are farther apart have parted."""
+"""Distance in mm, and difference of heading in degrees, beyond which two robots count as apart."""
 TABLE_ROWS = 10
 
 

@@ -109,7 +109,7 @@ MOTION_COLUMNS = list_measured_names(MOTION)
 """Columns of the telemetry frame that are copied from the recording."""
 
 _MOST = 1e15
-"""Larger values, in mm or degrees, count as damage: no motion gets this far."""
+"""Values from this size on, in mm or degrees, are damage: no motion gets this far."""
 
 
 def build_samples_frame(runs: Iterable[StoredRun]) -> pd.DataFrame:

@@ -71,7 +71,7 @@ from tuisim.engine.runs.store import NewRun, RunStore
 from tuisim.engine.runs.views import TelemetryView, open_views
 
 STUCK_AFTER_S = 0.3
-"""A child that has not ended this long after a stop is killed; see `RunHandle.time_used_s`."""
+"""Time after a stop at which a child that has not ended is killed; see `RunHandle.time_used_s`."""
 ASK_AGAIN_S = 0.05
 LOOK_EVERY_S = 0.03
 """Interval of checks of a running child's recording: most runs are over before the first check."""
@@ -171,7 +171,7 @@ class RunHandle:
         self._stack_asked = False
         self._announced: Ended | None = None
         self.unstored = ""
-        """Why the run or its end is not stored; empty if it is."""
+        """Why the run or its end could not be stored; empty if both are stored."""
         # The lock is held until the end of the run is stored, so that nobody else removes the run before.
         self._lock_fd = os.dup(run.lock_fd)
         self._start(of_many=of_many, isolated=isolated)
@@ -182,7 +182,8 @@ class RunHandle:
         writable: list[str | Path] = [run.folder, program.working_directory]
         self._quota = Quota(self._process.pid, writable) if isolated else None
         self._exceeded = self._falsified = ""
-        """Which limit an isolated program has exceeded; why what the child does is not what the simulation does."""
+        """Which limit an isolated program has exceeded, and why the child's data cannot come from the simulation; empty
+        if neither."""
 
     def _start(self, *, of_many: bool, isolated: bool) -> None:
         """Start the child process; arguments as of the class."""

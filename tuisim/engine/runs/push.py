@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _MIN_TICK_MM = 1e-3
-"""A robot that goes elsewhere in a tick by less than this is not pushed."""
+"""Smallest additional motion in a tick that counts as a push."""
 _MIN_PUSH_MM = 1.0
-"""A robot that is pushed by less ends where nobody sees the difference."""
+"""Smallest push that is reported: nobody sees the effect of a smaller one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,14 +30,14 @@ class Push:
     """A summary of how often and how far walls or obstacles pushed a turning robot aside in a run."""
 
     at: str
-    """What pushed it first: `the wall` or `an obstacle`."""
+    """What pushed the robot first: `the wall` or `an obstacle`."""
     times: int
     since_s: float
-    """When it was pushed for the first time."""
+    """Time in s at which the robot was pushed for the first time."""
     until_s: float
-    """When that ended."""
+    """Time in s at which the last push ended."""
     aside_mm: float
-    """How far it was pushed in all."""
+    """How far the robot was pushed in all, in mm."""
 
     @property
     def words(self) -> str:

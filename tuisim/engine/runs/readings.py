@@ -67,7 +67,8 @@ MODES_BY_KIND: Mapping[str, tuple[str, ...]] = {
     "socket": ("accept", "receive"),
     "gamepad": ("list",),
 }
-"""What can be read, by the kind of device: modes of sensors, attributes of motors, the buttons, sockets, gamepads."""
+"""What a program can read, by the kind of device: modes of sensors, attributes of motors, buttons, sockets,
+gamepads."""
 READING_MODES = tuple(mode for modes in MODES_BY_KIND.values() for mode in modes)
 READING_CODES: Mapping[tuple[str, str], int] = {
     (port, mode): port_index | mode_index << 8
@@ -90,7 +91,7 @@ class ReadingsWriter(MappedWriter):
         )
         self._count = 0
         self._room = _FIRST_BYTES // READING_RECORD.size
-        """How many readings fit."""
+        """Number of readings for which the file has space."""
         self.newest_ns = -1
 
     def add(self, code: int, time_ns: int, line: int) -> None:
@@ -137,7 +138,7 @@ class Readings:
     rows: Array
     """One row of `READING_FIELDS` for each."""
     left_out: int = 0
-    """Number of readings that the file had no room for."""
+    """Number of readings for which the file had no space."""
 
     def find(self, modes: tuple[str, ...]) -> Array:
         """Return the readings in one of several modes, as rows in their order."""

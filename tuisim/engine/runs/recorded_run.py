@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from tuisim.engine.runs.views import OutputView, TelemetryView, TickRecord
 
 _STILL_DEG = 0.05
-"""Less rotation than this in the time until a stall counts as none."""
+"""Rotation in the time until a stall below which a wheel counts as standing."""
 
 
 class Recording:
@@ -56,13 +56,13 @@ class Recording:
         """Display name."""
         self._source = source
         self.first_spec: RunSpec = source.first_spec
-        """As it began."""
+        """The spec of the run as it began, without parts that were plugged in later."""
         self.folder: Path = source.folder
         self.telemetry: TelemetryView = source.telemetry
         self.output = source.output
         self.rows = RowIndex(source.output)
         self.commands = CommandIndex(source)
-        """What the program asked of motors and sensors, as far as it has been read."""
+        """The commands of the program, as far as they have been read."""
         self.program = restore_program(source.program, source.folder)
         self.known_actions: tuple[UserAction, ...] = (
             source.actions if isinstance(source, StoredRun) else ()
@@ -173,9 +173,9 @@ class _TimedMarks:
         self._run = run
         self._drawn = PenMarks(mat, run.spec)
         self._counts = array("Q")
-        """Number of marks after each record."""
+        """Number of marked pixels after each tick record."""
         self._cut: tuple[int, MarkedField] | None = None
-        """The last requested field, with its number of marks."""
+        """The mat that was last requested, with its number of marked pixels."""
 
     def at(self, tick: int) -> Field:
         marks = self._drawn.field.marks

@@ -120,7 +120,7 @@ class ReplayedTicks:
     motors: bytearray
     """The records of the motors for each tick; empty if they have no driver."""
     motor_bytes: int
-    """Size of the motors' records of one tick."""
+    """Size in bytes of the motors' records of one tick."""
     robot: RobotSpec
     """The robot with all parts that were plugged in."""
 

@@ -31,7 +31,7 @@ class Position:
 
     tick: int
     ordinal: int = BEFORE_NEXT_TICK
-    """As in `engine.protocol.Paused`."""
+    """The position among the lines of the tick, as in `engine.protocol.Paused`."""
 
     @property
     def _sort_key(self) -> tuple[int, float]:
@@ -71,9 +71,9 @@ class ReplayDebugger:
         self._paused: Paused | None = None
         self._request = protocol.Inspect()
         self._back = 0
-        """Number of lines before the paused position that is wanted."""
+        """How many lines before the paused position the requested line is."""
         self._line = 0
-        """The line whose last start in the tick is wanted, 0 for none."""
+        """The line at whose last start in the tick to pause; 0 for none."""
         self._next_command: protocol.Message | None = None
         """Command for resuming once it is paused."""
         self._aim: Position | None = None

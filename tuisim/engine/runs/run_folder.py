@@ -43,7 +43,7 @@ _PROGRAM_KEYS = (
     "module_folder",
     "shown_ports",
 )
-"""What `run.json` holds of the program, in this order."""
+"""Fields of the program that `run.json` contains, in this order."""
 
 _ACTION_COUNTS = 1 << 16
 """The telemetry counts user actions in 16 bits."""
@@ -51,10 +51,10 @@ _ACTION_COUNTS = 1 << 16
 
 _Kind = TypeVar("_Kind")
 MAX_INTEGER = (1 << 63) - 1
-"""What the catalogue can hold."""
+"""Largest integer that the catalogue can store."""
 _ANY_END = Ended(End.FINISHED, 0, 0)
 _TOLD = frozenset({End.FINISHED, End.RAISED, End.TIME_LIMIT, End.DEADLOCK})
-"""Ends that a program's process tells after it has written both recordings."""
+"""Ends that a program's process reports after it has written both recordings."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ class StoredRun:
     options: Mapping[str, Any]
     tags: tuple[str, ...]
     end: Ended | None
-    """None while it runs, and if it was interrupted."""
+    """How the run ended; None while it runs, and if it was interrupted."""
     actions: tuple[UserAction, ...]
     notes: tuple[str, ...]
     """Incomplete parts that were ignored, one sentence each."""

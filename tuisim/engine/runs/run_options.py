@@ -13,7 +13,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.protocol import UserAction
 
 DEFAULT_TIME_LIMIT_S = 600.0
-"""Simulated time that a run may take if nothing else is asked for."""
+"""Simulated time that a run may take by default."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,7 +75,7 @@ SIDE_FILES = (
     LOG_FILE,
     STACK_FILE,
 )
-"""All of them but the lock."""
+"""Names of all these files, except the lock."""
 
 MAX_BYTES = 64 << 20
 """Larger than any side file that is read whole."""
@@ -219,9 +219,9 @@ class OwnModule:
     name: str
     """Full name with packages, such as `tools.drive`."""
     file: str = ""
-    """Its file; empty for a folder without a file, and for a name that was not found."""
+    """Path of the module's file; empty for a folder without a file, and for a name that was not found."""
     folders: tuple[str, ...] | None = None
-    """Of a package: the folders of its modules."""
+    """The folders of the modules of a package; None for another module."""
     text: str = ""
     """The source; bytes that are not valid UTF-8 as lone surrogates."""
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tuisim.engine.core.collision import PoseTuple, Solids
 
 _CONTACT_MM = 0.01
-"""A robot that is closer than this touches; collisions end within a small part of it."""
+"""Distance below which a robot touches something; collisions end within a small part of it."""
 
 _STILL = 1e-3
 """A robot that moves less, in mm or degrees, stands: wheels that push anew press it on by parts of that."""
@@ -42,15 +42,15 @@ class Standstill:
     """A summary of all times that walls or obstacles stopped the robot in a run."""
 
     at: str
-    """What stopped it: `the wall`, `an obstacle`, or both."""
+    """What stopped the robot: `the wall`, `an obstacle`, or both."""
     times: int
-    """How often it stood; it stands once until it moves, whatever its motors do meanwhile."""
+    """How often the robot was stopped; until it moves again, this counts as once, whatever its motors do."""
     since_s: float
-    """When it stood for the first time."""
+    """Time in s at which the robot was stopped for the first time."""
     until_s: float | None
-    """When it moved on for the last time; None if it has not."""
+    """Time in s at which the robot moved on for the last time; None if it did not move on."""
     pushed_s: float
-    """How long its wheels pushed in all."""
+    """How long the robot's wheels pushed in all, in s."""
     on_floor: bool = False
     """Whether there would be a floor behind the wall, with `--walls off`."""
 
@@ -72,7 +72,7 @@ class _Stretch:
 
     start: int
     end: int
-    """The tick after the last one."""
+    """The tick after the last one of the stretch."""
     at: str
 
 

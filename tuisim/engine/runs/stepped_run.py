@@ -42,7 +42,7 @@ class SteppedRun:
     program = Program("script", "")
     answers = ()
     folder = Path("/nonexistent")
-    """Nothing else is recorded."""
+    """A folder that does not exist: nothing but the ticks is recorded."""
 
     def __init__(self, spec: RunSpec, mat: Field, *, is_recorded: bool) -> None:
         self.spec = spec

@@ -43,7 +43,8 @@ _REMOVED = ".removed"
 """End of the name of a folder that is about to be deleted."""
 LAST = "last"
 _MAY_CHANGE = (None, Unended.INTERRUPTED, Unended.DAMAGED)
-"""Ends in the catalogue that are not final: a damaged run file may only have been out of reach for a moment."""
+"""Ends in the catalogue that are not final: a run file that seemed damaged may only have been unreadable for a
+moment."""
 _COUNT_AT_ONCE_BYTES = 1 << 20
 """Longer outputs are counted later, so that the end of a run is not delayed."""
 

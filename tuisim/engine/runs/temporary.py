@@ -37,7 +37,7 @@ _MEMORY = Path("/dev/shm")
 _FREE_BYTES = 2 << 30
 """`_MEMORY` is used if it has at least this much space: programs may print a lot."""
 _PREFIX = "tuisim-"
-"""Each folder that is created here begins with it."""
+"""Beginning of the name of each folder that is created here."""
 _BATCH_PREFIX = f"{_PREFIX}batch-"
 
 
@@ -138,7 +138,7 @@ class TemporaryRun:
         self._data: dict[str, Any] = {}
         """The contents of `run.json`: the program could change the file."""
         self._document = ""
-        """They as text."""
+        """The contents of `run.json` as text."""
         self._spec: RunSpec | None = None
 
     def __enter__(self) -> TemporaryRun:

@@ -62,7 +62,7 @@ _CHUNK_BYTES = 1 << 22
 _AGAIN_BYTES = 1 << 14
 """Bytes that are read at a time of rows that are no longer in memory."""
 _MANY_TICKS = 1 << 13
-"""From this number on it is worth importing numpy to check them."""
+"""Number of records from which on it is worth importing numpy to check them."""
 _MAX_NUMBER = 1e12
 """Larger than any position, angle or speed that a run can reach."""
 
@@ -149,9 +149,9 @@ class _View(ABC):
         self._is_checked = is_checked
         self._damage = ""
         self.holds = False
-        """Whether it stays as it is until the next `read_new`, so that all who look at it see the same."""
+        """Whether the copy stays unchanged until the next `read_new`, so that all readers see the same data."""
         self._copy: bytearray | mmap = bytearray()
-        """Starts like the file, with spare capacity; without the first `_dropped` records."""
+        """The copy: it begins like the file, has spare capacity, and lacks the first `_dropped` records."""
         self._dropped = 0
         self._source: int | None = None
         """Descriptor of the file, from which records that were dropped are read again; open only if some were."""
@@ -462,7 +462,7 @@ class OutputView(_View):
     _kept = 1 << 20
     _seen = 0
     _checked = 0
-    """Up to here there are whole and sound rows."""
+    """Position up to which all rows are complete and valid."""
 
     @property
     def length(self) -> int:

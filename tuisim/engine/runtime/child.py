@@ -68,7 +68,7 @@ if TYPE_CHECKING:
 MAX_KNOWN = 8
 MAX_CHARACTERS = 1 << 16
 MAX_CPU_S = 1.0
-"""A program that takes longer to compile ends this process; its runs are then started by themselves."""
+"""CPU time of one compilation: if it takes longer, this process ends, and later runs are started as new processes."""
 SPARE_FRAMES = 100
 """A program is compiled with this many frames less, so that the process of a run can compile it, too."""
 
@@ -120,7 +120,7 @@ def _compile(text: str, file: str, drops_annotations: bool) -> types.CodeType | 
 
 RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S = 0.2, 0.02
 LEFT_TO_OTHERS_S = 0.1
-"""Real time that a thread has to take a command before the main thread, which waits for its turn, does."""
+"""Real time in which the running thread can process a command before the waiting main thread does."""
 STALL_LOOK_S = 1.0
 
 # The real functions are stored here, because `faulthandler` gets other functions for the program.
@@ -156,7 +156,7 @@ class Interrupts:
         self._timer_on = False
         self._removed = False
         self.main_is_parked = False
-        """Whether the main thread waits for its turn, where raising is harmless."""
+        """Whether the main thread waits for its turn, where a handler may raise an exception."""
         self._stall_now, self._stall_s = -1, 0.0
 
     def install(self, folder: Path) -> None:

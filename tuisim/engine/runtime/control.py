@@ -47,7 +47,7 @@ class SessionFlag(IntFlag):
     THREADS = 4
     """The program has several threads."""
     STOPPING = 8
-    """The program is being unwound."""
+    """The program has to end."""
     DEBUG = 16
     """Tracing has been switched."""
 
@@ -162,7 +162,7 @@ class RunControl:
         self._rushing = False
         """Whether pacing is suspended until the run pauses."""
         self.debugged = False
-        """Whether the debugger is called before and after ticks."""
+        """Whether the debugger must be called before and after ticks."""
         self.holding = False
         """Whether the run is paused and waits for commands."""
         self.between_ticks = False
@@ -172,7 +172,7 @@ class RunControl:
         self.answers: deque[str | None] = deque()
         """Answers to input() that have arrived."""
         self.messages: list[Any] = []
-        """All messages of the host's responder."""
+        """All answers of the host's responder to printed lines."""
 
     # Commands
 

@@ -28,7 +28,7 @@ _LOWEST = 1 << 32 if sys.maxsize > 1 << 32 else 1 << 20
 _TEXT_BEFORE = 200
 """The name of an object's type is at most this far before its address."""
 _MAX_SEARCHED = 20_000_000
-"""After looking at so many objects in all, no more are searched: a few real seconds."""
+"""Number of objects that are searched in all, which takes a few real seconds."""
 _STEPS = 3
 _MOST_REACHED = 1_000
 """How far objects are followed from the program's names: number of steps, and of objects in each step."""
@@ -43,7 +43,7 @@ class _Given(NamedTuple):
 
     number: int
     is_same: Callable[[], object]
-    """Tells whether the object still exists, so that no other object can have its address."""
+    """Returns whether the object still exists, so that no other object can have its address."""
 
 
 class Addresses:
@@ -184,7 +184,7 @@ class OutputRecorder:
         """Returns tick, simulated ns and source line; set once the session exists."""
         self.after_write: Callable[[], None] = lambda: None
         self.drain: Callable[[], None] = lambda: None
-        """Writes first what was written below Python's streams."""
+        """Writes output that did not go through Python's streams; called before each row."""
         self.watch: Callable[[str, Stream], None] | None = None
         """If set, called with text and stream of each written row."""
         self.names: Callable[[], Mapping[str, object]] = dict

@@ -40,7 +40,7 @@ from tuisim.engine.shim.waits import Wait, waits_for
 _FILE_CALLS = ("open", "stat", "lstat", "access", "mkdir", "rmdir", "remove", "unlink")
 _TWO_FILE_CALLS = ("rename", "replace")
 _FOLDER_CALLS = ("listdir", "scandir", "chdir")
-"""Functions of `os` that take the path of a folder: one that is not there is that of the program."""
+"""Functions of `os` that take the path of a folder; for a missing one they use the program's folder."""
 
 
 class HomeFolder:
@@ -101,7 +101,7 @@ def _parse_home_path(path: Any) -> str:
 # At the end of a program, a brick's driver goes on with moves that have an end, and the wheels come to rest.
 
 MAX_REST_NS = NS_PER_S // 2
-"""How long wheels may take to come to rest."""
+"""How long wheels may take to come to rest, in ns."""
 
 
 def finish_moves(session: Session) -> str:
@@ -157,7 +157,7 @@ class ProgramOutcome:
 
 
 _INTERRUPTED = 128 + signal.SIGINT
-"""What a shell reports of a program that an interrupt has ended."""
+"""Exit status that a shell reports for a program that an interrupt has ended."""
 
 
 def _has_finalizer(value: object) -> bool:
@@ -456,7 +456,11 @@ class ProgramRunner:
 
     @waits_for(Wait.INPUT)
     def _read_input(self, prompt: object = "") -> str:
-        """Return a scripted answer, or the user's; replaces `input`."""
+        """Return the next answer of the run's options, or else the user's; replaces `input`.
+
+        Raises:
+            EOFError: there is no answer.
+        """
         self.stdout.write(str(prompt))
         (prompt_text,) = self._output.stabilize(self.stdout.take_part())
         answer: str | None

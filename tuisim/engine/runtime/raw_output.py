@@ -20,7 +20,7 @@ from tuisim.engine.runs.raw_files import RAW_BYTES, create_raw_file
 _NOTHING = b"\0"
 """First byte of a file to which nothing has been written."""
 _MIN_FD = 200
-"""The runtime's own descriptors begin here, beyond those that programs try one by one."""
+"""First of the runtime's own descriptors, beyond those that programs try one by one."""
 _LINE_BUFFERED = 1
 
 
@@ -138,7 +138,11 @@ class RawOutput:
         return count
 
     def finish_ctypes(self, module: Any) -> None:
-        """Make C code write each line immediately, because nobody flushes its buffers at the end."""
+        """Patch `ctypes` after its import: C code then writes each line immediately, and `finish` can flush the rest.
+
+        Args:
+            module: The module `ctypes`.
+        """
         # On a system whose C library has other names for these functions, the output is passed on only at the end.
         with suppress(OSError, ValueError, AttributeError):
             c = module.CDLL(None)

@@ -87,7 +87,7 @@ def refuse_processes() -> None:
 MAX_THREADS = 1000
 """Each thread of a program is a real thread, and a machine limits their number."""
 FOREVER = -1
-"""A wait without a time limit."""
+"""Stands for the end time of a wait without a limit."""
 
 
 class ScheduledThread:
@@ -120,14 +120,14 @@ class ScheduledThread:
         self.joiners: list[ScheduledThread] = []
         self.on_change = False
         self.order = 0
-        """Number of the current wait; other heap entries of this thread are stale."""
+        """Number of the current wait: entries of this thread in the heap with another number are outdated."""
         self.wake_ns = FOREVER
         self.woken = False
         """Whether another thread, not the clock, ended the wait."""
         self.pending: BaseException | None = None
-        """Raised in the thread when it runs again."""
+        """The exception to raise in the thread when it runs again."""
         self.interrupt: Callable[[], None] | None = None
-        """Called in the thread when it runs again."""
+        """The function to call in the thread when it runs again."""
         self.struck = False
         """Whether the interrupt, not the clock or another thread, ended the wait."""
 
@@ -427,7 +427,11 @@ class SimulatedLock:
         return True
 
     def release(self) -> None:
-        """Pass the lock to the thread that has waited longest; if none waits, unlock it."""
+        """Pass the lock to the thread that has waited longest; if none waits, unlock it.
+
+        Raises:
+            RuntimeError: the lock is not acquired.
+        """
         if not self._locked:
             raise RuntimeError("release unlocked lock")
         if self._waiting:

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 COMMANDS_AN_INSTANT = 100
 COMMAND_BURST_NS = 10 * MS
-"""This number of calls without a cost costs this much together."""
+"""The number of calls without a cost that together take some time, and that time."""
 
 REPEATED_WAIT_NS = 10 * NS_PER_S
 """Consecutive identical waits are combined into one of this length."""
@@ -101,7 +101,7 @@ class Session:
     channel: Channel
     """Pipes to the host."""
     steering: RunControl
-    """Commands: pause, speed, user actions."""
+    """Processes the host's commands: pause, speed, user actions."""
     limits: RunLimits
     """Limits of the run."""
     readings: ReadingsWriter
@@ -129,7 +129,7 @@ class Session:
         self._tick_ns = 0 if NS_PER_S % hz else NS_PER_S // hz
         """Length of a tick; 0 if it is not a whole number."""
         self._limit_ns = self._quick_ns = 1 << 62
-        """Up to this time a wait needs only ticks, while `flags` has no bits."""
+        """Up to this time a wait only runs ticks, if no bit of `flags` is set."""
         self._commands = 0
         self._commands_at = -1
         self.replies = False

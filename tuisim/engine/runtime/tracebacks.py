@@ -21,9 +21,9 @@ from tuisim.engine.runtime.stack import show_whole_stacks
 
 _OUR_NAMES = ("tuisim.base.errors.", "tuisim.engine.runtime.session.")
 MAX_LINKED = 10
-"""Of a longer chain of causes, this many are shown at either end."""
+"""Number of errors that are shown at either end of a long chain of causes."""
 _MAX_CHARACTERS = 500_000
-"""Longest traceback that is sent: the host takes a longer message for a falsified one."""
+"""Longest traceback that is sent, because the host treats a longer message as falsified."""
 _HEADING = "Traceback (most recent call last):\n"
 _show = sys.excepthook
 _SYNTAX_ERRORS: tuple[type[SyntaxError], ...] = (SyntaxError, IndentationError, TabError)

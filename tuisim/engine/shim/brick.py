@@ -190,15 +190,15 @@ class BuiltBrick:
     lights: Lights
     battery: Battery
     colors: dict[str, ColorDevice] = field(default_factory=dict)
-    """Its colour sensors, by device path."""
+    """The brick's colour sensors, by the path of their device."""
     sensors: dict[str, LegoSensor] = field(default_factory=dict)
-    """By port."""
+    """The drivers of the sensors, by port."""
     motors: dict[str, Motor] = field(default_factory=dict)
-    """By port."""
+    """The simulated motors, by port."""
     tachos: dict[str, Tacho] = field(default_factory=dict)
     """The drivers of the motors, by port."""
     paths: dict[str, str] = field(default_factory=dict)
-    """Of the devices on ports, by port."""
+    """Paths of the devices on ports, by port."""
     _heard: list[LegoSensor] = field(default_factory=list)
     """All sensors: an ultrasonic sensor hears the other ones."""
 

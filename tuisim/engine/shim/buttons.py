@@ -34,7 +34,7 @@ KEY_CODES = dict(zip(BUTTONS, (103, 108, 105, 106, 28, 14), strict=True))
 KEY_BYTES = 96
 """Bytes of the kernel's set of keys, one bit for each."""
 READING_CODE = READING_CODES[BUTTONS_PORT, "pressed"]
-"""What is recorded when the program looks at the buttons."""
+"""The code that is recorded when the program reads the buttons."""
 
 
 @dataclass(frozen=True, slots=True)

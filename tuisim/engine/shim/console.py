@@ -18,7 +18,7 @@ from tuisim.engine.shim.method_globals import rebind
 from tuisim.engine.shim.session import DeviceSession
 
 BLANK = (" ", False)
-"""A cell: character, and whether it is in reverse video."""
+"""An empty cell of the console: its character, and whether it is in reverse video."""
 
 _PARTS = re.compile(r"\x1b\[\??([-\d;]*)([A-Za-z])|([^\x1b])|\x1b", re.DOTALL)
 

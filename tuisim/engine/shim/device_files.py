@@ -84,12 +84,13 @@ class SimDevice:
         self.is_opened = False
         """Whether the program uses the device."""
         self.commands = 0
-        """How many commands were written to the device: a `poll` of its file sees each as a change."""
+        """Number of commands that were written to the device: a `poll` of its file notices each as a change."""
         self.readers = dict(readers)
         self.writers = _Writers(writers, self.readers)
-        """Setters from text, by attribute; one that cannot be set raises the driver's OSError."""
+        """Functions that set an attribute from text, by attribute; for one that cannot be set they raise the driver's
+        OSError."""
         self.number_writers = _NumberWriters(number_writers or {}, self.writers)
-        """Setters from an integer, by attribute, without conversion to text."""
+        """Functions that set an attribute from an integer, by attribute, without conversion to text."""
         for name, write_number in self.number_writers.items():
             self.writers[name] = partial(_write_whole, write_number)
         if session.sim.spec.profile.attribute_write_ns:
@@ -102,7 +103,8 @@ class SimDevice:
             name: (reader, costs.get(name, common_ns), codes.get(name, -1))
             for name, reader in readers.items()
         }
-        """Value, cost in ns, and code of each attribute; -1 if it is not recorded."""
+        """For each attribute the function that reads it, the cost in ns, and the code to record; -1 if it is not
+        recorded."""
 
     def _charge(self, write: Callable[[Any], None]) -> Callable[[Any], None]:
         """Return a function that first lets the time of a write pass, then calls `write`."""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image as Picture
 
 BITS_A_PIXEL = 32
-"""As the driver reports it; the display itself is black and white."""
+"""Bits per pixel, as the driver reports them; the display itself is black and white."""
 LINE_BYTES = DISPLAY_WIDTH * BITS_A_PIXEL // 8
 WHITE = 255
 DARK_BELOW = 128

@@ -25,7 +25,7 @@ SET_POINTS = (
     "ramp_up_sp",
     "ramp_down_sp",
 )
-"""Attributes, in the order of `SetPoints`."""
+"""Attributes that are set points, in the order of `SetPoints`."""
 STOP_ACTION = len(SET_POINTS)
 SIGNED = ("speed_sp", "position_sp", "duty_cycle_sp")
 COMMANDS: dict[str, Call] = {command.value: call for command, call in COMMAND_CALLS.items()}

@@ -56,7 +56,7 @@ _BOLDER = 0.035
 """Extra width of bold strokes to each side, relative to the size."""
 _SLANT = 0.2
 _DARK_FROM = {8: 64, 10: 80, 12: 96}
-"""A pixel is dark from this grey of 255 on, by size: otherwise small letters would lose thin strokes."""
+"""Grey, of 255, from which a pixel is dark, by size: otherwise small letters would lose thin strokes."""
 _DARK_FROM_USUALLY = 120
 _BOLD_DARKER = 24
 

@@ -30,7 +30,7 @@ Around = Callable[[], AbstractContextManager[None]]
 
 
 CACHES = {"/tmp/current_platform": "ev3\n"}
-"""Files in which libraries keep what they found out about the brick: they shall not look at this computer instead."""
+"""Files in which libraries store what they found out about the brick, so that they do not examine this computer."""
 
 
 class FinishingFinder:

@@ -23,13 +23,13 @@ class DeviceSession(Protocol):
     """Above 0 while calls are free of charge: the library's own look-ups, constructors, the prelude."""
 
     wheel_registers: tuple[Callable[[], MotorRegisters], ...]
-    """Read the registers of the left and the right wheel; set with the brick."""
+    """Functions that read the registers of the left and the right wheel's motor; set when the brick is built."""
 
     held_up: str
-    """What keeps the program from going on, for the summary if a limit ends the run; empty for nothing."""
+    """What the program waits for in vain, for the summary if a limit ends the run; empty for nothing."""
 
     shown_ports: tuple[str, ...] | None
-    """As `Program.shown_ports`; None also before the program begins."""
+    """The value of `Program.shown_ports`; None also before the program begins."""
 
     pressed: frozenset[str]
     """The pressed buttons of the brick, by their names in the library."""

@@ -19,7 +19,7 @@ CHANNEL = "Playback"
 SHORTEST_TURN_NS = 100 * MS
 """Shortest period of a sound that repeats forever: the player has to start."""
 NO_PID = 1 << 22
-"""No process of this computer has this or a higher number (Linux: PID_MAX_LIMIT)."""
+"""A process id that no process of this computer has, nor a higher one (Linux: PID_MAX_LIMIT)."""
 _KILLED = -9
 _TERMINATED = -15
 
@@ -64,7 +64,11 @@ class PlayedSound:
         input: bytes | None = None,  # noqa: A002
         timeout: float | None = None,
     ) -> tuple[bytes, bytes]:
-        """Block until the sound ends, and return empty output: the player writes nothing."""
+        """Block until the sound ends, and return empty output: the player writes nothing.
+
+        Raises:
+            subprocess.TimeoutExpired: it plays for longer than `timeout` seconds.
+        """
         self.wait(timeout)
         return b"", b""
 
@@ -132,7 +136,9 @@ class Loudspeaker:
         self._session.speak(heard.text, wait_ns, heard.tones_row, heard.file)
 
     def rest(self, seconds: float) -> None:
-        """Pause silently for some seconds; replaces the `sleep` of the library's module.
+        """Add a silent tone of some seconds to the song that the library plays; outside a song, do nothing.
+
+        It replaces the `sleep` of the library's module.
 
         Raises:
             ValueError: `seconds` is negative, with the message of `sleep`.

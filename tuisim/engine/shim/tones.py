@@ -16,17 +16,17 @@ from tuisim.engine.shim.device_files import plain
 BEEP_HZ = 440.0
 BEEP_MS = 200.0
 REPEAT_PAUSE_MS = 100.0
-"""Defaults of `beep`."""
+"""Defaults of `beep`: frequency and duration of a tone, and the pause between two repetitions."""
 HIGHEST_HZ = 20_000.0
 """`beep` rejects higher frequencies."""
 MOST_REPETITIONS = 10_000
-"""Limit, because each repetition is listed."""
+"""Largest number of repetitions of a tone, because each one is listed."""
 WORDS_PER_MINUTE = 175
-"""Default of `espeak`; the library passes 130."""
+"""Default speed of `espeak`; the library gives it 130."""
 SLOWEST_WPM, FASTEST_WPM = 80, 450
-"""Limits of `espeak`."""
+"""Slowest and fastest speed of `espeak`, in words per minute."""
 NAMED_TONES = 4
-"""Tones beyond this number are only counted."""
+"""Number of tones that a description names; the others are only counted."""
 
 _TO_SPEAKER = " | /usr/bin/aplay -q"
 
@@ -36,10 +36,10 @@ class Tone:
     """One tone, or silence."""
 
     frequency_hz: float
-    """0 is silence."""
+    """Frequency in Hz; 0 is silence."""
     length_ms: float
     pause_ms: float = 0.0
-    """Silence after the tone."""
+    """Silence after the tone, in ms."""
 
     @property
     def total_ms(self) -> float:
@@ -52,14 +52,14 @@ class Heard:
     """One sound as a user hears it: a text, tones or a file, with its duration."""
 
     text: str
-    """Description; in brackets unless it is speech."""
+    """Description of the sound; in brackets unless it is speech."""
     length_ns: int
     tones: tuple[Tone, ...] = ()
-    """Empty for speech."""
+    """The tones of the sound; empty for speech."""
     file: str = ""
     """Absolute path of a sound file."""
     refused: bool = False
-    """Whether it is silent because the command or the file is invalid."""
+    """Whether nothing is heard, because the command or the file is invalid."""
 
     @property
     def tones_row(self) -> str:

@@ -16,15 +16,15 @@ class Wait(Enum):
     SLEEP = auto()
     FILES = auto()
     LOOP = auto()
-    """Nothing: a loop has run without time passing."""
+    """The program waits for nothing: a loop has run without time passing."""
     MOTOR = auto()
     INPUT = auto()
     BUTTONS = auto()
-    """The buttons in `to_press` and `to_release`."""
+    """The program waits for the buttons in `to_press` and `to_release`."""
     BUTTON_EVENT = auto()
     SOUND = auto()
     READING = auto()
-    """The value of an attribute, in `name`."""
+    """The program waits for the value of the attribute in `name`."""
     THREAD = auto()
     LOCK = auto()
 

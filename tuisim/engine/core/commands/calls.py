@@ -9,9 +9,9 @@ Values = tuple[float, ...]
 """The values of a call; NaN stands for one that is not given."""
 
 MAX_VALUES = 7
-"""No command has more values."""
+"""The largest number of values that a command has."""
 MAX_NUMBER = float(2**53)
-"""No value is larger: up to here, each whole number is one."""
+"""The largest value: up to this number, every whole number is an exact float."""
 
 
 class Call(IntEnum):
@@ -73,7 +73,7 @@ class SimulationCommand(NamedTuple):
     """The number of a motor among `Simulation.motors`, or of a drive base among `Simulation.bases`; else 0."""
     call: Call
     values: Values
-    """As many as the call takes."""
+    """The values of the command: as many as the call takes."""
 
 
 def find_index(numbers: Values, place: int, count: int) -> int:

@@ -15,9 +15,9 @@ COMMAND_CALLS: dict[Command, Call] = {
 }
 """The call of each command of the driver; its values are those of `SetPoints`."""
 STOP_ACTIONS = (*StopAction,)
-"""In the order of their numbers in commands, from 0."""
+"""The stop actions, in the order of their numbers in commands, from 0."""
 MAX_SET_POINTS = 1024
-"""So many set points are cached: a control loop gives the same ones again and again."""
+"""Number of set points that are cached, because a control loop gives the same ones again and again."""
 CONTROLS = ("speed", "hold")
 CONSTANTS = ("kp", "ki", "kd")
 

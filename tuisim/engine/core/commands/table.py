@@ -114,7 +114,7 @@ class CallSpec:
     """What a command does, on which motors it is allowed, and which values it takes."""
 
     apply: Callable[[Any, int, Values], None]
-    """Obeys the call; takes the part that the call is for, the time in ns and the values."""
+    """Executes the command; takes the part that it is for, the time in ns and the values."""
     ranges: tuple[Range, ...] = ()
     """The lowest and the highest allowed number for each value."""
     laws: frozenset[MotorLaw] = ALL_LAWS

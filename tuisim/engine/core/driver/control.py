@@ -8,7 +8,7 @@ SCALE = 10_000
 SPEED_CONSTANTS = (1000, 60, 0)
 """Proportional, integral and derivative constant of the speed control."""
 FULL = (MAX_DUTY + 1) * SCALE
-"""From here on a controller asks for more than the full duty."""
+"""From this result on, a controller demands more than the full duty."""
 _WORD = 1 << 32
 
 
@@ -47,7 +47,7 @@ class Controller:
         self.error = self.total = 0
         """The error of the last step, and the sum of all."""
         self.overloaded = False
-        """Whether the last step asked for more than the full duty."""
+        """Whether the last step demanded more than the full duty."""
 
     def compute_duty(self, value: int) -> int:
         """Return the duty of the next step, in percent; `value` is the measured position or speed."""

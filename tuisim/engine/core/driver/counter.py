@@ -6,7 +6,7 @@ from itertools import repeat
 from math import floor
 
 CLOCK_HZ = 24_000_000
-"""The clock of the time stamps."""
+"""Frequency of the clock of the time stamps, in ticks per second."""
 HALF_CLOCK_HZ = CLOCK_HZ // 2
 TICKS_PER_NS = CLOCK_HZ / 1_000_000_000
 MIN_SPAN = CLOCK_HZ * 20 // 1000
@@ -26,7 +26,7 @@ KEPT_SPAN = CLOCK_HZ * 50 // 1000
 KEPT_COUNTS = 3 * STRIDE
 """...or than these."""
 CAPACITY = 2 * MAX_DEPTH
-"""How many of the last changes are remembered."""
+"""Number of the last changes that are remembered."""
 MAX_CHANGES = 2 * CAPACITY
 FIRST_NOTE = LAST_NOTE - (CAPACITY - 1) * IDLE_LOOKS * LOOK
 
@@ -42,13 +42,13 @@ class Counter:
     def __init__(self) -> None:
         self._times: list[int] = [*range(FIRST_NOTE, LAST_NOTE + 1, IDLE_LOOKS * LOOK)]
         self._straight = 0
-        """How many of the last changes went in one direction, negative if backwards."""
+        """Number of the last changes that went in one direction, negative if backwards."""
         self._earlier = [0] * CAPACITY
         """The count after each change before those; the counts after those follow from the newest one."""
         self._depth = STRIDE
-        """Over how many changes the driver measured the last speed."""
+        """Number of changes over which the driver measured the last speed."""
         self._speed_dps: int | None = 0
-        """The speed measured at the last change; None if it must be measured anew."""
+        """The speed measured at the last change; None if it must be measured again."""
         self.count = 0
 
     def record(

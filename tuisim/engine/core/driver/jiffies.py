@@ -10,9 +10,9 @@ NS_PER_US = 1000
 STEP_US = 2000
 """The period of the driver's control."""
 LOOK_JIFFIES = 6
-"""A driver checks once in this time whether its state has changed."""
+"""Interval in jiffies at which a driver checks whether its state has changed."""
 FIRST_JIFFIES = 4096
-"""A run begins at one of so many jiffies, which the seed draws."""
+"""Number of jiffies at one of which a run begins; the seed draws it."""
 LEVEL_JIFFIES = 63
 """The finest wheel of the timers holds this many jiffies."""
 COARSER = 8

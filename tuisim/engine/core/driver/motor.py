@@ -28,7 +28,7 @@ RAMP_JIFFIES = 10
 LOOK_NS = LOOK_JIFFIES * JIFFY_US * NS_PER_US
 """Interval of the driver's checks, at which it notices a changed state."""
 RAMP_LEAD_JIFFIES = 5
-"""A ramp begins this long before its command."""
+"""How long before its command a ramp begins."""
 
 
 class Command(StrEnum):
@@ -87,7 +87,7 @@ class Ramp:
 
     start_jiffy: int
     jiffies: int
-    """How long the ramp takes."""
+    """How long the ramp takes, in jiffies."""
     start_dps: int
     end_dps: int
 
@@ -139,22 +139,22 @@ class DriverMotor(MotorDriver):
         self._last_command: Command | None = None
         self._step_ns = STEP_NS
         self._ramp_ns = self._timed_ns = self._timers_ns = NEVER_NS
-        """When a ramp's next change and the end of a timed move are due, and the earlier of the two."""
+        """When a ramp's next change and the end of a timed move are due, in ns, and the earlier of these times."""
         self._ramp = Ramp(0, 0, 0, 0)
         self._ramp_goal_dps = self._ramp_jiffy = self._ramp_setpoint = 0
         self.is_ramping = self._stops_after_ramp = self._ends_at_target = False
         self._looked_bits = 0
         self.noticed_ns = -1
-        """When a change of the state was noticed last: then who waits for it goes on."""
+        """When a change of the state was last noticed, in ns: a program that waits for the change then continues."""
         self.is_at_rest = True
-        """Whether time changes nothing: a fresh motor, or one that `settle` found so."""
+        """Whether the passing of time changes nothing: the motor is new, or `settle` has found this."""
 
     def start_clock(self, jiffies: Jiffies) -> None:
         """Set the kernel's clock, before any time has passed."""
         self._jiffies = jiffies
         self._look_ns = jiffies.begin_ns(jiffies.first + jiffies.first_look)
         self._due_ns = self._look_ns
-        """When a timer or the next look is due."""
+        """When a timer or the driver's next check is due, in ns."""
 
     @property
     def state_bits(self) -> int:

@@ -91,21 +91,21 @@ class MotorDriver:
         """Time up to which the axle has been moved."""
         self._raw = self._offset = 0
         self.position = self.speed_dps = 0
-        """As the last step of the control read them."""
+        """Position and speed, as the last step of the control read them."""
         self.duty = 0
-        """The duty last set; the bridge may still have an earlier one."""
+        """The duty that was set last, in percent; the bridge may still have an earlier one."""
         self.target = 0
-        """Where the last move to a position ends."""
+        """The position at which the last move to a position ends."""
         self._arrival_action: StopAction | None = None
         """What happens at the target; None if no move to a position is active."""
         self._is_regulated = False
-        """Whether nothing but the speed control is active, and the arrival at a target."""
+        """Whether only the speed control is active, and perhaps a target at which the move ends."""
         self._roll: Roll | None = None
         """How the axle rolls without any control; None if it does not."""
         self.ramp_down_ms = 0
         self.is_running = self.is_lowering = self.is_stalled = False
         self._still_ns: int | None = None
-        """Since when the speed of the running motor reads 0."""
+        """Time in ns since which the speed of the running motor reads 0; None if it does not."""
 
     @property
     def lowering_s(self) -> float:

@@ -19,7 +19,7 @@ from tuisim.engine.core.driver.counter import (
 from tuisim.engine.core.driver.plant import NS_PER_S, STEP_NS, Axle
 
 MIN_ROLL_DPS = 20.0
-"""A slower axle may take so long for a count that the counter notes a standstill."""
+"""Slowest speed of a roll: a slower axle may take so long for a count that the counter notes a standstill."""
 MIN_ROLL_NS = 5 * STEP_NS
 ENDLESS_NS = 1 << 62
 MAX_ERROR_S = 1e-6
@@ -68,7 +68,7 @@ class Roll:
         self._now = begin_ns * TICKS_PER_NS
         self.count = counter.count
         self.time_ns = begin_ns - 1
-        """Up to which step the axle has turned."""
+        """Time of the last step to which the axle has been turned."""
         self.end_ns = self._find_end_ns()
         """The last step of the control in which the axle is quick enough."""
 

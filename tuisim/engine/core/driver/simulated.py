@@ -44,7 +44,7 @@ MARGIN_S = 0.03
 """...until this long before it arrives at a target or a stop."""
 MAX_CRUISE_S = 1e9
 PUSH_DEG = 0.05
-"""A motor that pushes at rest would turn so far: an estimate, to find out whether an obstacle blocks it."""
+"""Estimate of how far a motor that pushes at rest would turn, to find out whether an obstacle blocks it."""
 
 
 def load_wheel(plant: PlantSpec, robot: RobotSpec) -> PlantSpec:
@@ -126,15 +126,15 @@ class SimulatedMotor(DriverMotor):
         """Speed of the encoder at the end of the last tick; it does not change within a tick."""
         self.blocked_ticks = 0
         self.is_barred = False
-        """Whether an obstacle of the world keeps it from turning on."""
+        """Whether an obstacle of the world keeps the motor from turning on."""
         self._tick = 0
-        """The last tick."""
+        """Number of the last tick that has been run."""
         self._even_ticks = 0
-        """For how many ticks the speed has been as the control wants it."""
+        """Number of ticks for which the speed has been as the control wants it."""
         self._cruise_dps = 0.0
-        """The speed at which it runs on evenly, without single steps; 0 if it does not."""
+        """The speed at which the motor runs evenly, without single steps, in degrees per second; 0 if it does not."""
         self._cruise_end_ns = 0
-        """When the even motion ends at the latest."""
+        """The latest time at which the even motion ends, in ns."""
 
     # What it shows
 

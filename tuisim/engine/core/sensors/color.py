@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 WHITE = 255
 """Maximum of a channel."""
 HUB_WHITE = 1024
-"""That of a channel of a hub's sensor."""
+"""Maximum of a channel of a hub's sensor."""
 
 
 def percent(value: int, whole: int) -> float:
@@ -54,9 +54,9 @@ class ColorReading:
     green: float
     blue: float
     is_bricks: bool = False
-    """Whether the colour is the brick's."""
+    """Whether the colour code is found as on the brick."""
     is_hubs: bool = False
-    """Whether a hub reads it, for which reflection is of all colours."""
+    """Whether the sensor is that of a hub, where reflection is computed from all channels."""
 
     @property
     def rgb(self) -> tuple[int, int, int]:
@@ -151,7 +151,7 @@ class LightRead(StrEnum):
     PERCENT = "reflected_light_intensity_pc"
     MEAN = "full_reflected_light_intensity"
     REFLECTION = "reflection"
-    """Of Pybricks."""
+    """The reading `reflection` of Pybricks."""
     COLOR = "color"
     COLOR_NAME = "color_name"
 

@@ -25,9 +25,9 @@ SEEK_RANGE_MM = 2000.0
 SEEK_ANGLE_DEG = 100.0
 """A beacon at a larger angle is not found."""
 SEEK_STEPS = 25
-"""Heading reading for a beacon at `SEEK_ANGLE_DEG`."""
+"""The heading that is read for a beacon at `SEEK_ANGLE_DEG`."""
 NOT_FOUND = (0, -128)
-"""Heading and distance readings without a beacon."""
+"""The heading and the distance that are read without a beacon."""
 
 _REM_A_NONE = 262
 _REM_A_BUTTONS = {"top_left": 16, "bottom_left": 32, "top_right": 64, "bottom_right": 128}

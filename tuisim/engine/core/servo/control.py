@@ -63,21 +63,22 @@ class Controller:
         self.trajectory: Trajectory | None = None
         """The trajectory to follow; None while the controller is passive."""
         self.timed = False
-        """Whether the motion is one at a speed, not to a position."""
+        """Whether the motion is at a speed, not to a position."""
         self.settles = False
         """Whether a motion for a time is done only when the motor has come to rest."""
         self.duty_limit: int | None = None
         """Highest power of the current move, in hundredths of a percent; None for that of the settings."""
         self._goal: Segment | None = None
-        """Where a move would have ended after which the motion goes on, with its rate."""
+        """For a motion that goes on after a move: where the move would have ended, with its rate."""
         self._paused_us = 0
-        """How long the trajectory has paused."""
+        """How long the trajectory has paused, in µs."""
         self._behind_milli = 0
         """How far a motion at a speed is behind its trajectory for good, in thousandths of a count."""
         self._stalled_us = 0
-        """For how long the motion has hardly moved at full power."""
+        """For how long the motion has hardly moved at full power, in µs."""
         self._released = 0, 0
-        """When the controller became passive, and its mean rate then: some firmware begins a motion at a mean rate."""
+        """Time at which the controller became passive, and the mean rate then, at which some firmware begins a
+        motion."""
 
     @property
     def actuation(self) -> int:

@@ -159,7 +159,7 @@ class DriveBase:
         self._goal: tuple[int, int, float] | None = None
         """Of a move that goes on at its end: 0 for a distance or 1 for a turn, where it began, and how far it goes."""
         self.uses_gyro = False
-        """Whether a gyro tells the heading, not the wheels."""
+        """Whether the heading comes from a gyro, not from the wheels."""
         self._offset = 0
         """How far the difference of the motors is ahead of the gyro, in thousandths of a count."""
         self._at_us = -1

@@ -16,7 +16,7 @@ class HubMotor:
     """The constants of one kind of motor that hubs have."""
 
     speed_dps: int
-    """The highest speed."""
+    """The highest speed, in degrees per second."""
     tolerance_deg: int
     torque_unm: int
     """The highest torque, in micro-Nm."""
@@ -62,4 +62,4 @@ MOTORS: Mapping[str, HubMotor] = {
         PlantSpec(7.52, 0.245, 0.220, 453e-6, 1e-7, 0.0264, 0.0264),
     ),
 }
-"""By `MotorSpec.kind`."""
+"""The motors of hubs, by `MotorSpec.kind`."""

@@ -119,7 +119,7 @@ class ServoMotor:
         self._course: int | None = 0
         """The motor's position in the program's direction, in half thousandths of a count; None if held back."""
         self.duty: int | None = None
-        """Its power while it runs freely, in hundredths of a percent; None if it coasts."""
+        """The motor's power while it runs freely, in hundredths of a percent; None if it coasts."""
         self._free_us = 0
         self._free_dps = 0.0
         self._jump_deg = 0.0

@@ -34,7 +34,7 @@ class ControlSettings:
     scale: int
     """Counts per unit of the program, times 65,536: the firmware computes with such fractions."""
     speed: int
-    """Highest rate."""
+    """Highest rate, in counts per second."""
     acceleration: int
     actuation: int
     """Highest power, in hundredths of a percent."""
@@ -54,9 +54,9 @@ class ControlSettings:
     stall_time_ms: int
     """...for this long is stalled."""
     speed_window_ms: int = 0
-    """The speed that decides whether a move is done is the mean over this time; 0 takes the present one."""
+    """Time over which the speed is averaged to decide whether a move is done; 0 uses the present speed."""
     torque_unm: int = 0
-    """The torque at full power, in micro-Nm; it is only told."""
+    """The torque at full power, in micro-Nm; it is shown to programs, but has no effect."""
 
     @property
     def counts_per_unit(self) -> float:
@@ -133,7 +133,7 @@ class Firmware:
     divides_units: bool
     """Whether these are fractions of limits that are rounded to units of the program."""
     speed_window_ms: int
-    """As `ControlSettings.speed_window_ms`."""
+    """The value of `ControlSettings.speed_window_ms`."""
 
 
 THIRD = (1, 3)

@@ -16,7 +16,7 @@ MS_US = 1000
 MILLI = 1000
 """Thousandths of a count in a count."""
 MAX_DURATION_US = 1_800_000_000
-"""No move takes longer than this: half an hour."""
+"""The longest duration of a move: half an hour."""
 ENDLESS_S = 60
 """What the firmware assumes an endless move to take. It has no effect on the motion."""
 
@@ -96,7 +96,7 @@ class Trajectory(NamedTuple):
     last: Segment
     end: Segment
     endless: bool = False
-    """Whether it never stops; `last` and `end` then do not count."""
+    """Whether the motion never stops; `last` and `end` then have no meaning."""
 
     @property
     def end_us(self) -> int:

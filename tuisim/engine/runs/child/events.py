@@ -29,7 +29,7 @@ from tuisim.engine.protocol import (
 from tuisim.engine.runs.run_options import RunOptions
 
 MAX_EVENT_BYTES = 8 << 20
-"""More than any event has."""
+"""Largest size of an event in bytes; no event of a real run is as large."""
 MAX_BURST_BYTES = 1 << 20
 """Bytes that one read takes at most, as many as a pipe of Linux can hold; the rest follows with the next read."""
 _CHUNK_BYTES = 1 << 16
@@ -105,7 +105,7 @@ class EventStream:
         self.at_end = False
         """Whether all writers have closed the pipe."""
         self.falsified = ""
-        """Why what has arrived does not come from the simulation; nothing is read after it. Empty if it does."""
+        """Why the events cannot come from the simulation; no more are read then. Empty if they can."""
 
     def allow(self, kinds: _Kinds) -> None:
         """Accept further classes of events from now on, because the host has requested them."""

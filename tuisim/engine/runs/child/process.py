@@ -80,7 +80,7 @@ def measure_computed_s(pid: int) -> float:
 
 
 PATIENCE_S = 0.2
-"""Longest wait for a full command pipe: a child that listens empties it at once."""
+"""Longest wait for a full command pipe: a child that receives commands empties it immediately."""
 
 BOOT = (
     "import runpy, sys; sys.path.append(sys.argv.pop(1)); "
@@ -101,7 +101,7 @@ LOOK_AGAIN_S = 0.003
 """Time for a stuck child to write its stack; the same with its waits for a processor; interval of checks."""
 
 _DIGITS = 10
-"""More digits than the number of a line has."""
+"""A number of digits that no line number has."""
 MAX_SHOWN = 500
 """Stacks contain at most this many characters of a file name."""
 
@@ -111,10 +111,10 @@ class _Starts:
 
     warm: WarmProcess | None = None
     templates: ClassVar[OrderedDict[Hashable, Template]] = OrderedDict()
-    """By what each is prepared for; the one used last comes last."""
+    """The templates, by what each is prepared for; the one that was used last comes last."""
     count = 0
     lock: ClassVar = threading.RLock()
-    """Held while any of these is looked up or changed: threads of an app start runs at the same time."""
+    """Lock for reading and changing these: threads of an app may start runs at the same time."""
 
 
 def start_warm_process() -> None:

@@ -20,7 +20,7 @@ from tuisim.engine.runs.child.isolation import is_readable
 ANSWER_S = 10.0
 """Longest wait for a server: a program may have stopped it. Then it is continued once, and given up after that."""
 LOOK_EVERY_S = 0.03
-"""How often it is looked whether a program has stopped the process that reports the end of a child."""
+"""Interval of checks whether a program has stopped the process that reports the end of a child."""
 END_S = 5.0
 """Time for a server to end when its socket is closed; then it is killed."""
 _NUMBER_BYTES = 8
@@ -226,7 +226,7 @@ class Template(ForkClient):
     ) -> None:
         super().__init__(connection, process)
         self._last = _select_varying(run)
-        """What the template knows of the last run."""
+        """The parts of the last run's `run.json` in which runs may differ."""
 
     def _select_changes(self, run: Mapping[str, Any]) -> dict[str, Any]:
         last = self._last

@@ -119,7 +119,7 @@ class Watcher:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._after_tick: dict[str, Callable[[], str]] = {}
-        """By text, a function that returns the value that matches now; empty without a match."""
+        """Functions that return the value that matches now, empty without a match, by the text of the breakpoint."""
         self._on_row: dict[str, Callable[[str], str]] = {}
 
     @property

@@ -22,7 +22,7 @@ from tuisim.engine.runtime.scheduler import Scheduler
 from tuisim.engine.runtime.session import Session
 
 MAX_BYTES = 4 << 20
-"""A longer answer is discarded."""
+"""Largest size of an answer of the copy: a longer one is discarded."""
 BLOCKED_LIMIT_S = 2.0
 """Real seconds after which a copy that uses no CPU time is killed, for instance when it waits for a lock."""
 

@@ -209,7 +209,7 @@ _UNSHOWN = (types.ModuleType, types.FunctionType, types.BuiltinFunctionType, typ
 """Types of globals that are not listed: imports and definitions, not data."""
 
 Names = list[tuple[str, str, str]]
-"""Name, type and text."""
+"""Name, type and text of each variable."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -49,7 +49,7 @@ class Tracer:
         self._tick = -1
         self._ordinal = 0
         self._uncounted_tick = -1
-        """The tick in which counting started too late."""
+        """The tick in which counting of lines started too late, so that its lines have no ordinals; -1 for none."""
         self._frame_id = 0
         self._depth = 0
         self._met: deque[tuple[int, int, int, ScheduledThread, int]] = deque(maxlen=HISTORY_LINES)

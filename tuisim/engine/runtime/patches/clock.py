@@ -24,7 +24,7 @@ EPOCH_S = 1_577_836_800
 """Every run starts on 1 January 2020, 00:00 UTC."""
 
 MAX_SLEEP_S = 9_000_000_000
-"""The real functions count nanoseconds in 63 bits."""
+"""Longest sleep, because the real functions store nanoseconds in 63 bits."""
 
 
 def patch_time(session: Session) -> None:
@@ -278,7 +278,7 @@ def finish_pandas(session: Session, module: types.ModuleType) -> None:
 
 
 LONG_NS = 5 * NS_PER_S
-"""Simulated time after which a loop without a wait is told to the user."""
+"""Simulated time after which a message tells the user of a loop without a wait."""
 
 
 def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:

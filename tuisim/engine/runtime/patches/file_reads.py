@@ -24,7 +24,7 @@ from tuisim.engine.runtime.modules import OWN_FILES, is_own
 from tuisim.engine.runtime.patches.replacement import replace
 
 MAX_KNOWN = 100_000
-"""At most so many opened files are remembered."""
+"""Number of opened files that are remembered."""
 MAX_PATH = 4096
 """Longest path in characters: no system opens a file with a longer one."""
 _SYSTEM = ("/usr", "/etc", "/proc", "/sys", "/dev")
@@ -50,7 +50,7 @@ class FileReads:
         self._program_file = ""
         self._seen: set[str] = set()
         self._made: set[str] = set()
-        """Files that the run has made itself: reading them is not noted."""
+        """Files that the run has created itself: reading them is not recorded."""
         self._before: dict[str, FileRead] = {}
         """Files to which the run has added something, as they were before."""
         self._noted = self._left_out = 0

@@ -37,7 +37,7 @@ _SELECTORS = {
 }
 """Selector classes, and the class of `select` that each is based on."""
 _ALL_EVENTS = select.POLLIN | select.POLLPRI | select.POLLOUT
-"""What `register` asks for by default."""
+"""The events that `register` requests by default."""
 _SELECTED = (select.POLLIN, select.POLLOUT, select.POLLPRI)
 """The event that each list of files waits for in `select.select`."""
 _READS = ("_accept", "recv", "recv_into", "recvfrom", "recvfrom_into", "recvmsg", "recvmsg_into")
@@ -322,7 +322,7 @@ class _Polling:
         self._waits = waits
         self._real = real
         self._polled: dict[int, tuple[OpenFile, int]] = {}
-        """The device files, and the events that are asked for, by descriptor."""
+        """The device files with the requested events, by descriptor."""
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._real, name)

@@ -27,7 +27,7 @@ class Patience:
 
     def __init__(self) -> None:
         self.until_motors_stop = 0
-        """Above 0 while the library polls only to check again whether a motor moves."""
+        """Above 0 while the library only polls to check repeatedly whether a motor moves."""
 
     def patient(self, function: Callable[..., bool]) -> Callable[..., bool]:
         """Return a wrapper of `wait_until_not_moving` that marks its polls as waits for motors to stop."""

@@ -38,7 +38,7 @@ FINISHERS: Mapping[str, Callable[[types.ModuleType], None]] = {
     "fractions": _finish_fractions,
     "threading": _finish_threading,
 }
-"""What adds the names of Python 3.5 to a module after its import, by the module's name."""
+"""Functions that add the names of Python 3.5 to a module after its import, by the module's name."""
 
 
 class _MicroPython(MicroPythonFinder):

@@ -34,7 +34,7 @@ _FLAGS = {
     "a": os.O_WRONLY | os.O_CREAT | os.O_APPEND,
 }
 _FLAGS["x"] = _FLAGS["w"] | os.O_EXCL
-"""How each mode of `open` opens a file; with + also for the other direction."""
+"""Flags with which each mode of `open` opens a file; with `+` it is also opened for the other direction."""
 
 _FALLS_BACK = ("sendfile", "copy_file_range")
 """Calls whose users, such as `shutil`, read and write instead when the kernel refuses."""

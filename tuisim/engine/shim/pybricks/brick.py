@@ -27,10 +27,10 @@ from tuisim.engine.shim.waits import Wait, waits_for
 
 LARGEST = int(MAX_NUMBER)
 POLL_US = 5000
-"""A blocking call looks for the end of its move this often, as the firmware's does."""
+"""Interval at which a blocking call checks for the end of its move, as in the firmware."""
 
 BLOCKED_POLL_US = 100_000
-"""A blocking call looks this often while something blocks a motor, to tell the user when the motor is stalled."""
+"""Interval of these checks while something blocks a motor, so that the user is told when the motor is stalled."""
 
 
 Result = TypeVar("Result")
@@ -251,7 +251,7 @@ def refused(text: str) -> RuntimeError:
 
 
 FirmwareError: Any = type("OSError", (OSError,), {"__module__": "builtins"})
-"""An OSError that is shown as on the brick: Python makes others of some numbers."""
+"""An OSError that is shown as on the brick: for some numbers, Python would create an object of a subclass."""
 
 
 def not_permitted() -> Any:

@@ -18,7 +18,7 @@ from tuisim.engine.shim.tones import Heard
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
 HUES: Mapping[int, str] = {15: "RED", 45: "ORANGE", 90: "YELLOW", 180: "GREEN", 330: "", 360: "RED"}
-"""The colour of the light for a hue, by the highest of its hues; others leave it dark."""
+"""The colour of the light for a range of hues, by the highest hue of the range; the light stays dark for others."""
 
 
 class AnimatedLight:

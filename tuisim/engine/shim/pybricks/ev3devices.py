@@ -26,7 +26,7 @@ CODES = (
     Color.WHITE,
     Color.BROWN,
 )
-"""What the colour sensor's codes stand for."""
+"""The colours that the codes of the colour sensor stand for."""
 REMOTE_BUTTONS: tuple[tuple[Button, ...], ...] = (
     (),
     (Button.LEFT_UP,),
@@ -41,7 +41,7 @@ REMOTE_BUTTONS: tuple[tuple[Button, ...], ...] = (
     (Button.LEFT_UP, Button.LEFT_DOWN),
     (Button.RIGHT_UP, Button.RIGHT_DOWN),
 )
-"""What the codes of the infrared remote stand for."""
+"""The buttons that the codes of the infrared remote control stand for."""
 KEYPAD_BITS = {
     0x10: Button.LEFT_UP,
     0x20: Button.LEFT_DOWN,
@@ -49,7 +49,7 @@ KEYPAD_BITS = {
     0x80: Button.RIGHT_DOWN,
 }
 NO_BEACON = -128
-"""The distance that the sensor tells without a beacon."""
+"""The distance that the infrared sensor reads without a beacon."""
 DEG_PER_HEADING = 3
 CHANNELS = range(1, 5)
 

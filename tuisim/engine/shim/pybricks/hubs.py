@@ -21,7 +21,7 @@ BUTTON_NAMES: Mapping[str, Button] = {
     "down": Button.DOWN,
     "backspace": Button.LEFT_UP,
 }
-"""By the name of the button in the session, in the order in which `pressed` lists them."""
+"""The brick's buttons, by their names in the session, in the order in which `pressed` lists them."""
 LIGHTS: Mapping[str, tuple[int, int]] = {
     "RED": (MAX_BRIGHTNESS, 0),
     "ORANGE": (MAX_BRIGHTNESS, MAX_BRIGHTNESS),

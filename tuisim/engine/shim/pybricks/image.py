@@ -28,7 +28,7 @@ PAINTS: Mapping[str, Rgb] = {
         *("RED", "VIOLET", "WHITE", "YELLOW"),
     )
 }
-"""By the name of the colour; the screen shows those with a dark grey as black. Other colours paint nothing."""
+"""Red, green and blue of each colour, by its name; the screen shows dark greys as black. Other colours draw nothing."""
 BLACK = PAINTS["BLACK"]
 WHITE = PAINTS["WHITE"]
 MODE = "RGB"
@@ -36,7 +36,7 @@ THE_SCREEN = "_screen_"
 """The source of an image that is the screen itself."""
 EXTENSION = ".png"
 MOST_PIXELS = 4_000_000
-"""Larger images do not fit into the memory of the brick."""
+"""Most pixels of an image: larger images do not fit into the memory of the brick."""
 
 
 def paint_of(color: Any) -> Rgb | None:

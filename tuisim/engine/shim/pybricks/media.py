@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 _SOUNDS = "/usr/share/sounds/ev3dev"
 _IMAGES = "/usr/share/images/ev3dev/mono"
 _HYPHENS = {"T_REX_ROAR": "t-rex_roar", "OKEY_DOKEY": "okey-dokey", "UH_OH": "uh-oh"}
-"""Files whose names differ from those of their constants by more than case."""
+"""Names of files that differ from the names of their constants by more than capital letters."""
 
 
 class SoundFile:

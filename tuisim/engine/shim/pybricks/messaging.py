@@ -15,7 +15,8 @@ _ALONE = "there is one brick; a server and a client in the threads of one progra
 
 CLIENT_WITHIN_MS = 5000
 POLL_MS = 10
-"""A server gives up if no thread of the program creates a client within this time; it looks this often."""
+"""A server gives up if no thread of the program creates a client within the first of these times; the second is the
+interval of its checks."""
 CONNECT_MS, SEND_MS = 500, 10
 """Estimated times of a connection and of a message, of which the library says nothing."""
 
@@ -171,7 +172,7 @@ class MailboxHandlerMixIn(Connected):
 
 
 _CONNECTION = "\0connection"
-"""What a server waits for; no mailbox has such a name."""
+"""Name of the mailbox in which a server waits for clients; no mailbox of a program has such a name."""
 
 
 class BluetoothMailboxServer(MailboxHandlerMixIn):

@@ -75,7 +75,7 @@ BUILT_IN: Mapping[str, Hardware] = {
 }
 """Built-in modules that can be imported but not used, by name."""
 INSTALLED: Mapping[str, Hardware] = {"umqtt": _NETWORK, "urequests": _NETWORK}
-"""Likewise, modules in files of the brick: a file of the program comes first."""
+"""Modules in files of the brick that can be imported but not used, by name: a file of the program comes first."""
 
 
 class MicroPythonFinder:
@@ -231,17 +231,17 @@ LANGUAGE: Mapping[str, Any] = {
     "schedule": lambda function, argument: function(argument),
     "viper": _unchanged,
 }
-"""The names of `micropython` that can be used; others tell of its memory."""
+"""The names of `micropython` that can be used; the others are about its memory, and cannot."""
 
 FREE_BYTES, USED_BYTES = 48_000_000, 200_000
-"""What a program is told of its memory, an estimate: the brick has 64 MB."""
+"""The free and the used memory that a program is told, an estimate: the brick has 64 MB."""
 
 GARBAGE: Mapping[str, Any] = {
     "mem_alloc": lambda: USED_BYTES,
     "mem_free": lambda: FREE_BYTES,
     "threshold": _without_effect,
 }
-"""What `gc` has in MicroPython only."""
+"""The names that only MicroPython's `gc` has."""
 
 
 def _ilistdir(folder: str = ".") -> Iterator[tuple[str, int, int]]:
@@ -252,7 +252,7 @@ def _ilistdir(folder: str = ".") -> Iterator[tuple[str, int, int]]:
 
 
 FILES: Mapping[str, Any] = {"ilistdir": _ilistdir}
-"""What `os` has in MicroPython only."""
+"""The names that only MicroPython's `os` has."""
 
 
 def _print_exception(error: BaseException, file: Any = None) -> None:
@@ -274,4 +274,4 @@ SYSTEM: Mapping[str, Any] = {
     ),
     "print_exception": _print_exception,
 }
-"""What `sys` has in MicroPython only."""
+"""The names that only MicroPython's `sys` has."""

@@ -32,7 +32,7 @@ FACTORS: Mapping[str, int] = {
     "torque_unm": 1000,
     **dict.fromkeys(("actuation", "feed_forward"), PERCENT),
 }
-"""How many of a controller's numbers are one of the program's, for each setting that is not in counts."""
+"""For each setting that is not in counts: the factor from the program's number to the controller's."""
 
 
 def gear_ratio(gears: Any) -> float:
@@ -124,7 +124,7 @@ class Motor(DCMotor):
     """A large or medium motor."""
 
     ENDINGS: ClassVar[Mapping[Any, Ending]] = {stop: Ending(stop.value) for stop in Stop}
-    """What it does after a move, by the library's name for it."""
+    """What the motor does after a move, by the member of the library's `Stop`."""
     log = refused_part("Motor", "log", LOGGER)
 
     def __init__(

@@ -26,7 +26,7 @@ class DriveBase(Connected):
 
     CONTROL: ClassVar[type[Control]] = Control
     current: ClassVar[DriveBase | None] = None
-    """The newest drive base: it stops the one before."""
+    """The newest drive base of the program: when it is created, it stops the one before."""
     log = refused_part("DriveBase", "log", LOGGER)
 
     def __init__(

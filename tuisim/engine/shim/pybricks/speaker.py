@@ -26,10 +26,10 @@ A4_HZ = 440.0
 OCTAVE = 4
 NOTES_AN_OCTAVE = 12
 FROM_A = {"C": -9, "D": -7, "E": -5, "F": -4, "G": -2, "A": 0, "B": 2}
-"""Semitones from A of the same octave."""
+"""Semitones of each note above A of the same octave; negative below it."""
 NOTE = re.compile(r"(?:R|([A-G])([#b]?)([2-8]))/(\d{1,2})(\.?)(_?)")
 NO_NOTES = frozenset({"Cb", "Fb", "E#", "B#"})
-"""The firmware does not know these spellings."""
+"""Spellings of notes that the firmware does not know."""
 WHOLE_NOTE_MS_AT_1 = 240_000
 """Length of a whole note at one quarter note per minute."""
 

@@ -79,7 +79,7 @@ HUB_CLASSES: Mapping[str, tuple[str, ...]] = {
     ),
     **VERSION_4,
 }
-"""Likewise, on hubs."""
+"""Classes of version 4 that can be imported but not used, by module, on hubs only."""
 
 
 def refuse_hub(hub: str, name: str) -> NoReturn:

@@ -31,13 +31,13 @@ from tuisim.engine.shim.pybricks.unsimulated import MODEL
 from tuisim.engine.shim.unsupported.modules import refused_part
 
 SPEEDS_DPS = 0, 2000
-"""The speeds of a motor that a setting may ask for, even if no motor is so fast..."""
+"""The lowest and the highest speed that a setting may give, even if no motor is so fast..."""
 ACCELERATIONS_DPS2 = 50, 20_000
-"""...and the accelerations."""
+"""...and the lowest and the highest acceleration."""
 MIN_PROFILE_DEG = 5
 """The least tolerance of the position that a program can choose for a motor."""
 MIN_RADIUS_MM = 10
-"""An arc is at least so wide."""
+"""Smallest radius of an arc."""
 
 
 class Stop(NamedEnum):

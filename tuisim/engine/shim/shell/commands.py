@@ -21,13 +21,13 @@ from tuisim.engine.shim.tones import Heard, beep_heard, file_heard, speech_heard
 from tuisim.engine.shim.unsupported.modules import refused_as
 
 Steps = Generator[int, None, int]
-"""A running line: yields the ns that each sound or pause takes, and returns its exit status."""
+"""A running line of the shell: it yields the ns that each sound or pause takes, and returns the exit status."""
 
 Sink = Callable[[bytes], None]
 """Receives the output of a program."""
 
 Outcome = bytes | Heard | int
-"""What a program does: it writes, sounds, or lets as many ns pass."""
+"""Result of a program: the bytes that it writes, a sound, or the ns that it lets pass."""
 
 PLAIN_FONT = "default8x16"
 """Default font of `setfont`."""
@@ -45,7 +45,7 @@ class Call:
     words: list[str]
     """The program and its arguments."""
     joint: str = ";"
-    """What joins it to the call before: `;`, `&&`, or `|` for speech on its way to `aplay`."""
+    """What joins the call to the one before: `;`, `&&`, or `|` for speech that `aplay` plays."""
     file: str = ""
     """The device file that its output is written to; empty for none."""
 
@@ -76,7 +76,7 @@ class Streams:
     folder: str = ""
     """Base of relative paths; empty for the program's working directory."""
     speech: Heard | None = None
-    """What `espeak --stdout` has said, on its way to `aplay`."""
+    """The speech that `espeak --stdout` has written for `aplay`; None if there is none."""
 
 
 def refuse(what: str, hint: str) -> Exception:
@@ -195,7 +195,7 @@ class Running:
         self._session = session
         self._steps = steps
         self.status: int | None = None
-        """Exit status; None while they run."""
+        """Exit status of the commands; None while they run."""
         self._due = session.now
         self._busy = False
         self.go_on()

@@ -101,7 +101,7 @@ ADDRESSES: Mapping[str, Hardware] = {
     "i2c": Hardware("an I2C sensor", _ALONE),
     "": Hardware("a device behind a multiplexer", _MUX),
 }
-"""What is behind a port, by a part of the address."""
+"""Hardware that is connected through a port, by a part of its address."""
 _BOARDS = ("spi0.1:", "serial0-0:", "ttyAMA0:", "pistorms:")
 _BOARD = Hardware(
     "a port of a BrickPi or PiStorms",

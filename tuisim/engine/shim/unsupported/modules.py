@@ -66,7 +66,7 @@ class Hardware:
     instead: str
     """What a program can do instead; may have fields of `Instead`."""
     names: tuple[str, ...] = ()
-    """What `from … import *` gives."""
+    """The names that `from … import *` imports."""
 
     def told_to(self, library: Library) -> Hardware:
         """Return this hardware with advice that uses the names of one library."""

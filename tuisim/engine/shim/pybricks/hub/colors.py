@@ -8,7 +8,7 @@ from typing import Any
 
 MAX_GREY_SATURATION = 40
 MAX_DARK_VALUE = 1
-"""Up to here a measurement is a grey, if the program tells only ideal colours apart."""
+"""Up to this saturation, or this value, a measurement is a grey, if the program distinguishes only ideal colours."""
 
 
 def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:

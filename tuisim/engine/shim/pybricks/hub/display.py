@@ -55,7 +55,7 @@ class Display(Connected):
     """The matrix of 5 × 5 lights of a hub."""
 
     current: ClassVar[Display | None] = None
-    """That of the newest hub, on which `hub_menu` shows."""
+    """The display of the newest hub, on which `hub_menu` shows its symbols."""
 
     _pixels = DARK
     _up = Side.TOP

@@ -22,7 +22,7 @@ BUTTON_NAMES: Mapping[str, Button] = {
     "enter": Button.CENTER,
     "up": Button.BLUETOOTH,
 }
-"""By the name of the button in the session."""
+"""The buttons of hubs, by their names in the session."""
 
 
 class Charger(Connected):

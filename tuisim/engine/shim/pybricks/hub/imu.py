@@ -29,7 +29,7 @@ UNCORRECTED = (
 )
 """The settings of a hub that was not calibrated."""
 MAX_CORRECTION_DEG = 15
-"""The correction of the heading differs from a whole turn by so much at most."""
+"""Largest difference between the correction of the heading and a whole turn, in degrees."""
 
 
 class Accelerometer(Connected):

@@ -16,7 +16,7 @@ _PACKED = (
     "0sisg0eie20eggg0684o88e870iiif0hha40hhlr0icci0ha4o0u48u64c4688888o8c8o00c30"
 )
 CHARACTERS = tuple(_PACKED[at : at + 5] for at in range(0, len(_PACKED), 5))
-"""From the blank to ~."""
+"""The pictures of the characters from the blank to `~`."""
 DIGITS = ["33333", "11111", "31323", "31313", "23311", "32313", "32333", "31111", "33033", "33313"]
 """The last two columns of each; as a number, `<< 3` moves them to the first two."""
 ICONS: Mapping[str, str] = {
@@ -57,4 +57,4 @@ ICONS: Mapping[str, str] = {
     "TRUE": "12k80",
     "FALSE": "ha4ah",
 }
-"""By the names of `Icon`."""
+"""The pictures of `Icon`, by their names."""

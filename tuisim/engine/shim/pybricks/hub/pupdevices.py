@@ -17,7 +17,7 @@ from tuisim.engine.shim.pybricks.version_4 import Color
 from tuisim.engine.shim.sensors import ColorDevice
 
 FARTHEST_MM = 2000
-"""What the distance sensor tells if it hears no echo, or a later one."""
+"""The distance in mm that the distance sensor reads if it hears no echo, or only one from farther away."""
 MAX_FORCE_N = 10.0
 MAX_PRESS_MM = 6.67
 
