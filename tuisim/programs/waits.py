@@ -34,7 +34,7 @@ class LoopEnd:
     read_line: int = 0
     """The line that reads it."""
     name: str = ""
-    """The variable that is compared; empty for none."""
+    """The variable that is compared; empty for none, as in an endless loop that only computes."""
     set_line: int = 0
     """The line before the loop that read this variable, if nothing in the program changes it afterwards; else 0."""
     is_silent: bool = False
@@ -158,6 +158,14 @@ def _find_ends(
     for step in loop.body if is_endless else ():
         if isinstance(step, ast.If) and any(isinstance(way, ast.Break) for way in step.body):
             yield from _find_end(loop, step.test, tree, constants, is_break=True)
+    computes = _has_any(loop, ast.Assign, ast.AugAssign)
+    if (
+        is_endless
+        and computes
+        and not _has_any(loop, ast.Call, ast.Attribute, ast.Break, ast.Return)
+    ):
+        line = loop.lineno
+        yield LoopEnd(line, line, _find_last_line(loop), "", "", read_line=line, is_silent=True)
 
 
 def _find_end(

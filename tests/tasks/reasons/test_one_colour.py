@@ -18,12 +18,13 @@ tank_drive.on_for_seconds(SpeedPercent(40), SpeedPercent(40), {seconds})
     "x, seconds, reads, seen",
     [
         (2200, 2.0, 200, None),
+        (1750, 5.0, 500, OneColor(1, "left", "white", 304)),
         (620, 1.0, 200, None),
         (1750, 2.0, 200, OneColor(1, "left", "white")),
         (1750, 2.0, 10, None),
         (1750, 0.5, 200, None),
     ],
-    ids=["off the mat", "two greys", "white", "seldom", "a short way"],
+    ids=["off the mat", "white, then off the mat", "two greys", "white", "seldom", "a short way"],
 )
 def test_one_colour_on_a_long_way(
     x: int, seconds: float, reads: int, seen: OneColor | None

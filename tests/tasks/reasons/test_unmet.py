@@ -47,6 +47,10 @@ VAIN = {
         f"{DRIVES}from time import sleep\nv = {LIGHT}\nwhile v > 20:\n    sleep(1)\n",
         "v to be 20 or less, but nothing changes it after line 4",
     ),
+    "an endless loop": (
+        f"{BANDS}x = 0\nwhile True:\n    x = x + 1\n",
+        "its endless loop to end, in which nothing waits, reads or breaks",
+    ),
     "steps that pass by": (
         f"{DRIVES}x = 0\nwhile x != 1:\n    x += 0.3\n",
         "x to be exactly 1, in a loop without a wait",

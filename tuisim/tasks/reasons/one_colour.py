@@ -38,6 +38,8 @@ class OneColor:
     sensor: str
     """The name of that sensor."""
     color: str
+    left_tick: int | None = None
+    """When the program first read it off the mat for good; None if it stayed on it."""
 
 
 def find_one_color(
@@ -57,10 +59,11 @@ def find_one_color(
     step_mm[0] = 0
     first: OneColor | None = None
     for sensor in spec.robot.color_sensors:
-        ticks = read_ticks[sensor.name]
-        ticks = ticks[is_on_mat(records, sensor)[ticks]]
+        all_ticks = read_ticks[sensor.name]
+        ticks = all_ticks[is_on_mat(records, sensor)[all_ticks]]
         if not len(ticks):
             continue
+        later = all_ticks[all_ticks > ticks[-1]]
         way_mm = step_mm[ticks[0] : ticks[-1] + 1]
         columns = measure_quiet_color(records[ticks], sensor, spec, mat).values()
         channels = np.array([*columns])
@@ -70,7 +73,8 @@ def find_one_color(
         if drives and (first is None or ticks[0] < first.tick):
             red, green, blue = (int(level) for level in channels.mean(axis=1))
             name = COLOR_NAMES[find_color_code(red, green, blue)].lower()
-            first = OneColor(int(ticks[0]), sensor.name, name)
+            left_tick = int(later[0]) if len(later) else None
+            first = OneColor(int(ticks[0]), sensor.name, name, left_tick)
     return first
 
 

@@ -232,6 +232,8 @@ def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[
         yield _explain_lost(run, unwatched.tick, unwatched.text)
     if not has_waited and (seen := find_one_color(records, run.spec, mat, read_ticks)):
         text = f"from here on the {seen.sensor} sensor saw only {seen.color}"
+        if seen.left_tick is not None:
+            text += f", until it left the mat at {seen.left_tick / run.spec.profile.tick_hz:.2f} s"
         yield _explain_lost(run, seen.tick, text)
 
 

@@ -331,6 +331,8 @@ class _Search:
 
     def _describe(self, loop: LoopEnd, stay: tuple[int, int]) -> str:
         """Return what a loop waited for, and what it read; empty if it came, or if that is not known."""
+        if loop.is_silent and not loop.name:
+            return "its endless loop to end, in which nothing waits, reads or breaks"
         if loop.set_line or loop.is_silent:
             goal = _name_goal(loop, str(loop.limit))
             why = (
