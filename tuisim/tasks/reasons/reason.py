@@ -189,10 +189,8 @@ def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]
         if contact:
             line = _find_line(run, contact.since_s)
             yield Reason(ReasonKind.BLOCKED, contact.since_s, line, f"the robot {contact.words}")
-    waits = "waited" if run.end else "waits"
     for wait in all_waits:
-        text = f"from here on it {waits}{wait.text}"
-        yield Reason(ReasonKind.BLOCKED, wait.time_s, wait.line, text)
+        yield Reason(ReasonKind.BLOCKED, wait.time_s, wait.line, f"from here on {wait.text}")
 
 
 def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:

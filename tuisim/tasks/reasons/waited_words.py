@@ -53,7 +53,7 @@ class Wait:
     """When the waiting began."""
     line: int
     text: str
-    """What it waited for and what came, to follow "waited"."""
+    """What it waited for and what came, or what it saw only, to follow "from here on"."""
     what: str
     """A sentence on the wait without its full stop, with the remedy."""
     subject: Subject | None = None
@@ -69,21 +69,26 @@ def find_waits(run: StoredRun, mat: Field | None = None) -> list[Wait]:
     all_awaited = find_awaited(run)
     is_seen = all(awaited.subject in SEEN for awaited in all_awaited)
     unmet = find_unmet(run, mat) if is_seen else None
+    verb = "it waited" if run.end else "it waits"
     waits = []
     for awaited in all_awaited:
         remedy = name_remedy(awaited, run.spec, run.live)
         if unmet and unmet.line == awaited.line:
-            waits.append(_describe_unmet(unmet, f"; {remedy}", awaited.subject))
+            waits.append(_describe_unmet(verb, unmet, f"; {remedy}", awaited.subject))
             continue
         text = describe_awaited(awaited)
         what = f"{text}: {remedy}"
-        waits.append(Wait(awaited.since_s, awaited.line, f": {text}", what, awaited.subject))
-    return waits or ([_describe_unmet(unmet)] if unmet else [])
+        # A program that steers by what it sees waits for nothing.
+        text = f"the {text}" if awaited.subject in SEEN else f"{verb}: {text}"
+        waits.append(Wait(awaited.since_s, awaited.line, text, what, awaited.subject))
+    return waits or ([_describe_unmet(verb, unmet)] if unmet else [])
 
 
-def _describe_unmet(unmet: Unmet, remedy: str = "", subject: Subject | None = None) -> Wait:
+def _describe_unmet(
+    verb: str, unmet: Unmet, remedy: str = "", subject: Subject | None = None
+) -> Wait:
     what = f"from {unmet.time_s:.2f} s on, line {unmet.line} waited for {unmet.text}{remedy}"
-    return Wait(unmet.time_s, unmet.line, f" for {unmet.text}", what, subject)
+    return Wait(unmet.time_s, unmet.line, f"{verb} for {unmet.text}", what, subject)
 
 
 def describe_wait(run: StoredRun) -> str:
