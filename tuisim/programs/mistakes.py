@@ -28,7 +28,7 @@ def find_fault(text: str) -> tuple[str, int] | None:
 
 def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
     """Yield the first line with each kind of slip, such as a stop without `()`, and what is wrong with it, in words."""
-    for find_slip in _find_uncalled_stop, _find_equal_branches, _find_idle_comparison:
+    for find_slip in _find_uncalled_method, _find_equal_branches, _find_idle_comparison:
         if slip := find_slip(tree):
             yield slip
 
@@ -57,13 +57,13 @@ def _only_makes(node: ast.AST) -> bool:
     return all(ast.unparse(name).rpartition(".")[2][:1].isupper() for name in calls)
 
 
-def _find_uncalled_stop(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line that names a method to stop motors without calling it."""
+def _find_uncalled_method(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first line that names a method without calling it."""
     for node in ast.walk(tree):
         match node:
-            case ast.Expr(value=ast.Attribute(attr="off" | "stop" | "brake" | "hold") as name):
+            case ast.Expr(value=ast.Attribute() as name):
                 words = ast.unparse(name)
-                return node.lineno, f"{words} without () does nothing: {words}() stops"
+                return node.lineno, f"{words} without () does nothing: {words}() calls it"
     return None
 
 

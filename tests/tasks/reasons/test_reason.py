@@ -106,7 +106,12 @@ CASES = {
     "not called": (
         "tank_drive.on_for_seconds(20, 20, 1)\ntank_drive.off\n",
         ReasonKind.ENDED,
-        "line 2: tank_drive.off without () does nothing: tank_drive.off() stops",
+        "line 2: tank_drive.off without () does nothing: tank_drive.off() calls it",
+    ),
+    "a move not called": (
+        "tank_drive.on_for_seconds(20, 20, 1)\ntank_turn.on_for_degrees\n",
+        ReasonKind.ENDED,
+        "line 2: tank_turn.on_for_degrees without () does nothing: tank_turn.on_for_degrees() calls",
     ),
     "both ways alike": (
         "if colorLeft.reflected_light_intensity_pc < 50:\n    tank_drive.off()\n"
