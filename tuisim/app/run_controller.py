@@ -222,7 +222,6 @@ class RunController:
             recorded_spec=recording.spec if recording else None,
             face=face,
             turns=turns,
-            scales=recording.commands.find_scales(record.tick) if record and recording else {},
             pressed=self._find_pressed(record),
             placed=recording is not None and self._moved and not past,
             past=past,

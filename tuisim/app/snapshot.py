@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import re
 from collections.abc import Mapping
 from enum import StrEnum
@@ -80,8 +79,6 @@ class Snapshot:
     turns: tuple[tuple[float, float], ...] = ()
     """Position in degrees and speed in degrees per second of each motor that does not drive the robot; empty before
     a run, and after the robot was placed following it: all motors are reset."""
-    scales: Mapping[str, float] = dataclasses.field(default_factory=dict)
-    """How many degrees the program counts for one of a motor, by port; 1 where it is missing."""
     pressed: frozenset[str] = frozenset()
     """The brick's buttons that are held down."""
 
@@ -117,13 +114,9 @@ class Snapshot:
             *(self.turns or [(0.0, 0.0)] * len(self.spec.robot.extra_motors)),
         )
         return [
-            (scale * position_deg, scale * dps)
-            for scale, (position_deg, dps) in zip(self.list_scales(), turns, strict=False)
+            (now.get_scale(number) * position_deg, now.get_scale(number) * dps)
+            for number, (position_deg, dps) in enumerate(turns)
         ]
-
-    def list_scales(self) -> list[float]:
-        """Return how many degrees the program counts for one of each motor, the wheel motors first."""
-        return [self.scales.get(motor.port, 1.0) for motor in self.spec.robot.motors]
 
     @cached_property
     def colors(self) -> Mapping[str, ColorReading]:

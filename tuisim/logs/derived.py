@@ -16,8 +16,10 @@ from tuisim.engine.core.conditions import NUMBER
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import load_run
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.engine.runs.frames import compute_dead_reckoning, find_lacking_columns
+from tuisim.engine.runs.command_events import ScaleChange
+from tuisim.engine.runs.frames import compute_dead_reckoning, compute_scales, find_lacking_columns
 from tuisim.logs.columns import is_numeric, list_numeric_columns
+from tuisim.logs.export import SCALES
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS, Functions, evaluate, find_names
 from tuisim.logs.log import Log, Series
 from tuisim.logs.signals import (
@@ -195,10 +197,18 @@ def read_spec(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
     try:
         entry = metadata["runs"][run]
         return load_run(
-            {key: value for key, value in entry.items() if key not in ("run", "program")}
+            {key: value for key, value in entry.items() if key not in ("run", "program", SCALES)}
         )
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, ConfigError):
         return None
+
+
+def _read_scale_changes(metadata: Mapping[str, Any]) -> Iterator[ScaleChange]:
+    """Yield the changes of scales of the first run of a log, without damaged ones."""
+    for change in metadata["runs"][0].get(SCALES, ()):
+        match change:
+            case int(tick), str(port), int(scale) | float(scale) if scale:
+                yield tick, port, scale
 
 
 def _apply_to_signal(base: Series, change: Any, values: Any) -> FloatArray:
@@ -241,6 +251,9 @@ def build_reckoned_series(log: Log) -> list[Series]:
         hint = "a stored run, or its telemetry exported to a file"
         raise LogError("has no metadata of the robot", hint, file=log.title)
     left, right, x_mm, y_mm, _ = (log.numbers(name) for name in NEEDED)
+    ticks = np.round(log.times_s * spec.profile.tick_hz)
+    scales = compute_scales(ticks, spec.robot, _read_scale_changes(log.metadata))
+    left, right = left / scales.get("left", 1.0), right / scales.get("right", 1.0)
     reckoned = compute_dead_reckoning(left, right, spec.world.start, spec.robot)
     columns = (
         reckoned.x_mm,

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from tuisim.logs.log import Log, LogTable
 
 LOG_FORMAT = 1
+SCALES = "scales"
+"""Key of the changes of what a program counts as a degree of a motor, in the metadata of a run."""
 _MAX_WHOLE = 2.0**53
 """Beyond it, floating-point numbers skip whole numbers."""
 
@@ -207,6 +209,8 @@ def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) 
         columns: The names of its columns.
         runs: Its runs, in the order of the `run` column.
     """
+    from tuisim.engine.runs.frames import list_scale_changes
+
     return {
         **build_table_metadata(table, columns),
         "units": {name: unit for name in columns if (unit := _find_unit(name))},
@@ -220,6 +224,7 @@ def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) 
                     **({"arguments": list(run.program.arguments)} if run.program.arguments else {}),
                 },
                 **dump_run(run.spec),
+                **({SCALES: changes} if (changes := list_scale_changes(run)) else {}),
             }
             for ordinal, run in enumerate(runs, 1)
         ],

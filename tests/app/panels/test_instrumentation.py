@@ -204,7 +204,11 @@ def test_values() -> None:
 
 
 def test_a_motor_shows_the_angle_and_the_speed_that_its_program_reads() -> None:
-    now = replace(FURTHER, scales={"outB": -1.0, "outD": 0.5}, turns=((7.0, 0.0), (90.0, -20.0)))
+    now = replace(
+        FURTHER,
+        instant=replace(FURTHER.instant, scales=(-1.0, 1.0, 1.0, 0.5)),
+        turns=((7.0, 0.0), (90.0, -20.0)),
+    )
     rows = [" ".join(row.split()) for row in text(now, 40, 20)]
     assert [row for row in rows if "tacho" in row] == [
         "LeftMotor tacho -1234 -525 °/s",
@@ -319,7 +323,7 @@ def test_what_drivers_know_has_lines_of_its_own_if_they_fit() -> None:
     assert shown[0] == "LeftMotor   tacho    1234   -304 °/s"
     assert shown[1] == "asked     0 °/s  duty  -96 %  holding   "
     assert shown[3] == "asked -1050 °/s  duty  100 %  overloaded"
-    rows = text(replace(HELD, scales={"outC": -1.0}), 40, 20)
+    rows = text(replace(HELD, instant=replace(HELD.instant, scales=(1.0, -1.0))), 40, 20)
     assert rows[2] == "RightMotor  tacho      57  -1050 °/s"
     assert rows[3].startswith("asked  1050 °/s  duty -100 %")
     assert len(shown) == 14

@@ -100,8 +100,8 @@ def _build_sensor_lines(now: Snapshot, width: int) -> list[Line]:
 def _build_tall_lines(now: Snapshot, width: int, height: int) -> list[Line]:
     """Return all lines, those of motors with the values of their drivers; none without such values, or without room."""
     drivers = [
-        build_driver_line(values, scale, width)
-        for values, scale in zip(now.instant.motors, now.list_scales(), strict=False)
+        build_driver_line(values, now.instant.get_scale(number), width)
+        for number, values in enumerate(now.instant.motors)
     ]
     if not drivers:
         return []

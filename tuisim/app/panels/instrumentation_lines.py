@@ -290,7 +290,7 @@ def _build_wheel_line(now: Snapshot, name: str, short: str, width: int) -> Line:
     number = "LR".index(short)
     position_deg, dps = now.list_turns()[number]
     if now.instant.motors:
-        dps = now.instant.motors[number][1] * now.list_scales()[number]
+        dps = now.instant.motors[number][1] * now.instant.get_scale(number)
     speed = ("stalled", WARNING) if now.stalled[number] else format_value(f"{round(dps):d}")
     return _build_motor_line(name, short, round(position_deg), speed, width)
 

@@ -63,14 +63,15 @@ MOTION: tuple[Column, ...] = (
 def measure_motion(instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
     """Return the values of the columns of `MOTION` at an instant, in their order."""
     pose = instant.pose
+    left, right = instant.get_scale(0), instant.get_scale(1)
     return (
         pose.x_mm,
         pose.y_mm,
         pose.heading_deg,
-        instant.left_position_deg,
-        instant.right_position_deg,
-        instant.left_speed_dps,
-        instant.right_speed_dps,
+        instant.left_position_deg * left,
+        instant.right_position_deg * right,
+        instant.left_speed_dps * left,
+        instant.right_speed_dps * right,
     )
 
 

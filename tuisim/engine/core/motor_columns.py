@@ -141,7 +141,9 @@ def _apply_bit(bit: int, rows: Iterable[Sequence[float]], _: RunSpec) -> list[fl
 
 def measure_motor(number: int, instant: Instant, _: RunSpec, __: Field) -> tuple[float, ...]:
     """Return the values of a motor's measured columns; `number` is its number among all motors."""
-    return tuple(map(float, instant.motors[number]))
+    asked_dps, measured_dps, duty_pc, state = instant.motors[number]
+    scale = instant.get_scale(number)
+    return asked_dps * scale, measured_dps * scale, duty_pc * scale, float(state)
 
 
 def find_motor_owners(

@@ -44,6 +44,7 @@ class Simulation(Motion):
         "on_command",
         "on_turns",
         "others",
+        "scales",
     )
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
@@ -60,6 +61,8 @@ class Simulation(Motion):
         """Called when one of the other motors deviates from its last report: until then it turns as reported."""
         self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
         self._reported_tick = 0
+        self.scales: dict[Motor, float] = {}
+        """How many degrees the program counts for one of a motor; 1 where it is missing."""
         self.bases = DriveBases()
         """The drive bases that the program has made."""
         self.on_command: CommandHook = lambda *_: None
@@ -91,7 +94,7 @@ class Simulation(Motion):
         """Return the current instant, with values rounded as the telemetry stores them.
 
         Args:
-            with_motors: Whether to include what the drivers know of the motors.
+            with_motors: Whether to include what the drivers know of the motors, and how the program counts them.
         """
         left = round_to_float32(self._left_dps)
         right = round_to_float32(self._right_dps)
@@ -113,6 +116,9 @@ class Simulation(Motion):
             profile=spec.profile,
             seed=spec.seed,
             motors=self.motor_values if with_motors else (),
+            scales=tuple(self.scales.get(motor, 1.0) for motor in self.motors)
+            if with_motors
+            else (),
         )
 
     def read_records(self, first: int) -> Iterator[tuple[float, ...]]:

@@ -38,6 +38,12 @@ class Instant:
     seed: int = 0
     motors: tuple[MotorValues, ...] = ()
     """The values of all motors' drivers; empty if the motors have no drivers, or the values were not requested."""
+    scales: tuple[float, ...] = ()
+    """How many degrees the program counts for one of each motor, empty if this was not requested."""
+
+    def get_scale(self, number: int) -> float:
+        """Return how many degrees the program counts for one of a motor; `number` is its number among all motors."""
+        return self.scales[number] if number < len(self.scales) else 1.0
 
     @property
     def gyro_deg(self) -> int:

@@ -8,12 +8,13 @@ from array import array
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import TuisimError
 from tuisim.engine.core.commands.calls import MAX_VALUES, Call
 from tuisim.engine.core.commands.robot import decode_parts
+from tuisim.engine.core.commands.table import SCALING_CALLS, compute_scale
 from tuisim.engine.core.plugged import plug_parts
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import RobotSpec, RunSpec
@@ -44,6 +45,10 @@ _STILL_DPS = 0.5
 _WORDS = re.compile(r"command(?:\s+(?P<words>.+))?", re.IGNORECASE)
 _SPEEDS = (Aim.SPEED, Aim.BASE_SPEED)
 _BASE_AIMS = (Aim.BASE_SPEED, Aim.BASE_WAY)
+
+
+ScaleChange: TypeAlias = tuple[int, str, float]
+"""From which tick on a program counts how many degrees for one of the motor on a port; before, and without, it is 1."""
 
 
 class CommandedRun(Protocol):
@@ -119,8 +124,8 @@ class CommandIndex:
         """The latest event by its code."""
         self._ends: list[int] = []
         self._newest_scales: dict[str, float] = {}
-        self._scales: list[tuple[int, str, float]] = []
-        """Tick, port and factor of each change of what a program counts as a degree of a motor, in order."""
+        self.scale_changes: list[ScaleChange] = []
+        """In order, as far as the commands have been read."""
         self.marks: list[tuple[int, Mark]] = []
         """Ticks of events, in order."""
 
@@ -136,6 +141,16 @@ class CommandIndex:
             self._take(rows)
             self._end += len(rows)
         return bool(len(rows))
+
+    def read_scale_changes(self) -> list[ScaleChange]:
+        """Read only those commands that change scales, of those recorded so far; return all `scale_changes`."""
+        import numpy as np
+
+        while len(rows := read_command_rows(self._run.folder, self._end, _PIECE)):
+            self._end += len(rows)
+            rows = rows[np.isin(rows["call"], (*SCALING_CALLS, Call.PLUG))]
+            self._take_scales(rows, rows["time_ns"], self._read_codes(rows))
+        return self.scale_changes
 
     def read_all(self) -> None:
         """Read all commands that have been recorded so far."""
@@ -172,20 +187,22 @@ class CommandIndex:
     def _take_scales(self, rows: Array, times: Array, codes: Array) -> None:
         import numpy as np
 
-        scales = np.isin(rows["call"], (Call.SET_UP, Call.SET_POLARITY))
+        scales = np.isin(rows["call"], SCALING_CALLS)
         columns = (column[scales].tolist() for column in (times, codes, rows["values"]))
-        for time_ns, code, (sign, gear_ratio, *_) in zip(*columns, strict=True):
-            if code >> 8 & 0xFF == Call.SET_POLARITY:
-                sign, gear_ratio = 1 - 2 * sign, 1.0
+        for time_ns, code, values in zip(*columns, strict=True):
+            scale = compute_scale(code >> 8 & 0xFF, values)
             motors = self._robots[code >> 16].motors
             part = code & 0xFF
-            if part >= len(motors) or abs(sign) != 1 or not 0 < gear_ratio < math.inf:
+            # The program may have damaged the record.
+            if part >= len(motors) or not scale or not math.isfinite(scale):
                 continue
             port = motors[part].port
-            factor = sign / gear_ratio
-            if self._newest_scales.get(port) != factor and len(self._scales) < _MAX_SCALES:
-                self._newest_scales[port] = factor
-                self._scales.append((self._find_tick(time_ns), port, factor))
+            if (
+                self._newest_scales.get(port, 1.0) != scale
+                and len(self.scale_changes) < _MAX_SCALES
+            ):
+                self._newest_scales[port] = scale
+                self.scale_changes.append((self._find_tick(time_ns), port, scale))
 
     def _read_codes(self, rows: Array) -> Array:
         """Return a code of robot, call and part for each command; add a robot each time that parts were plugged in."""
@@ -238,7 +255,7 @@ class CommandIndex:
 
         The number is 1 for a port that is missing in the result.
         """
-        return {port: factor for when, port, factor in self._scales if when <= tick}
+        return {port: scale for when, port, scale in self.scale_changes if when <= tick}
 
     def find_events(self, text: str = "") -> list[int]:
         """Return the numbers of the events whose part and command contain all words of a text; all if it is empty."""

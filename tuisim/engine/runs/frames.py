@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import partial
 from itertools import chain, pairwise, repeat
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from tuisim.base.data_class import dataclass
@@ -18,14 +17,16 @@ from tuisim.engine.core.conditions import ValueCondition
 from tuisim.engine.core.drive import compute_mm_per_degree
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.motor_columns import find_motor_owners
+from tuisim.engine.core.motor_columns import MOTOR_FIELDS, find_motor_owners, name_motors
 from tuisim.engine.core.pen_marks import PenMarks
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.sensors import MountedSensor, list_columns, list_mounted, list_owners
 from tuisim.engine.core.spec import NoiseSpec, RobotSpec, RunSpec
 from tuisim.engine.core.tick_record import TICK_RECORD
 from tuisim.engine.protocol import SetNoise, UserAction
+from tuisim.engine.runs.command_events import CommandedRun, CommandIndex, ScaleChange
 from tuisim.engine.runs.motor_records import read_motor_columns
+from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.records import TELEMETRY_FILE
 from tuisim.engine.runs.run_folder import StoredRun, find_noise
 from tuisim.engine.runs.samples import list_samples
@@ -89,14 +90,11 @@ FieldAt: TypeAlias = Callable[[tuple[float, ...]], Field]
 """Returns the mat as the sensors see it in the tick of a record, which has the fields of `TICK_RECORD`."""
 
 
-class RecordedRun(Protocol):
+class RecordedRun(CommandedRun, Protocol):
     """A run with a folder, either running or stored."""
 
     @property
     def spec(self) -> RunSpec: ...
-
-    @property
-    def folder(self) -> Path: ...
 
 
 _POSE = ("x_mm", "y_mm", "heading_deg")
@@ -107,6 +105,9 @@ SAMPLE_COLUMNS = ("index", "variable", "value", "time", "run", *_POSE, LINE)
 
 MOTION_COLUMNS = list_measured_names(MOTION)
 """Columns of the telemetry frame that are copied from the recording."""
+
+_TURN_FIELDS = ("position_deg", "speed_dps", *(name for name, _ in MOTOR_FIELDS[:3]))
+"""Columns of a motor whose sign and size depend on how the program counts its degrees."""
 
 _MOST = 1e15
 """Values from this size on, in mm or degrees, are damage: no motion gets this far."""
@@ -249,6 +250,11 @@ def compute_column_values(
     ]
     if motors:
         measured |= read_motor_columns(run.folder, spec.robot, records["tick"])
+    changes = list_scale_changes(run)
+    for prefix, scales in compute_scales(records["tick"], spec.robot, changes).items():
+        for name in measured.keys() & {f"{prefix}_{field}" for field in _TURN_FIELDS}:
+            # The sum is never -0.0.
+            measured[name] = measured[name] * scales + 0.0
     arrays = {}
     for columns in (MOTION, *(mount.columns for mount in sensors), *motors):
         for column in columns:
@@ -259,6 +265,37 @@ def compute_column_values(
             else:
                 arrays[column.name] = _compute_column(column.of, columns, measured, spec)
     return arrays
+
+
+def list_scale_changes(run: CommandedRun) -> list[ScaleChange]:
+    """Return all changes of what the program of a run counts as a degree of a motor."""
+    if isinstance(run, Recording):
+        return run.commands.scale_changes
+    return CommandIndex(run).read_scale_changes()
+
+
+def compute_scales(
+    ticks: Array, robot: RobotSpec, changes: Iterable[ScaleChange]
+) -> dict[str, FloatArray]:
+    """Return how many degrees the program counts for one of a motor at some ticks, by the prefix of its columns.
+
+    Motors without a change are missing.
+
+    Args:
+        ticks: Numbers of ticks, shape (n,).
+        robot: The robot.
+        changes: As of `list_scale_changes`.
+    """
+    import numpy as np
+
+    names = {
+        motor.port: name for motor, name in zip(robot.motors, name_motors(robot), strict=False)
+    }
+    scales: dict[str, FloatArray] = {}
+    for tick, port, scale in changes:
+        if port in names:
+            scales.setdefault(names[port], np.ones(len(ticks)))[ticks >= tick] = scale
+    return scales
 
 
 def _compute_column(

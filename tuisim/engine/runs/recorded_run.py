@@ -136,11 +136,16 @@ class Recording:
         return self._marks.at(tick)
 
     def instant(self, record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
-        """Return the instant of a record, with the values of the motors' drivers unless those are damaged."""
+        """Return the instant of a record, with motors' scales, and their drivers' values unless these are damaged."""
         motors: tuple[MotorValues, ...] = ()
         with suppress(LogError):
             motors = read_motor_values(self.folder, self.spec, record.tick)
-        return replace(record.build_instant(spec, noise), motors=motors)
+        scales = self.commands.find_scales(record.tick)
+        return replace(
+            record.build_instant(spec, noise),
+            motors=motors,
+            scales=tuple(scales.get(motor.port, 1.0) for motor in self.spec.robot.motors),
+        )
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
         """Return for the left and the right wheel's motor whether it was running but did not turn.

@@ -224,9 +224,7 @@ class _Search:
         # Imported on demand: few runs wait for a motor.
         from tuisim.engine.runs.command_events import CommandIndex
 
-        index = CommandIndex(self._run)
-        index.read_all()
-        return index.find_scales(len(self._records))
+        return {port: scale for _, port, scale in CommandIndex(self._run).read_scale_changes()}
 
     @cached_property
     def _field(self) -> Field:

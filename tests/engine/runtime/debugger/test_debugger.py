@@ -122,6 +122,27 @@ def test_running_to_a_line_and_ticks_from_there(debug: Callable[..., Driver]) ->
     assert driver.do(StepLine()).line == 5
 
 
+INVERSED = """\
+import time
+from ev3dev2.motor import LargeMotor, OUTPUT_B
+motor = LargeMotor(OUTPUT_B)
+motor.polarity = "inversed"
+motor.on_for_degrees(30, 500)
+"""
+
+
+@pytest.mark.parametrize("profile", ["robolab", "ev3"])
+def test_breakpoints_use_the_sign_that_the_program_reads(
+    debug: Callable[..., Driver], profile: str
+) -> None:
+    names = ["left_position_deg > 90", "left_speed_dps < 0"]
+    names += ["left_measured_dps < 0"] if profile == "ev3" else []
+    driver = debug(INVERSED, breaks=(*names[::-1],), profile=profile, prelude="none")
+    held = driver.paused()
+    assert held.detail == names[0]
+    assert driver.look().waiting == "waits for motor outB to reach 500°"
+
+
 BREAKS = {
     "left_color changes": "Black",
     "time 0.25": "0.25",

@@ -83,6 +83,18 @@ def set_polarity(_motor: Any, _time_ns: int, _values: Values) -> None:
     """
 
 
+SCALING_CALLS = (Call.SET_UP, Call.SET_POLARITY)
+"""These change how many degrees the program counts for one of a motor."""
+
+
+def compute_scale(call: int, values: Sequence[float]) -> float:
+    """Return how many degrees a program counts for one of a motor after one of `SCALING_CALLS`; 0 if it is damaged."""
+    if call == Call.SET_POLARITY:
+        return 1 - 2 * values[0]
+    sign, gear_ratio, *_ = values
+    return sign / gear_ratio if gear_ratio > 0 else 0.0
+
+
 Range = tuple[float, float]
 
 ALL_LAWS = frozenset(MotorLaw)
@@ -213,3 +225,5 @@ def obey(sim: Simulation, time_ns: int, part: int, call: Call, *values: float) -
     sim.on_command(time_ns, part, call, values)
     spec = CALLS[call]
     spec.apply(list_parts(sim, spec.target)[part], time_ns, values)
+    if call in SCALING_CALLS:
+        sim.scales[sim.motors[part]] = compute_scale(call, values)

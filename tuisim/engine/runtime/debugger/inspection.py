@@ -193,7 +193,8 @@ def _list_paths(owner: object) -> list[str]:
 
 def _describe_goal(session: Session, port: str, motor: Motor) -> str:
     if motor.mode == POSITION:
-        return f"motor {port} to reach {motor.goal_deg:.0f}°"
+        goal_deg = round(motor.goal_deg * session.sim.scales.get(motor, 1.0))
+        return f"motor {port} to reach {goal_deg}°"
     if motor.mode == TIMED:
         return f"motor {port} to stop at {session.sim.compute_due_ns(math.ceil(motor.end_tick)) / NS_PER_S:.2f} s"
     return f"motor {port} to stop"
