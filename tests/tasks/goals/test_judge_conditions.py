@@ -76,7 +76,7 @@ PLACES = {
         "reach = { heading_deg = 0 }\nafter = 1", (turn(450),), "met", 3.95
     ),
     "reach other heading": Case(
-        "reach = { heading_deg = 180 }", (turn(90),), "missed", 1.0, "turned 90.0° off"
+        "reach = { heading_deg = 180 }", (turn(90),), "missed", 1.0, "turned 90.0° away from 180°"
     ),
     "reach and pass by at the end": Case(
         "reach = { x_mm = 800, at_end = true }",

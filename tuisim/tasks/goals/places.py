@@ -57,9 +57,7 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
         text = f"At the end the robot was {words}." if span.over else f"The robot is {words}."
         return Finding(None, "" if there[-1] else text, find_motion_line(records, len(records) - 1))
     if not there.any():
-        nearest = int(
-            np.argmin(np.maximum(away_mm / condition.within_mm, turned_deg / condition.within_deg))
-        )
+        nearest = int(np.argmin(away_mm / condition.within_mm + turned_deg / condition.within_deg))
         words = _describe_miss(condition, records[nearest], away_mm[nearest], turned_deg[nearest])
         text = f"At its nearest, at {evidence.time_words(first + nearest)}, the robot was {words}."
         return Finding(None, text, find_motion_line(records, nearest))
@@ -117,7 +115,7 @@ def _describe_miss(
             f"{format_distance(away_mm)} {_describe_side(condition, record)} {_place_words(condition)}"
         )
     if condition.heading_deg is not None:
-        words.append(f"turned {turned_deg:.1f}° off")
+        words.append(f"turned {turned_deg:.1f}° away from {condition.heading_deg:g}°")
     return " and ".join(words)
 
 
