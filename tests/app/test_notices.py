@@ -54,10 +54,12 @@ async def test_an_answer_lies_where_the_borders_of_upper_and_lower_panels_meet()
         app.notify(LONG, timeout=inf)
         await wait_for_region(0, 9, 60, 2)
         app.notify("short", timeout=inf)
-        await wait_for_region(0, 9, 60, 1)
+        await wait_for_region(0, 19, 60, 1)
+        app.notify(LONG, timeout=inf)
+        await wait_for_region(0, 9, 60, 2)
         app.query(".panel").first().display = False
         app.notices.follow_panels()
-        await wait_for_region(0, 19, 60, 1)
+        await wait_for_region(0, 18, 60, 2)
 
 
 async def test_a_notice_that_is_gone_before_the_panels_are_drawn_is_not_placed() -> None:

@@ -17,6 +17,8 @@ from tuisim.terminal.textual_internals import NOTICE_LAYER, can_show_notices, is
 
 CHARACTERS_A_SECOND = 25
 """How fast a notice is read."""
+_EDGES = 3
+"""Columns of the row beside its text."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +37,10 @@ class Notice:
 
 
 class NoticeRow(Static):
-    """A notice on borders of panels, of which two rows meet between upper and lower panels: it covers nothing else.
+    """A notice on borders of panels, so that it covers nothing else.
 
-    It lies on the lowest border that goes across the whole screen. Below the panels there is one row of borders only.
+    One of a row lies below the panels; a longer one between upper and lower panels, where two rows of borders meet
+    across the whole screen.
 
     Args:
         notice: What it shows.
@@ -65,7 +68,8 @@ class NoticeRow(Static):
         super().__init__(text, markup=False, classes=f"-{notice.severity}")
         self.notice = notice
         self._ended = ended
-        reading_s = len(text) / CHARACTERS_A_SECOND
+        self._columns = len(text)
+        reading_s = self._columns / CHARACTERS_A_SECOND
         self._read_s = time.monotonic() + reading_s
         self._shown_s = max(reading_s, notice.timeout_s)
 
@@ -83,15 +87,15 @@ class NoticeRow(Static):
         self.call_after_refresh(self._leave_dialog)
 
     def place(self) -> None:
-        """Move to the lowest border between panels, unless it was removed before they were drawn."""
+        """Move to its borders, unless it was removed before the panels were drawn."""
         if not self.is_attached:
             return
+        screen_columns = self.screen.size.width
         widths: Counter[int] = Counter()
-        for panel in self.screen.query(".panel"):
-            widths[panel.region.y] += panel.region.width
-        lowest = max(
-            (y for y, width in widths.items() if width == self.screen.size.width), default=0
-        )
+        if self._columns > screen_columns - _EDGES:
+            for panel in self.screen.query(".panel"):
+                widths[panel.region.y] += panel.region.width
+        lowest = max((y for y, width in widths.items() if width == screen_columns), default=0)
         self.styles.dock = "top" if lowest else "bottom"
         self.styles.margin = (lowest - 1, 0, 0, 0) if lowest else (0, 0, 1, 0)
 
