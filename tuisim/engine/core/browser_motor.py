@@ -1,9 +1,8 @@
 """Motors of the browser simulator nbev3devsim, reproduced to the last bit.
 
-A motor has a speed register that follows its set point in every tick, even while the motor
-is stopped, and a command that decides how the register is used. In a move to a
-position the encoder counts each step twice, so the wheel covers half the distance, and it
-continues to count after the end. Set points are live: a written value takes effect at once.
+A motor has a speed register that follows its set point in every tick, even while the motor is stopped, and a command
+that decides how the register is used. In a move to a position the encoder counts each step twice, so the wheel covers
+half the distance, and it continues to count after the end. A set point that a program writes takes effect immediately.
 """
 
 from __future__ import annotations

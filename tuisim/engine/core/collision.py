@@ -1,13 +1,12 @@
 """Collisions: how far the robot's outline can move before it meets a wall or an obstacle.
 
-The motion of a tick is checked in steps so short that no obstacle can be skipped, and the
-point of contact is found by bisection, so the outline never enters an obstacle by more
-than `TOUCH_MM`.
+The motion of a tick is checked in steps so short that no obstacle can be skipped, and the point of contact is found by
+bisection, so the outline never enters an obstacle by more than `TOUCH_MM`.
 
-A robot may be placed where it overlaps an obstacle. From there it never gets deeper into it:
-straight on or back it only drives away from it, and a turn pushes it aside by as much as the
-turn would lead it deeper. A turn on the spot or around one wheel also pushes aside a robot that
-meets an obstacle during the turn, because its corner slides along it.
+A robot may be placed where it overlaps an obstacle. From there it never gets deeper into it: on a straight way it can
+only drive away from it, and a turn pushes it aside by as much as the turn would lead it deeper. A turn on the spot or
+around one wheel also pushes aside a robot that meets an obstacle during the turn, because its corner slides along the
+obstacle.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""The columns of a recording: every value that a run has over time, by its name, and how it is measured.
+"""The columns of a recording: every value that a run has over time, with its name and how it is measured.
 
-Telemetry, chart, breakpoints, go to, goals and the guide take the names and the values from here. To add a value,
-add a line to `MOTION`, or to `columns` of a kind of sensor.
+Telemetry, chart, breakpoints, the command to go to an instant, goals and the guide use the names and the values that
+are defined here. To add a value, add a line to `MOTION`, or to `columns` of a kind of sensor.
 """
 
 from __future__ import annotations

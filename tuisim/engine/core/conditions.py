@@ -1,6 +1,6 @@
 """Conditions on values over time: `left_red_pc < 10`, `left_color changes`, `sample Colour > 5`, `print matches black`.
 
-Breakpoints, go to, events, filters and goals read them here, and ask here whether they are true.
+Breakpoints, events, filters, goals and the command to go to an instant use them: they are parsed and evaluated here.
 """
 
 from __future__ import annotations

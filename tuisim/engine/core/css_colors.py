@@ -1,4 +1,4 @@
-"""CSS colour names, without an image library."""
+"""The CSS colour names with their colours, read without an image library."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
-"""Drift: why the robot is not where its encoders say, and what else its sensors get wrong; see
-`engine.core.drift_spec`.
+"""Drift: why the robot is not where its encoders say, and which other errors its sensors have.
+
+The sizes of these errors are in `engine.core.drift_spec`.
 
 Encoders count the turns of the motors. This module changes only what the turns do to the robot, so every motor law and
 every drive keeps its own arithmetic: each tick's turns are replaced by those that would move a robot of the nominal

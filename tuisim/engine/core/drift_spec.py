@@ -1,4 +1,4 @@
-"""The sizes of all that drifts: 0 by default, each with a typical size and where that comes from."""
+"""The sizes of all drift errors: 0 by default, each with a typical size and the source of that size."""
 
 from __future__ import annotations
 

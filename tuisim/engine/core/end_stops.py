@@ -1,6 +1,6 @@
-"""End stops of motors that drive no wheel: such a motor turns from one to the other, and no further.
+"""End stops of motors that drive no wheel: such a motor turns between its two stops.
 
-Where a motor is between its stops counts from its position at the start, whatever position the program sets: a
+Where a motor is between its stops is measured from its position at the start, whatever position the program sets: a
 program that homes an arm sets the motor's position to 0 at a stop.
 """
 

@@ -1,8 +1,7 @@
-"""Motion: advances motors and robot, by the motor law of the profile, in whole ticks, each of which is recorded.
+"""Motion: advances motors and robot in whole ticks by the profile's motor law, and records each tick.
 
-`advance` gives the same state to the last bit however the ticks are divided among
-calls: stretches with nothing but motion run in tight loops, and every loop does the same
-floating-point operations in the same order as a single tick.
+`advance` gives the same state to the last bit however the ticks are divided among calls: ticks in which only the motion
+goes on run in fast loops, and every loop does the same floating-point operations in the same order as a single tick.
 """
 
 from __future__ import annotations

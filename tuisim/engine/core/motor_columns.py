@@ -1,6 +1,6 @@
-"""What the driver knows of each motor at the end of a tick: its record, and its columns.
+"""The values of each motor's driver at the end of a tick: their record, and their columns.
 
-Only profiles with the driver's motors have them: see `Motion.motor_values`.
+Only motors with a driver have them: see `Motion.motor_values`.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """The interface of a motor to the rest of the simulation, for any motor law.
 
-Motors are mutable and updated every tick: this is the hottest data of the simulation.
-Angles are in degrees of the wheel (one encoder count is one degree), speeds in degrees per
-second.
+Motors are mutable objects that change in every tick: most of a simulation's time is spent in them. Angles are in
+degrees of the wheel (one encoder count is one degree), speeds in degrees per second.
 """
 
 from __future__ import annotations

@@ -2,10 +2,10 @@
 
 The stream is SHAKE-128, the same on every machine and Python version.
 
-The light noise adds an error to each pixel under a sensor, evenly distributed and clamped to the range of a pixel. What
-a sensor reads is the mean of many pixels, so its error is drawn at once, from a normal distribution with the mean
-and the spread that the errors of these pixels have together. The pixels themselves are drawn when somebody looks at
-them, and so that their mean is the value that was read.
+The light noise adds an error to each pixel under a sensor, evenly distributed and clamped to the range of a pixel. A
+sensor reads the mean of many pixels, so only the error of the mean is drawn, from a normal distribution with the mean
+and the spread that the errors of these pixels have together. The errors of the pixels themselves are drawn only when
+somebody looks at the pixels, in such a way that their mean is the value that was read.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the pen has drawn on the mat, for worlds in which sensors see it."""
+"""The marks that the pen has drawn on the mat, for worlds in which sensors see them."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Parts that were plugged in while a program ran, and the robot with them.
+"""Parts that are plugged in while a program runs, and the robot with these parts.
 
-A run begins with its first robot. A part that is plugged in takes the place of what was on its port; motors are added
-behind all others, so that a motor keeps its number.
+A run begins with its first robot. A part that is plugged in replaces the part that was on its port. New motors are
+added after all others, so that a motor keeps its number.
 """
 
 from __future__ import annotations

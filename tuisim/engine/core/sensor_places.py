@@ -1,4 +1,4 @@
-"""Where on a robot a further sensor sits, by the side that it is on, and what it is called."""
+"""Where on a robot an additional sensor is, given the side of the robot, and what name it gets."""
 
 from __future__ import annotations
 

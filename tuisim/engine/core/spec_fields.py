@@ -1,4 +1,4 @@
-"""Specs: frozen data whose fields are values, each made by the function here for its kind."""
+"""Specs: frozen data whose fields are values; this module has a function for each kind of field."""
 
 from __future__ import annotations
 

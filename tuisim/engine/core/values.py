@@ -1,7 +1,7 @@
-"""Values of a run, each said once: what it may be, its unit, its help, the options that set it.
+"""The values of a run: for each, what is allowed, its unit, its help, and the options that set it, defined once.
 
 The specs of a run consist of them, see `tuisim.engine.core.spec_fields`. Files, options, magic lines, forms and tables
-are views of them: `tuisim.engine.core.tree` finds a value by its path.
+use these definitions: `tuisim.engine.core.tree` finds a value by its path.
 
 To add a kind of value: add its class, and its function to `tuisim.engine.core.spec_fields`.
 """

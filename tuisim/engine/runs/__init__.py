@@ -1,1 +1,1 @@
-"""Runs: process, recording, store, frames. Does not import Textual."""
+"""Runs: their process, recording, store and data frames. It does not import Textual."""

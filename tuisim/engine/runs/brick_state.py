@@ -1,8 +1,8 @@
 """The visible state of the brick, as rows of the output: LEDs, display, text screen, sounds, extra motors.
 
-Pure Python: the child imports it.
+Pure Python, because the child imports it.
 
-Each row holds the complete state of its kind, so that a viewer needs only the newest row of each stream.
+Each row contains the complete state of its kind, so that a viewer needs only the newest row of each stream.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The catalogue of runs: one SQLite file beside the run folders.
 
-It holds only data that the folders hold, too, so that a missing, damaged or foreign file
-is rebuilt from them. Each operation opens it again: several processes may use it at once.
+It contains only data that the folders contain, too, so that a missing, damaged or foreign file is rebuilt from them.
+Each operation opens the file again, because several processes may use it at the same time.
 """
 
 from __future__ import annotations

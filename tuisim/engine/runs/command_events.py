@@ -1,4 +1,4 @@
-"""The commands of a run as events: what the program asked of a part, how often, and what came of it."""
+"""The commands of a run as events: what a part was commanded to do, how often, and with which result."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""What a program changed in the simulation, and when: `COMMANDS_FILE` of a run folder, and its writer and reader.
+"""The record of the commands that a program gave, with their times: the file `COMMANDS_FILE`, its writer and reader.
 
-Written in pure Python: the child imports it. The file is one of `records`: a header, then one record of 72 bytes for
-each command.
+Written in pure Python, because the child imports it. The format of the file is that of `records`: a header, then one
+record of 72 bytes for each command.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a program asked of the simulation, in words: each call with its values and their units."""
+"""The commands of a program in words, with their values and units."""
 
 from __future__ import annotations
 

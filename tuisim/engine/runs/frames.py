@@ -1,7 +1,7 @@
 """Recordings as columns and pandas frames: printed samples, and telemetry of every tick with readings of every sensor.
 
-The readings are computed from the telemetry. They equal those of `engine.core.sensors` bit by bit: what `sensor_arrays`
-can is measured at all ticks at once, everything else tick by tick with the same functions.
+The readings are computed from the telemetry. They equal those of `engine.core.sensors` bit by bit: `sensor_arrays`
+measures at all ticks together where it can, and everything else is measured tick by tick with the same functions.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""What the drivers knew of the motors at each tick: `MOTORS_FILE` of a run folder, and its writer and reader.
+"""The record of the values of the motors' drivers at each tick: the file `MOTORS_FILE`, its writer and reader.
 
-Written in pure Python: the child imports it. The file is one of `records`: a header, then for each tick one
-`MOTOR_RECORD` of each motor, in the order of `name_motors`.
+Written in pure Python, because the child imports it. The format of the file is that of `records`: a header, then for
+each tick one `MOTOR_RECORD` of each motor, in the order of `name_motors`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Where a wall or an obstacle pushed a turning robot aside, found in the recording alone.
+"""Finds where a wall or an obstacle pushed a turning robot aside, from the recording alone.
 
-A robot that turns on the spot or around one wheel slides along what its corner meets: its wheels turn freely, and its
-place changes by more than they explain.
+A robot that turns on the spot or around one wheel slides along an obstacle that its corner meets: its wheels turn
+freely, and it moves further than they explain.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Files in memory of a fixed size that stand for a program's descriptors 1 and 2."""
+"""Files in memory of a fixed size that replace a program's descriptors 1 and 2."""
 
 from __future__ import annotations
 

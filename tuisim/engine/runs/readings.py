@@ -1,8 +1,8 @@
-"""What a program read, and when: `READINGS_FILE` of a run folder, and its writer and reader.
+"""The record of the readings of a program, with their times: the file `READINGS_FILE`, its writer and reader.
 
-Written in pure Python: the child imports it. The file is one of `records`: a header, then one record of 16 bytes for
-each reading of a sensor, an encoder or buttons, and for each vain look at a socket or for a gamepad. The
-value follows from telemetry, world and user actions.
+Written in pure Python, because the child imports it. The format of the file is that of `records`: a header, then one
+record of 16 bytes for each reading of a sensor, an encoder or buttons, and for each vain check of a socket or search
+for a gamepad. The value follows from telemetry, world and user actions.
 """
 
 from __future__ import annotations

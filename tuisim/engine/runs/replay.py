@@ -1,6 +1,7 @@
-"""Works a run out again: its world, its user and the commands of its program make the same ticks, to the last bit.
+"""Simulates a run again: its world, its user and the commands of its program give the same ticks, to the last bit.
 
-No program can give a command out of the range of the motors' law, or one before another that it has given.
+No program can give a command with values that its motors do not allow, or a command with an earlier time than the one
+before.
 """
 
 from __future__ import annotations

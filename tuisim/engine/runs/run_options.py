@@ -1,6 +1,6 @@
-"""How a run is executed, as the host asks for it and the child obeys.
+"""The options of a run: how the child executes it, as the host requests.
 
-Pure Python: the child imports it.
+Pure Python, because the child imports it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What sensors measure at many ticks at once, equal to their functions in `engine.core.sensors` to the last bit.
+"""Readings of sensors at many ticks together, equal to those of `engine.core.sensors` to the last bit.
 
 To add a kind of sensor: a function of its spec, the records, the run and the mat, and a line in `_MEASURES`. A kind
 without one is measured tick by tick.

@@ -1,6 +1,6 @@
-"""The side files of a run folder: lock, user actions, place of a stop, own modules, and files that were read.
+"""The side files of a run folder: lock, user actions, tick of a stop, own modules, and files that were read.
 
-Pure Python: the child, which writes them, imports it.
+Pure Python, because the child imports it and writes them.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Where something solid stopped the robot: since when it stood there, and how long its wheels pushed.
+"""Finds where something solid stopped the robot, since when it stood there, and how long its wheels pushed.
 
-It is found in the recording alone: a motor runs, no wheel turns, and the robot touches a wall or an obstacle. So is
-whether it left the field, where nothing stops it.
+It is found from the recording alone: a motor runs, no wheel turns, and the robot touches a wall or an obstacle. So is
+whether the robot left the field in a world where nothing stops it.
 """
 
 from __future__ import annotations

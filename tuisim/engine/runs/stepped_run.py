@@ -1,4 +1,4 @@
-"""A run that a script moves on step by step, without a program."""
+"""A run that a script advances step by step, without a program."""
 
 from __future__ import annotations
 

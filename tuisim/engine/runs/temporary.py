@@ -1,4 +1,4 @@
-"""Runs that are not listed: their recordings lie in temporary files until they have been evaluated."""
+"""Runs that are not listed: their recordings are in temporary files until they have been evaluated."""
 
 from __future__ import annotations
 

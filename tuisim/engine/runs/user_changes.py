@@ -1,4 +1,4 @@
-"""What a user changes in the simulation. Pure Python: the child imports it."""
+"""The effects of user actions on the simulation. Pure Python, because the child imports it."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
 """Readers of a run folder's two binary files, also while the program runs.
 
-A view never changes the file and never blocks. A missing file reads as empty; of a file
-that has grown the rest is read. Data that has been read stays valid, whatever happens to the file.
+A view never changes the file and never blocks. A missing file reads as empty; of a file that has grown the rest is
+read. Data that has been read stays valid, even if the file changes.
 
-The program could write to these files as well. So a view of a run that is running reads only
-as far as they are what the simulation writes: ticks in order, finite numbers, whole rows.
+The program could write to these files as well. So a view of a run that is running reads only data that the simulation
+can have written: ticks in order, finite numbers, complete rows.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The child's ends of the pipes: commands in, events out."""
+"""The child's ends of the pipes: commands arrive, and events are sent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether the program would catch an error: it then tries what there is, and goes on without it."""
+"""Finds out whether the program would catch an error: then it only tests what there is, and continues without it."""
 
 from __future__ import annotations
 

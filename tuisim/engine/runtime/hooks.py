@@ -1,4 +1,4 @@
-"""How the program's errors are told: where Python tells them, through the hooks that a program may replace."""
+"""Shows the program's errors where Python shows them, through the hooks that a program may replace."""
 
 from __future__ import annotations
 

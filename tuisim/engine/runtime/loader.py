@@ -1,4 +1,4 @@
-"""From source text to code: loop hooks, prelude, and names of the prelude without a part on this robot."""
+"""Compiles programs: adds loop hooks, and replaces names of the prelude whose part this robot does not have."""
 
 from __future__ import annotations
 import __future__

@@ -1,8 +1,8 @@
-"""What is written below Python's streams: by `os.write(1, ...)`, by a file opened on 1 or 2, by C, by a forked copy.
+"""Output that bypasses Python's streams: of `os.write(1, …)`, of files opened on 1 or 2, of C code, of a forked copy.
 
-Descriptors 1 and 2 are files in memory of a fixed size. So a write never blocks, an endless one comes to an end, and
-nothing outside this process sees it. What is in them is taken at fixed instants of the program, which makes a run
-with such output as reproducible as any other.
+Descriptors 1 and 2 are files in memory of a fixed size. So a write never blocks, an endless one comes to an end, and no
+output leaves this process. Their contents are read at fixed instants of the program, which makes a run with such output
+as reproducible as any other.
 """
 
 from __future__ import annotations

@@ -1,9 +1,8 @@
 """Cooperative threads: one thread runs at a time, and the scheduler switches only when it waits.
 
-A thread that waits for simulated time, a lock or a motor lets the next ready thread run;
-if none is ready, the clock advances to the earliest time that a thread waits for. So
-the order in which threads run depends on the program alone. If no thread is ready and
-none waits for a time, that is a deadlock, which raises an error at once.
+A thread that waits for simulated time, a lock or a motor lets the next ready thread run; if none is ready, the clock
+advances to the earliest time that a thread waits for. So the order in which threads run depends on the program alone.
+If no thread is ready and none waits for a time, that is a deadlock, which immediately raises an error.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Simulated devices: named attributes, which programs read and write as text.
 
-One table of devices, `DeviceFiles`, is behind everything that reaches them: `engine.shim.files` shows it as the tree of
+All code that uses a device gets it from one table, `DeviceFiles`: `engine.shim.files` shows the table as the tree of
 `/sys/class` to any code, and `shim.library` is a shorter way to the same attributes for the library.
 """
 

@@ -1,6 +1,6 @@
 """Tacho motors of a brick with ev3dev: every attribute as the kernel's class of motors has it.
 
-`polarity` negates what is read and what is written from then on: a set point that was written before it keeps its
+`polarity` negates what is read and written from then on: a set point that was written before the change keeps its
 direction.
 """
 

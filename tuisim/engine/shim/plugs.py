@@ -1,7 +1,8 @@
-"""Plugs in the devices that a program asks for, on ports where the robot has nothing that the program uses.
+"""Plugs in the devices that a program looks for, on ports where the robot has nothing that the program uses.
 
-A part of the default robot that the program has not taken hold of gives way; what the program's text shows stays. A
-program that catches the library's error about a missing device just tries what there is: it gets nothing.
+A part of the default robot that the program does not use is replaced; parts that the program's text names stay. A
+program that catches the library's error about a missing device only tests which devices there are, so nothing is
+plugged in for it.
 """
 
 from __future__ import annotations

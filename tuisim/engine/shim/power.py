@@ -1,10 +1,10 @@
 """The battery: a rechargeable one whose voltage depends on its charge and the current.
 
-The open-circuit voltage falls linearly from `FULL_V`, or from the robot's own where its motors feel it, to `EMPTY_V`
-over the capacity; a current lowers it by that current times the internal resistance. The brick draws `BRICK_A` all
-the time, a running motor `RUNNING_A` and `SPEED_A` more at full speed, a blocked one `BLOCKED_A`.
-The charge drawn is the sum over the recorded ticks, so only the wheel motors count there.
-The same world at the same tick has the same voltage, no matter how often it was measured.
+The open-circuit voltage falls linearly over the capacity, from `FULL_V` (or the robot's own voltage, if its motors
+depend on that) to `EMPTY_V`; a current lowers it by that current times the internal resistance. The brick always draws
+`BRICK_A`, a running motor `RUNNING_A`, and up to `SPEED_A` more at full speed, a blocked one `BLOCKED_A`. The charge
+drawn is the sum over the recorded ticks, so only the wheel motors are included. The same world at the same tick has the
+same voltage, no matter how often it was measured.
 """
 
 from __future__ import annotations

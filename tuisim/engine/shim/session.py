@@ -1,4 +1,4 @@
-"""The shim's view of the session that runs the program."""
+"""The interface of the session that runs the program, as the shim uses it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sound: the library's commands to the loudspeaker are shown, and take as long as they sound."""
+"""Sound: the library's commands to the loudspeaker are recorded, and last as long as the sounds."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Commands: every change that a program makes to the simulation, as a value that can be recorded and given again.
+"""Commands: every change that a program makes to the simulation, as a value that can be recorded and repeated.
 
-`calls` says what there is, `table` what each call does and which values it takes. What follows by itself is no command:
-ends of moves, ramps and stalls, which the simulation finds, and what a user does.
+`calls` defines the kinds of commands, `table` what each does and which values it takes. Effects that the simulation
+finds by itself are no commands: ends of moves, ramps and stalls. Neither is what a user does.
 """

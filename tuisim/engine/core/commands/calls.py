@@ -1,4 +1,4 @@
-"""What a program can do to the simulation, and one time that it does so."""
+"""The kinds of commands that a program can give to the simulation, and one such command with its time."""
 
 from __future__ import annotations
 

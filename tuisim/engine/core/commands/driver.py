@@ -1,4 +1,4 @@
-"""Calls of motors with the kernel's driver."""
+"""The effects of commands to motors with the kernel's driver."""
 
 from __future__ import annotations
 

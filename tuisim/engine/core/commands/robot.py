@@ -1,4 +1,4 @@
-"""Calls that are about the robot: its gyro, its pen and its parts."""
+"""The effects of commands to the robot: to its gyro, its pen and its parts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Calls of motors of the Pybricks firmware, of their controllers, and of drive bases. Numbers are whole, in counts."""
+"""The effects of commands to motors of the Pybricks firmware, to their controllers, and to drive bases.
+
+Numbers are whole, in counts.
+"""
 
 from __future__ import annotations
 

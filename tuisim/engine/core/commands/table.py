@@ -1,4 +1,4 @@
-"""What each call does, which values it takes, and which motors have it."""
+"""What each kind of command does, which values it takes, and which motors have it."""
 
 from __future__ import annotations
 

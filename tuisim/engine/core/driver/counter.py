@@ -1,4 +1,4 @@
-"""The counter of a motor: half degrees with the times of their changes, and the speed that they make."""
+"""The counter of a motor: it counts half degrees, stores when the count changed, and gives the speed."""
 
 from __future__ import annotations
 

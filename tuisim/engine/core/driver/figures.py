@@ -1,4 +1,4 @@
-"""All figures of motors with a driver, each with its source."""
+"""All constants of motors with a driver, each with its source."""
 
 from __future__ import annotations
 

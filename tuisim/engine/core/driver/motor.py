@@ -1,6 +1,6 @@
-"""A motor as programs see it: attributes, commands, ramps, timed moves and states of the class of all motors.
+"""A motor as programs see it: attributes, commands, ramps, timed moves and states of the kernel's `tacho-motor` class.
 
-A command comes with all set points: what a program writes later waits for the next command.
+A command uses the set points of its time: a set point that a program writes later takes effect at the next command.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Rolling on: a motor that nothing controls, at any time in closed form."""
+"""Rolling: the motion of a motor that nothing controls, computed for any time in closed form."""
 
 from __future__ import annotations
 

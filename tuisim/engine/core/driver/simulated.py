@@ -1,4 +1,4 @@
-"""A motor of the driver in the simulation: it runs in ticks, meets obstacles, and carries its share of a robot."""
+"""A motor with the kernel's driver in the simulation: it runs in ticks, meets obstacles, and carries a load."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """A controller: it follows one trajectory, of a motor or of the sum or difference of two.
 
-The simulated motor follows exactly as long as nothing holds it back. Where an obstacle does, the trajectory of a move
-to a position pauses, and a move at a speed forgets what it cannot catch up, as soon as the motor's power is used up.
+The simulated motor follows its trajectory exactly, as long as no obstacle holds it back. If an obstacle does, and the
+motor's power is used up, the trajectory of a move to a position pauses, and a move at a speed gives up the distance
+that it cannot catch up.
 """
 
 from __future__ import annotations

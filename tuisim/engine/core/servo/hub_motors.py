@@ -1,4 +1,4 @@
-"""The motors of the hubs: what they are, and what the firmware lets them do.
+"""The motors of the hubs, with the limits that the firmware sets for them.
 
 Source: Pybricks 4.1, `lib/pbio/src/motor/servo_settings.c`. Imported on demand: only programs for a hub need it.
 """

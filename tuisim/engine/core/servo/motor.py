@@ -1,7 +1,7 @@
 """A servo motor: it follows the trajectory of its own controller or of a drive base, or runs freely.
 
-A motor that follows is exactly where its trajectory is, at every time; see `control` for what happens when something
-holds it back. A free motor is the electric motor that other libraries drive, too.
+A motor that follows a trajectory is exactly on it at every time; see `control` for what happens when an obstacle holds
+it back. A motor that runs freely is the same electric motor as under other libraries.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The events of a child, as far as it may send them: its program can write to the pipe as well."""
+"""The events that a child sends, with a check that it may send them: its program can write to the pipe as well."""
 
 from __future__ import annotations
 

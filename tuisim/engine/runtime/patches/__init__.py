@@ -1,1 +1,1 @@
-"""What programs find instead of functions of Python: clocks, threads, signals, randomness, waits for files."""
+"""Replacements of Python's functions for programs: clocks, threads, signals, randomness, waits for files."""

@@ -1,6 +1,6 @@
-"""Notes which files the program reads that were there before it, or that it looked for in vain.
+"""Records which files the program reads that existed before it, or that it looked for in vain.
 
-They may have come from an earlier run, and the same program may do something else without them.
+They may come from an earlier run, and the same program may do something else without them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A shorter way from the genuine library to the devices, past their files, and how it waits for a motor.
+"""A shorter way from the genuine library to the devices, without their files, and its waits for motors.
 
 Attributes are read and written hundreds of times in a simulated second; everything else goes through the files.
 """

@@ -1,4 +1,4 @@
-"""What is done with each module of `ev3dev2` and `ev3dev` when a program imports it."""
+"""The patches of each module of `ev3dev2` and `ev3dev`, which are applied when a program imports it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the older library, `python-ev3dev` 1.x, needs besides the device files: it reads and writes those itself."""
+"""The patches of the older library, `python-ev3dev` 1.x, which reads and writes device files itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names that the brick's older Python has and today's lacks, and modules of the MicroPython that runs ev3dev2, too."""
+"""Names that only the brick's older Python has, and the modules of MicroPython, which runs ev3dev2, too."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is in the tree of device files: folders, attributes of devices, and files of other kinds."""
+"""The entries of the tree of device files: folders, attributes of devices, and files of other kinds."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """Opened device files: their descriptors, and the file objects that `open` returns for them.
 
-The descriptor of a device file is a real one, of /dev/null, so that it is no other file's, and what takes any
-descriptor, such as `fcntl.fcntl`, takes it; `engine.shim.files.patches` looks it up here before it asks the kernel.
+The descriptor of a device file is a real one, of /dev/null, so that no other file gets it, and functions that accept
+any descriptor, such as `fcntl.fcntl`, accept it; `engine.shim.files.patches` looks it up here before it asks the
+kernel.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The tree of device files: which paths it has, and what is there."""
+"""The tree of device files: which paths it has, and which entry is at each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Simulated time and messages, as the course has them."""
+"""Simulated time and messages for programs, as the course has them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What shows frames by itself: the light and the matrix of a hub."""
+"""Animations that run in the background: of a hub's light, and of its matrix of lights."""
 
 from __future__ import annotations
 

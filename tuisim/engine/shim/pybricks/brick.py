@@ -1,4 +1,4 @@
-"""The simulated brick as the library's classes see it, and the errors that they raise."""
+"""The simulated brick as the classes of the library use it, and the errors that they raise."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each hub of version 4 has, a light, a speaker and settings, and `EV3Brick` of that version."""
+"""The parts that each hub of version 4 has, such as a light, a speaker and settings, and `EV3Brick` of that version."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What version 2.0 of the library has and version 4 does not, and what a program can use in its place."""
+"""Names of version 2.0 of the library that version 4 does not have, and what a program can use instead."""
 
 from __future__ import annotations
 

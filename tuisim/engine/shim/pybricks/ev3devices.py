@@ -1,4 +1,4 @@
-"""The sensors of `pybricks.ev3devices`; its `Motor` stands in `motor`."""
+"""The sensors of `pybricks.ev3devices`; its `Motor` is in `motor`."""
 
 from __future__ import annotations
 

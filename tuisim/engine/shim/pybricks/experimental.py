@@ -1,4 +1,4 @@
-"""`pybricks.experimental`."""
+"""`pybricks.experimental`: running functions at the same time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`Ev3devSensor` of `pybricks.iodevices`; its `DCMotor` stands in `motor`."""
+"""`Ev3devSensor` of `pybricks.iodevices`; its `DCMotor` is in `motor`."""
 
 from __future__ import annotations
 

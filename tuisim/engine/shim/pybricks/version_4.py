@@ -1,6 +1,6 @@
-"""What version 4 of the library has besides version 2.0, or in another way: moves that end otherwise, arcs, tasks.
+"""Parts that only version 4 of the library has, or has in another form: endings of moves, arcs, tasks.
 
-In a task, which `run_task` runs, a blocking call returns at once what the task awaits.
+In a task, which `run_task` runs, a blocking call immediately returns an object that the task awaits.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Modules for hardware that the simulated brick does not have, and what to do about others that are missing.
+"""Modules for hardware that the simulated brick does not have, and notes for errors about other missing modules.
 
-A module of the brick that drives its radio, its bus or its USB port can be imported; what the program uses of it
-raises NotSimulated. A module for another computer cannot be imported on a brick either: the import raises
-NotSimulated, which is an ImportError, too, for programs that can do without it.
+A module of the brick that controls its radio, its bus or its USB port can be imported; using a name in it raises
+NotSimulated. A module for another computer cannot be imported on a brick either: the import raises NotSimulated, which
+is also an ImportError, for programs that can run without the module.
 """
 
 from __future__ import annotations

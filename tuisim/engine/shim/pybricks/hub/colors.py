@@ -1,4 +1,4 @@
-"""Colours as the sensor measures them, and the nearest of several."""
+"""Colours as the sensor of a hub measures them, and the nearest of several colours."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`Remote` and `XboxController`: they are found at once, and what a hand presses is pressed on them."""
+"""`Remote` and `XboxController`: they are always in reach, and have the buttons that a user presses by hand."""
 
 from __future__ import annotations
 

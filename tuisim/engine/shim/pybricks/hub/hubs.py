@@ -1,4 +1,4 @@
-"""The hubs of `pybricks.hubs`: what they have of lights, buttons, speaker, battery and system."""
+"""The hubs of `pybricks.hubs`: their lights, buttons, speaker, battery and settings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`hub.imu`: the heading, and what the hub senses of its place in space. The robot stays level."""
+"""`hub.imu`: the heading, and the rotation and acceleration that the hub measures. The robot stays level."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `pybricks.parameters` has on a hub in another way than on the EV3."""
+"""The names of `pybricks.parameters` that differ between a hub and the EV3."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sensors of `pybricks.pupdevices`; its `Motor` stands in `version_4`."""
+"""The sensors of `pybricks.pupdevices`; its `Motor` is in `version_4`."""
 
 from __future__ import annotations
 
