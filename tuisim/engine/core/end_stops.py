@@ -14,7 +14,8 @@ from tuisim.engine.core.spec import MOTOR_ENDS, MotorSpec, RobotSpec
 from tuisim.engine.core.state import end_flag
 
 NEAR_DEG = 2.0
-"""A motor is at a stop from this distance on: a touch sensor that it presses there gives way before it stops."""
+"""Distance from a stop at which a motor is at it: a touch sensor that the motor presses there yields before it
+stops."""
 
 
 def build_start_flags(robot: RobotSpec) -> int:

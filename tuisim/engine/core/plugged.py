@@ -69,7 +69,7 @@ PART_CODES: Mapping[tuple[str, str, str], int] = {
 
 @dataclass(frozen=True, slots=True)
 class PluggedPart:
-    """A motor or sensor that tuisim plugged into the robot during a run, because the program asked for it."""
+    """A motor or sensor that tuisim plugged into the robot during a run, because the program used it."""
 
     port: str
     part: str

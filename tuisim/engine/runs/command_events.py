@@ -376,7 +376,7 @@ def _find_call(code: int) -> Call:
 
 
 def _find_aim(call: Call, values: Sequence[float]) -> Aim:
-    """Return the kind of motion that a command with these values asks for."""
+    """Return the kind of motion that a command with these values starts."""
     is_to_position = call is Call.MOVE and not values[3]
     return Aim.POSITION if is_to_position else CALL_WORDS[call].aim
 

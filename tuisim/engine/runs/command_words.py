@@ -47,7 +47,7 @@ _SETTING = Quantity(names=[name.replace("_", " ") for name in SETTINGS])
 
 
 class Aim(Enum):
-    """What kind of motion a command asks for, which decides how its result is described."""
+    """The kind of motion that a command starts, which decides how its result is described."""
 
     NONE = auto()
     """Nothing that telemetry records."""

@@ -450,7 +450,10 @@ def _measure_columns(
 
 
 def _field_with_marks(field: Field, spec: RunSpec) -> FieldAt:
-    """Return a function that takes every record in turn, from tick 0 on, and returns the mat with its marks."""
+    """Return a function that returns the mat with its pen marks at a tick record.
+
+    It must be called with every record in turn, from tick 0 on.
+    """
     if not spec.world.pen_marks:
         return lambda _: field
     pen = PenMarks(field, spec)

@@ -166,7 +166,8 @@ class RunHandle:
         self._asked_at = self._announced_at = 0.0
         self._look_at_s = time.monotonic() + LOOK_EVERY_S
         self._is_followed = not of_many
-        """Whether its recording is looked at once more when the process is gone. Short runs of batches are not."""
+        """Whether the recording is checked once more after the end of the process; for short runs of batches it is
+        not."""
         self._progress = (0, 0.0)
         self._stack_asked = False
         self._announced: Ended | None = None

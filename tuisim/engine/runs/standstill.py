@@ -27,7 +27,7 @@ _CONTACT_MM = 0.01
 """Distance below which a robot touches something; collisions end within a small part of it."""
 
 _STILL = 1e-3
-"""A robot that moves less, in mm or degrees, stands: wheels that push anew press it on by parts of that."""
+"""Motion in mm or degrees below which a robot stands: wheels that push again move it by a fraction of that."""
 
 WALL = "the wall"
 LEFT_FIELD = "left the field, which has no walls (--walls on)"

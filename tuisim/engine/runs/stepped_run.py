@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 
 
 class SteppedRun:
-    """A run that a script advances step by step, without a program. At any time it can be judged as if it ended then.
+    """A run that a script advances step by step, without a program.
+
+    Goals can evaluate it at any time, as if it ended then.
 
     Args:
         spec: The run.

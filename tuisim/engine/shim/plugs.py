@@ -120,7 +120,7 @@ class Plugs:
 
         Args:
             part: A class of `engine.core.plugged`.
-            port: Where the program asks for it, such as `in1`.
+            port: The port that the program names, such as `in1`.
         """
         if self._session.shown_ports is None or not self._can_give_way(port):
             return False

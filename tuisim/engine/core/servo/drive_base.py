@@ -354,7 +354,7 @@ class DriveBase:
         for motor in self.motors:
             motor.follow(self, ending)
 
-    # What its motors ask it for, because it is their guide
+    # What its motors call, because it is their guide
 
     @property
     def end_us(self) -> int | None:

@@ -204,7 +204,10 @@ class Quota:
         return files, size
 
     def _measure_blocks(self) -> Iterator[int]:
-        """Yield the bytes that each file in the folders takes on the disk; for an unreadable folder too many."""
+        """Yield the bytes that each file in the folders takes on the disk.
+
+        For an unreadable folder, yield more than the limit.
+        """
         folders = list(self._folders)
         while folders:
             # The program goes on meanwhile: a file or folder that it has deleted takes no space.

@@ -101,7 +101,7 @@ def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Names:
 
     Args:
         brick: The brick.
-        law: How the motors move, which tells the version of the library.
+        law: How the motors move, which determines the version of the library.
         hub: The robot's hub; empty for the EV3.
     """
     if not hub:

@@ -128,11 +128,11 @@ class Process:
         system.processes[self.pid] = self
 
     def _open_output(self, target: Any, own: Sink) -> tuple[Sink, IO[Any] | None]:
-        """Return a function that takes output, and the pipe from which the program reads the output, if any.
+        """Return a function that receives output, and the pipe from which the program reads the output, if any.
 
         Args:
             target: As of `stdout` in `subprocess.Popen`.
-            own: Takes the output if the target is None.
+            own: Receives the output if the target is None.
         """
         if target != self.system.module.PIPE:
             return _sink(target, own), None
