@@ -27,8 +27,16 @@ from tests.cases import cases
 from tests.conftest import Command
 from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings
-from tuisim.app.dialogs.runs import RunChooser, build_header, find_likeliest, find_runs, run_line
+from tuisim.app.dialogs.runs import (
+    RunChooser,
+    RunsChooser,
+    build_header,
+    find_likeliest,
+    find_runs,
+    run_line,
+)
 from tuisim.app.snapshot import RunPhase
+from tuisim.app.terminal_app import TerminalApp
 from tuisim.engine.protocol import End, SetNoise, UserAction
 from tuisim.engine.runs.catalogue import RunInfo
 from tuisim.engine.runs.handle import RunOptions, start_run
@@ -257,6 +265,8 @@ def test_the_note_of_a_run_does_not_repeat_its_end(
         ("best", [3]),
         ("2026-01", [3, 2, 1]),
         ("none", []),
+        ("1", [1, 3, 2]),
+        ("3 1", [3, 1, 2]),
     ],
 )
 def test_a_search_is_for_words_anywhere(search: str, numbers: list[int]) -> None:
@@ -315,3 +325,34 @@ async def test_path_and_columns_of_many_runs_are_whole_also_after_a_resize(
             heads = dialog.query_one(".heads", Static)
             assert str(heads.render()).split() == build_header(size[0]).split()
             assert dialog.query_one(OptionList).highlighted == highlighted
+
+
+@cases(
+    "keys, chosen",
+    {
+        "a number comes first": ("4 enter", "id4"),
+        "the row that is highlighted": ("4 down enter", "id45"),
+        "several numbers": ("4 space 1 2 enter", "id4 id12"),
+        "a space in the list marks": ("4 down space space enter", "id45 id44"),
+        "words go on after the list": ("4 down backspace 1 2 enter", "id12"),
+    },
+)
+async def test_enter_opens_what_the_list_of_runs_shows(
+    keys: str, chosen: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    listed = [info(number) for number in range(1, 46)]
+    monkeypatch.setattr("tuisim.app.dialogs.runs._load_runs", lambda: listed)
+    monkeypatch.setattr(RunChooser, "_draw_way", lambda _: None)
+    results: list[str | None] = []
+    app = TerminalApp()
+    async with app.run_test(size=(120, 40)) as pilot:
+        dialog = RunsChooser()
+        await app.push_screen(dialog, results.append)
+        await until(pilot, lambda: dialog.query_one(OptionList).option_count == 45)
+        frame = dialog.query_one(".dialog")
+        await until(pilot, lambda: "· space marks several" in str(frame.border_subtitle))
+        await pilot.press("4")
+        await until(pilot, lambda: "· ↓, then space marks several" in str(frame.border_subtitle))
+        await pilot.press(*keys.split()[1:])
+        await until(pilot, lambda: bool(results))
+        assert results == [chosen]

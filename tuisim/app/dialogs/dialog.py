@@ -278,14 +278,9 @@ class FieldDialog(Dialog[Result], Generic[Result]):
     """A dialog with a list and a field: text that is typed while the list has the focus goes into the field."""
 
     def on_key(self, event: Key) -> None:
-        if (
-            event.character
-            and event.is_printable
-            and not event.character.isspace()
-            and self.query(Input)
-        ):
-            field = self.query_one(Input)
-            if not field.has_focus:
+        typed = (event.character or "").strip() if event.is_printable else ""
+        for field in self.query(Input):
+            if not field.has_focus and (typed or event.key == "backspace"):
                 event.stop()
                 field.focus()
-                field.insert_text_at_cursor(event.character)
+                field.insert_text_at_cursor(typed) if typed else field.action_delete_left()

@@ -41,13 +41,18 @@ MAX_LISTED = 300
 
 
 def find_runs(runs: Iterable[RunInfo], search: str) -> list[RunInfo]:
-    """Return the runs, newest first, whose lines contain every word of a search."""
+    """Return the runs, newest first, whose lines contain every word of a search.
+
+    If the words are numbers, the runs with these numbers come first.
+    """
     words = search.lower().split()
-    return [
+    named = words if "".join(words).isdecimal() else []
+    listed = [
         run
         for run in reversed(list(runs))
-        if all(word in _collect_search_text(run) for word in words)
+        if str(run.number) in named or all(word in _collect_search_text(run) for word in words)
     ]
+    return sorted(listed, key=lambda run: str(run.number) not in named)
 
 
 def _collect_search_text(run: RunInfo) -> str:
@@ -73,6 +78,9 @@ def _format_date(run: RunInfo) -> str:
 
 _COLUMNS = {"run": 5, "when": 11, "program": 12, "mat": 10, "end": 9, "s": 6, "samples": 7}
 """Columns of the list and their widths in cells; a note may follow them."""
+_MORE_CELLS = {"program": 10, "mat": 5}
+"""How much wider a column is in a wide terminal."""
+_WIDE_COLUMNS = 120
 _NUMBERS = ("run", "s", "samples")
 """Columns whose texts stand at the right."""
 _LEFT_OUT = {
@@ -92,9 +100,11 @@ _MIN_LIST_ROWS = 5
 def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
     """Return the cells of a line of the list for which a terminal of that width has room."""
     left_out = next(names for from_columns, names in _LEFT_OUT.items() if columns >= from_columns)
+    more = _MORE_CELLS if columns >= _WIDE_COLUMNS else {}
+    widths = {name: cells + more.get(name, 0) for name, cells in _COLUMNS.items()}
     return {
         name: f"{cut(texts[name], cells):{'>' if name in _NUMBERS else '<'}{cells}}"
-        for name, cells in _COLUMNS.items()
+        for name, cells in widths.items()
         if name not in left_out
     }
 
@@ -157,7 +167,6 @@ class RunChooser(ListDialog):
     """
 
     DEFAULT_CSS = f"""
-    RunChooser .dialog {{ width: 110; padding: 1 0; }}
     RunChooser .heads {{ height: 1; text-wrap: nowrap; color: {palette.SOFT}; }}
     RunChooser OptionList {{ text-wrap: nowrap; text-overflow: ellipsis; }}
     RunChooser .way {{ height: 7; margin-top: 1; padding-left: 1; }}
@@ -284,13 +293,22 @@ class RunsChooser(RunChooser):
     """The dialog that returns the ids of one or several runs, separated by blanks."""
 
     TITLE_TEXT: str = "Open runs"
-    HINT: str = "Enter opens · space marks several · type to search · Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("space", "mark", "Mark", show=False)]
 
     def __init__(self) -> None:
         super().__init__()
         self._marked: list[str] = []
         """Ids, in the order in which they were marked."""
+
+    def on_descendant_focus(self) -> None:
+        """Say how runs are marked: a space in the field is one of its words' ends."""
+        marks = "space" if self._receives_key("space") else "↓, then space"
+        self.HINT = f"Enter opens · {marks} marks several · type to search · Escape closes"
+        Dialog.on_resize(self)
+
+    def action_move(self, action: str) -> None:
+        self.query_one(OptionList).focus()
+        super().action_move(action)
 
     def line(self, run: RunInfo) -> Text:
         """Return one line of the list."""
@@ -317,13 +335,12 @@ class RunsChooser(RunChooser):
 
     @on(Input.Submitted)
     def _open_named(self, event: Input.Submitted) -> None:
-        """Open runs given by name, such as `12 13` or `last`; any other text is a search."""
+        """Open the marked runs, or several given by number, such as `12 13`; any other text is a search."""
         numbers = {str(run.number): run.id for run in self._runs}
-        if self._runs:
-            numbers["last"] = self._runs[-1].id
-        named = [numbers.get(word) for word in event.value.split()]
-        run_ids = self._marked or [run_id for run_id in named if run_id is not None]
-        if run_ids and (self._marked or None not in named):
+        words = event.value.split()
+        named = [numbers[word] for word in words if word in numbers]
+        run_ids = self._marked or (named if len(named) == len(words) > 1 else [])
+        if run_ids:
             event.stop()
             event.prevent_default()
             self.dismiss(" ".join(run_ids))
