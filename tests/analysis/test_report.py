@@ -19,9 +19,11 @@ from tests.conftest import Command
 from tuisim.analysis.report import MAX_STATISTICS, list_run_facts
 from tuisim.analysis.source import NOTES_FILE, Note, find_notes_file, write_notes
 from tuisim.cli import run_command
+from tuisim.engine.core.tree import put
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
+from tuisim.settings.options import RUN_VALUES
 
 VOID = {"meta", "img", "br", "link", "input"}
 PROGRAM = """# %%sim_magic_preloaded -b Grey_bands
@@ -135,6 +137,37 @@ def test_an_end_is_said_once(driven: Driven) -> None:
     assert driven.run.end is not None
     stopped = replace(driven.run.end, end=End.STOPPED, summary="stopped")
     assert ("end", "stopped") in list_run_facts([replace(driven.run, end=stopped)])
+
+
+CHOICES = {
+    "walls": ("off", "walls false"),
+    "solid": ("on", "solid true"),
+    "background_fit": ("corner", "background_fit 'corner'"),
+    "pen_marks": ("on", "pen_marks true"),
+    "start.x_mm": ("321", "321"),
+    "start.y_mm": ("432", "432"),
+    "start.heading_deg": ("77", "77"),
+    "noise.light": ("12", "light 12"),
+    "noise.motor": ("23", "motor 23"),
+    "drift": ("typical", "drift 'typical'"),
+    "floor": ("on", "floor true"),
+    "pen.color": ("blue", "pen.color 'blue'"),
+    "pen.width_mm": ("9", "pen.width_mm 9"),
+    "pen.down": ("on", "pen.down true"),
+    "seed": ("4711", "4711"),
+}
+"""A text for each value of a run, and what the facts have for it."""
+
+
+def test_the_report_names_each_setting_that_changes_a_run(driven: Driven) -> None:
+    assert [*CHOICES] == [*RUN_VALUES]
+    for path, (text, words) in CHOICES.items():
+        chosen = RUN_VALUES[path]
+        spec = put(driven.run.spec, chosen.spec_path, chosen.value.parse_text(text))
+        facts = list_run_facts([replace(driven.run, spec=spec)])
+        assert any(words in fact[1] for fact in facts), path
+    answers = {**driven.run.options, "answers": ["left"]}
+    assert ("answers", "'left'") in list_run_facts([replace(driven.run, options=answers)])
 
 
 def test_the_program_has_its_line_numbers(driven: Driven) -> None:

@@ -17,11 +17,13 @@ from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.base.errors import ExportError, LogError, listed
 from tuisim.base.source import source_lines
 from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.files import name_of
 from tuisim.engine.protocol import SetNoise, describe_state
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.bands import count_samples, describe_width
+from tuisim.logs.derived import read_spec
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Search, find_plateaus
@@ -32,6 +34,7 @@ from tuisim.pictures.html.render import Table, render_page
 from tuisim.pictures.movies.clip import ClipRun
 from tuisim.pictures.movies.files import make_small_movie
 from tuisim.pictures.scene.pictures import draw_end, find_end_view
+from tuisim.settings.options import list_chosen_values
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -333,6 +336,9 @@ def list_log_facts(log: Log) -> list[Fact]:
         texts = [_read_path(run, path) for run in runs]
         if any(texts):
             rows.append((name, ", ".join(dict.fromkeys(texts))))
+    spec = read_spec(log.metadata)
+    if spec is not None and (further := _list_further_settings(spec)):
+        rows.append(("further settings", further))
     return rows
 
 
@@ -376,6 +382,12 @@ def _describe_noise(run: StoredRun) -> str:
     )
 
 
+def _list_further_settings(spec: RunSpec) -> str:
+    """Return the settings that differ from the defaults, except those that are facts of their own."""
+    chosen = list_chosen_values(spec)
+    return ", ".join(text for text in chosen if not text.startswith(("start.", "noise.", "seed ")))
+
+
 _PREDEFINED = {"none": "none", "imports": "the imports", "preloaded": "the imports and the parts"}
 """By prelude."""
 _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
@@ -392,6 +404,8 @@ _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "seed": lambda run: str(run.spec.seed),
     "noise": _describe_noise,
     "start": lambda run: run.spec.world.start.describe(),
+    "further settings": lambda run: _list_further_settings(run.spec),
+    "answers": lambda run: ", ".join(map(repr, run.options.get("answers", ()))),
     "end": _describe_end,
     "end pose": lambda run: last.pose.describe() if (last := run.telemetry.last()) else "",
     "simulated time": _time_s,

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import Any
 
 from tuisim.base.errors import ConfigError, LogError, counted, shortened
 from tuisim.commands.echo import (
@@ -30,10 +29,7 @@ from tuisim.commands.echo import (
 from tuisim.commands.exit_status import describe, describe_last_state
 from tuisim.commands.movies import movie, picture
 from tuisim.commands.rerun import list_changed_files, rerun, same
-from tuisim.engine.core import tree
 from tuisim.engine.core.drift import describe_errors
-from tuisim.engine.core.values import quote
-from tuisim.engine.files import toml_form
 from tuisim.engine.protocol import Unended
 from tuisim.engine.runs.catalogue import RunInfo
 from tuisim.engine.runs.diff import RunDiff
@@ -46,7 +42,7 @@ from tuisim.engine.runs.store import RunStore, count_bytes
 from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
 from tuisim.settings.command_line import Group, WordType, argument, command, option
-from tuisim.settings.options import RUN_VALUES
+from tuisim.settings.options import list_chosen_values, read_run_values
 
 QUICK_BYTES = 8 << 20
 """Samples are not counted in outputs longer than this."""
@@ -160,14 +156,6 @@ def _convert_plain(row: OutputRow) -> dict[str, object]:
     }
 
 
-def _read_values(run: StoredRun) -> dict[str, Any]:
-    """Return the values of a run for which there are options or keys of world files, by path."""
-    return {
-        path: toml_form(run_value.value, tree.get_value(run.spec, run_value.spec_path))
-        for path, run_value in RUN_VALUES.items()
-    }
-
-
 def _list_files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
     """Return which files the program of a run has read, and notes; if the list is damaged: no files, and a note."""
     try:
@@ -189,7 +177,7 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
         echo_json_head(
             "output",
             map(_convert_plain, rows),
-            describe(run) | {"values": _read_values(run)} | files,
+            describe(run) | {"values": read_run_values(run.spec)} | files,
         )
         return
     facts = describe(run, QUICK_BYTES)
@@ -198,11 +186,7 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
         f"seed {facts['seed']}"
     )
     echo(describe_last_state(facts))
-    if chosen := [
-        f"{path} {quote(value)}"
-        for path, value in _read_values(run).items()
-        if value != RUN_VALUES[path].default
-    ]:
+    if chosen := list_chosen_values(run.spec):
         echo(f"values: {', '.join(chosen)}")
     if not run.spec.world.drift.is_none:
         echo(f"drawn: {describe_errors(run.spec)}")

@@ -29,7 +29,7 @@ from tuisim.pictures.movies.arrays import FACE_PX, draw_arrays
 from tuisim.pictures.scene.discs import DiscFace, list_disc_faces
 from tuisim.pictures.scene.pen import Piece
 from tuisim.pictures.scene.pictures import draw_world
-from tuisim.settings.options import Settings
+from tuisim.settings.options import Settings, list_chosen_values
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -162,11 +162,10 @@ def _list_settings(scene: Scene) -> list[Row]:
     spec = scene.spec
     world = spec.world
     names = (spec.robot.name, spec.profile.name)
-    what = ("robot", "profile", "mat", "obstacles", "seed")
+    what = ("robot", "profile", "mat", "obstacles", "values")
+    values = ", ".join(list_chosen_values(spec))
     return list(
-        zip(
-            what, (*names, world.background, str(len(world.obstacles)), str(spec.seed)), strict=True
-        )
+        zip(what, (*names, world.background, str(len(world.obstacles)), values), strict=True)
     )
 
 

@@ -16,7 +16,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import PRELUDE_TEXTS
 from tuisim.engine.core.spec import EMPTY_MAT, RunSpec
-from tuisim.engine.core.tree import list_leaves
+from tuisim.engine.core.tree import get_value, list_leaves
 from tuisim.engine.core.values import (
     Choice,
     Flag,
@@ -25,7 +25,9 @@ from tuisim.engine.core.values import (
     Whole,
     WrongValue,
     list_values,
+    quote,
 )
+from tuisim.engine.files import Scalar, toml_form
 from tuisim.settings.presses import Presses
 from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet, Protocol
 
@@ -121,6 +123,24 @@ def _run_values() -> Iterator[tuple[str, RunValue]]:
 
 RUN_VALUES: Mapping[str, RunValue] = dict(_run_values())
 """All such values by path, in the order of files."""
+
+
+def read_run_values(spec: RunSpec) -> dict[str, Scalar]:
+    """Return the values of a run in the form in which files have them, by path."""
+    return {
+        path: toml_form(run_value.value, get_value(spec, run_value.spec_path))
+        for path, run_value in RUN_VALUES.items()
+    }
+
+
+def list_chosen_values(spec: RunSpec) -> list[str]:
+    """Return the values of a run that differ from their defaults, such as `walls false`."""
+    return [
+        f"{path} {quote(value)}"
+        for path, value in read_run_values(spec).items()
+        if value != toml_form(RUN_VALUES[path].value, RUN_VALUES[path].default)
+    ]
+
 
 START = tuple(path for path in RUN_VALUES if path.startswith("start."))
 """The paths of the start pose."""

@@ -9,8 +9,9 @@ from textual.app import App
 from textual.content import Content
 
 from tests.app.app_help import program
-from tests.app.panel_help import moment
+from tests.app.panel_help import SPEC, moment
 from tuisim.app.panels.titles import build_title, name_mat, name_sensors, name_setup
+from tuisim.engine.core.tree import put
 
 
 def test_a_title_has_the_key_of_its_panel_and_shows_a_name_as_it_is() -> None:
@@ -41,6 +42,8 @@ def test_a_program_without_predefined_names_has_none_for_a_sensor() -> None:
 def test_noise_and_seed_are_named_where_there_are_any() -> None:
     assert name_setup(moment(), 60) == "Default_Robot"
     assert name_setup(moment(), 20) == ""
+    drifting = put(SPEC, "world.drift.gyro_dps", 1.0)
+    assert name_setup(moment(spec=drifting), 60) == "Default_Robot, drift"
 
 
 @pytest.mark.parametrize(

@@ -63,7 +63,7 @@ def name_sensors(now: Snapshot, width: int) -> str:
 
 
 def name_setup(now: Snapshot, width: int) -> str:
-    """Return robot, seed and noise in words, as far as they fit a title; a seed or noise of 0 is left out."""
+    """Return robot, seed, noise and drift in words, as far as they fit a title, without those that are 0."""
     spec = now.spec
     noise = now.instant.noise
     room = _count_columns("instrumentation", width)
@@ -71,5 +71,6 @@ def name_setup(now: Snapshot, width: int) -> str:
     kinds = [f"light ±{noise.light}"] * bool(noise.light) + [f"motor ±{noise.motor}"] * bool(
         noise.motor
     )
+    kinds += ["drift"] * (not spec.world.drift.is_none)
     wordings = ([spec.robot.name, *seed, *kinds], [*seed, *kinds], kinds, kinds[:1])
     return next((words for words in map(", ".join, wordings) if len(words) <= room), "")

@@ -39,7 +39,7 @@ class Instant:
     motors: tuple[MotorValues, ...] = ()
     """The values of all motors' drivers; empty if the motors have no drivers, or the values were not requested."""
     scales: tuple[float, ...] = ()
-    """How many degrees the program counts for one of each motor, empty if this was not requested."""
+    """How many degrees the program counts for one of each motor; empty if this was not requested."""
 
     def get_scale(self, number: int) -> float:
         """Return how many degrees the program counts for one of a motor; `number` is its number among all motors."""
