@@ -94,7 +94,7 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         {"time.sleep(0.1)": "time.sleep(1)"},
         {
             "levels": "Colour came near 3 of 8 levels: 82.7 is next, and the nearest after 100 was",
-            "black": "right of x = 1490 mm.",
+            "black": "right of x = 1520 mm.",
             "straight": "left the area at",
             "finish": "“levels” was not met.",
         },
@@ -102,7 +102,7 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
     "log_greys, goes on": (
         "log_greys",
         {"tank_drive.off()": "tank_drive.on_for_rotations(50, 50, 2)"},
-        {"black": "of x = 1490 mm.", "straight": "“black” was not met."},
+        {"black": "of x = 1520 mm.", "straight": "“black” was not met."},
     ),
     "log_greys, turns": (
         "log_greys",
@@ -185,6 +185,15 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         {"said": "The program printed nothing."},
     ),
 }
+
+
+@pytest.mark.slow
+def test_a_stop_at_the_end_of_the_black_band_is_on_it(here: Command, tmp_path: Path) -> None:
+    text = (PROGRAMS / "log_greys.py").read_text(encoding="utf-8")
+    on = "tank_drive.on_for_rotations(30, 30, 0.9)"
+    (tmp_path / "mine.py").write_text(text.replace("tank_drive.off()", on), encoding="utf-8")
+    here("run", EXAMPLES["log_greys"], "mine.py")
+    assert {goal["state"] for goal in checked(here, "log_greys")} == {"met"}
 
 
 @pytest.mark.quick_cases(
