@@ -190,7 +190,7 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
 @pytest.mark.slow
 def test_a_stop_at_the_end_of_the_black_band_is_on_it(here: Command, tmp_path: Path) -> None:
     text = (PROGRAMS / "log_greys.py").read_text(encoding="utf-8")
-    on = "tank_drive.on_for_rotations(30, 30, 0.9)"
+    on = "tank_drive.on_for_rotations(30, 30, 0.8)"
     (tmp_path / "mine.py").write_text(text.replace("tank_drive.off()", on), encoding="utf-8")
     here("run", EXAMPLES["log_greys"], "mine.py")
     assert {goal["state"] for goal in checked(here, "log_greys")} == {"met"}
