@@ -3,35 +3,43 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from tuisim.base.source import PYBRICKS, PYBRICKS_4_NAMES
 from tuisim.programs.robot.course import find_definitions
 from tuisim.programs.robot.source import Module
 
-IMPORTS: Mapping[str, frozenset[str]] = {
-    PYBRICKS: frozenset({"version"}),
-    "pybricks.hubs": frozenset({"ThisHub"}),
-    "pybricks.parameters": frozenset({"Axis", "Font", "Icon", "Image", "Side"}),
-    "pybricks.robotics": frozenset({"Car", "GyroDriveBase", "SpikeBase"}),
-    "pybricks.tools": frozenset({"Axis", "Matrix", "cross", "hub_menu", "multitask", "run_task"})
-    | {"read_input_byte", "vector"},
+IMPORTS: Mapping[str, Collection[str]] = {
+    PYBRICKS: ["version"],
+    "pybricks.hubs": ["ThisHub"],
+    "pybricks.parameters": ["Axis", "Font", "Icon", "Image", "Side"],
+    "pybricks.robotics": ["Car", "GyroDriveBase", "SpikeBase"],
+    "pybricks.tools": [
+        "Axis",
+        "Matrix",
+        "cross",
+        "hub_menu",
+        "multitask",
+        "read_input_byte",
+        "run_task",
+        "vector",
+    ],
 }
 """Names of version 4, by the module that a program imports them from."""
-MEMBERS: Mapping[str, frozenset[str]] = {
-    "Stop": frozenset({"BRAKE_SMART", "COAST_SMART", "NONE"}),
-    "Color": frozenset({"CYAN", "GRAY", "MAGENTA", "NONE", "VIOLET"}),
-    "light": frozenset({"animate", "blink"}),
-    "speaker": frozenset({"volume"}),
-    "system": frozenset({"info", "name", "set_stop_button", "shutdown", "storage"}),
+MEMBERS: Mapping[str, Collection[str]] = {
+    "Stop": ["BRAKE_SMART", "COAST_SMART", "NONE"],
+    "Color": ["CYAN", "GRAY", "MAGENTA", "NONE", "VIOLET"],
+    "light": ["animate", "blink"],
+    "speaker": ["volume"],
+    "system": ["info", "name", "set_stop_button", "shutdown", "storage"],
 }
 """Members of version 4, by the class or the part of the hub."""
-METHODS = frozenset({"arc", "curve", "move_by", "use_gyro"})
+METHODS = "arc", "curve", "move_by", "use_gyro"
 """Methods of a drive base that only version 4 has."""
-ARGUMENTS: Mapping[str, frozenset[str]] = {
-    **dict.fromkeys(("straight", "turn"), frozenset({"absolute", "then", "wait"})),
-    "Motor": frozenset({"profile", "reset_angle"}),
-    "settings": frozenset({"max_voltage"}),
+ARGUMENTS: Mapping[str, Collection[str]] = {
+    **dict.fromkeys(("straight", "turn"), ("absolute", "then", "wait")),
+    "Motor": ["profile", "reset_angle"],
+    "settings": ["max_voltage"],
 }
 """Arguments that only version 4 has, by the class or the method."""
 
@@ -64,7 +72,7 @@ def _list_names(node: ast.AST, own: set[str]) -> Iterator[str]:
 
 def _list_call_names(call: ast.Call, name: str) -> Iterator[str]:
     """Yield the names of version 4 in a call of a function or method that the program does not define."""
-    known = ARGUMENTS.get(name, frozenset())
+    known = ARGUMENTS.get(name, ())
     yield from (f"{keyword.arg}= of {name}()" for keyword in call.keywords if keyword.arg in known)
     if name == "Color" and len(call.args) > 1:
         yield "Color(h, s, v)"

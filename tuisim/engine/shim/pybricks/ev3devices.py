@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Any, ClassVar
 
 from tuisim.engine.core.sensors import color
@@ -16,38 +17,20 @@ from tuisim.engine.shim.pybricks.parameters import (
 )
 from tuisim.engine.shim.sensors import ColorDevice, GyroDevice
 
-CODES = (
-    None,
-    Color.BLACK,
-    Color.BLUE,
-    Color.GREEN,
-    Color.YELLOW,
-    Color.RED,
-    Color.WHITE,
-    Color.BROWN,
-)
-"""The colours that the codes of the colour sensor stand for."""
+LAST_CODE = Color.BROWN.value
+"""The highest code of the colour sensor; the codes are the values of the colours."""
+KEYPAD = Button.LEFT_UP, Button.LEFT_DOWN, Button.RIGHT_UP, Button.RIGHT_DOWN
+"""The buttons of the infrared remote control but for the beacon, in the order of their bits."""
+FIRST_KEYPAD_BIT = 0x10
 REMOTE_BUTTONS: tuple[tuple[Button, ...], ...] = (
     (),
-    (Button.LEFT_UP,),
-    (Button.LEFT_DOWN,),
-    (Button.RIGHT_UP,),
-    (Button.RIGHT_DOWN,),
-    (Button.LEFT_UP, Button.RIGHT_UP),
-    (Button.LEFT_UP, Button.RIGHT_DOWN),
-    (Button.LEFT_DOWN, Button.RIGHT_UP),
-    (Button.LEFT_DOWN, Button.RIGHT_DOWN),
+    *((button,) for button in KEYPAD),
+    *product(KEYPAD[:2], KEYPAD[2:]),
     (Button.BEACON,),
-    (Button.LEFT_UP, Button.LEFT_DOWN),
-    (Button.RIGHT_UP, Button.RIGHT_DOWN),
+    KEYPAD[:2],
+    KEYPAD[2:],
 )
 """The buttons that the codes of the infrared remote control stand for."""
-KEYPAD_BITS = {
-    0x10: Button.LEFT_UP,
-    0x20: Button.LEFT_DOWN,
-    0x40: Button.RIGHT_UP,
-    0x80: Button.RIGHT_DOWN,
-}
 NO_BEACON = -128
 """The distance that the infrared sensor reads without a beacon."""
 DEG_PER_HEADING = 3
@@ -95,7 +78,7 @@ class ColorSensor(Sensor):
     def color(self) -> Color | None:
         """Return the colour that the sensor sees, as a `Color`; None if it sees none."""
         code = self._read("COL-COLOR")[0]
-        return CODES[code] if 0 <= code < len(CODES) else None
+        return Color(code) if 0 < code <= LAST_CODE else None
 
     def reflection(self) -> int:
         """Return the reflected light in percent."""
@@ -160,7 +143,8 @@ class InfraredSensor(Sensor):
     def keypad(self) -> Any:
         """Return the buttons of the remote control that are pressed on channel 1, in any combination."""
         bits = self._read("IR-REM-A")[0]
-        return self.COLLECT(button for bit, button in KEYPAD_BITS.items() if bits & bit)
+        pressed = (key for place, key in enumerate(KEYPAD) if bits & FIRST_KEYPAD_BIT << place)
+        return self.COLLECT(pressed)
 
 
 class GyroSensor(Sensor):

@@ -23,10 +23,7 @@ if TYPE_CHECKING:
 
 PAINTS: Mapping[str, Rgb] = {
     name: load_css_colors()[name.lower()]
-    for name in (
-        *("BLACK", "BLUE", "BROWN", "CYAN", "GRAY", "GREEN", "MAGENTA", "ORANGE", "PURPLE"),
-        *("RED", "VIOLET", "WHITE", "YELLOW"),
-    )
+    for name in (*Color.__members__, "CYAN", "GRAY", "MAGENTA", "VIOLET")
 }
 """Red, green and blue of each colour, by its name; the screen shows dark greys as black. Other colours draw nothing."""
 BLACK = PAINTS["BLACK"]
@@ -285,9 +282,7 @@ class Image(Connected):
         self, x: float, y: float, r: float, fill: bool = False, color: Color | None = Color.BLACK
     ) -> None:
         """Draw a circle of radius `r` around a point."""
-        x = whole(x)
-        y = whole(y)
-        r = whole(r)
+        x, y, r = map(whole, (x, y, r))
         with self._drawing() as (_, pen):
             if (paint := paint_of(color)) and r >= 0:
                 pen.ellipse((x - r, y - r, x + r, y + r), paint if fill else None, paint)

@@ -65,14 +65,11 @@ class Mailbox(Connected):
 
     def wait_new(self) -> Any:
         """Block until a value arrives that differs from the last one, and return it."""
-        before = self.read()
-        while (value := self._next()) == before:
-            pass
+        value = before = self.read()
+        while value == before:
+            self.wait()
+            value = self.read()
         return value
-
-    def _next(self) -> Any:
-        self.wait()
-        return self.read()
 
 
 class LogicMailbox(Mailbox):

@@ -38,6 +38,7 @@ class Controller(Connected):
     def _set_connected(self, is_connected: bool) -> None:
         self._is_connected = is_connected
         shine(Color.WHITE if is_connected else None, self.PORT)
+        return wait(0)
 
     def check(self) -> None:
         """Check that the controller is connected.
@@ -52,13 +53,11 @@ class Controller(Connected):
 
     def connect(self) -> None:
         """Connect the controller again."""
-        self._set_connected(True)
-        return wait(0)
+        return self._set_connected(True)
 
     def disconnect(self) -> None:
         """Disconnect the controller."""
-        self._set_connected(False)
-        return wait(0)
+        return self._set_connected(False)
 
 
 class Keys(Buttons):
