@@ -110,11 +110,3 @@ def test_each_time_lies_in_a_part(is_endless: bool) -> None:
         middle_us = part.start_us + 100 * MS_US if end_us is None else (part.start_us + end_us) // 2
         assert trajectory.find_segment(middle_us) == part
         assert trajectory.find_segment_end_us(middle_us) == end_us
-
-
-@for_each(seed=SEEDS)
-def test_positions_at_several_times_are_those_at_each(seed: int) -> None:
-    start, rate, acceleration, target = draw_move(seed)
-    for part in build_angle_move(start, target, rate, acceleration, FASTEST)[:4]:
-        times_us = range(part.start_us, part.start_us + 300 * MS_US, 7 * MS_US)
-        assert part.list_millis(times_us) == [part.find_milli(time_us) for time_us in times_us]

@@ -7,6 +7,7 @@ that it cannot catch up.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from enum import IntEnum
 
 from tuisim.engine.core.servo.settings import PAUSE_MARGIN_MS, ControlSettings
@@ -33,6 +34,16 @@ class Ending(IntEnum):
     HOLD = 2
     NONE = 3
     """The motor keeps on running."""
+
+
+def _splice(
+    start: Segment, spliced: Segment | None, build: Callable[[Segment], Trajectory]
+) -> Trajectory:
+    """Return the trajectory from a start; one that goes on with the running segment begins where that began."""
+    trajectory = build(start)
+    if spliced is None or trajectory.first.acceleration != start.acceleration:
+        return trajectory
+    return build(spliced)
 
 
 class Controller:
@@ -96,12 +107,7 @@ class Controller:
 
     def list_millis(self, times_us: range) -> list[int]:
         """Return where the motion should be at several times of one segment, in thousandths of a count."""
-        assert self.trajectory is not None
-        paused_us = self._paused_us
-        behind = self._behind_milli
-        then_us = range(times_us.start - paused_us, times_us.stop - paused_us, times_us.step)
-        millis = self.trajectory.find_segment(then_us[0]).list_millis(then_us)
-        return [milli - behind for milli in millis] if behind else millis
+        return [self.milli(time_us) for time_us in times_us]
 
     def find_target(self, now_us: int, _motor: object) -> int:
         """Return the position that a motor should have, in half thousandths of a count; see `motor.Guide`."""
@@ -181,9 +187,7 @@ class Controller:
         if relative:
             target += divide(start.milli, MILLI)
         how = target, rate, acceleration, settings.speed, deceleration
-        trajectory = build_angle_move(start, *how)
-        if spliced is not None and trajectory.first.acceleration == start.acceleration:
-            trajectory = build_angle_move(spliced, *how)
+        trajectory = _splice(start, spliced, lambda begin: build_angle_move(begin, *how))
         self._begin(trajectory, timed=False)
 
     def match_pace(self, other: Controller) -> None:
@@ -234,15 +238,16 @@ class Controller:
         settings = self.settings
         acceleration = self._limit(acceleration)
         start, spliced = self._find_start(now_us, measured)
+        how = rate, acceleration, settings.speed
         if time_us is None:
-            trajectory = build_endless_move(start, rate, acceleration, settings.speed)
-            if spliced is not None and trajectory.first.acceleration == start.acceleration:
-                trajectory = build_endless_move(spliced, rate, acceleration, settings.speed)
+            trajectory = _splice(start, spliced, lambda begin: build_endless_move(begin, *how))
         else:
-            trajectory = build_timed_move(start, time_us, rate, acceleration, settings.speed)
-            if spliced is not None and trajectory.first.acceleration == start.acceleration:
-                takes_us = time_us + now_us - spliced.start_us
-                trajectory = build_timed_move(spliced, takes_us, rate, acceleration, settings.speed)
+            end_us = now_us + time_us
+            trajectory = _splice(
+                start,
+                spliced,
+                lambda begin: build_timed_move(begin, end_us - begin.start_us, *how),
+            )
         # A motion at a speed never makes up for the distance that it has lost, and the next one does not either.
         behind_milli = (
             self._behind_milli

@@ -68,21 +68,6 @@ class Segment(NamedTuple):
             rate_change(self.acceleration, time_us - self.start_us) if self.acceleration else 0
         )
 
-    def list_millis(self, times_us: range) -> list[int]:
-        """Return the positions at several times in this segment, as `find_milli` does for one time."""
-        sign = 1 if self.rate >= 0 else -1
-        way = abs(self.rate)
-        steps = [time_us - self.start_us for time_us in times_us]
-        even = [self.milli + sign * (way * time_us // 1000) for time_us in steps]
-        if not self.acceleration:
-            return even
-        sign = 1 if self.acceleration >= 0 else -1
-        change = abs(self.acceleration)
-        return [
-            milli + sign * (change * time_us // 1000 * time_us // 2_000_000)
-            for milli, time_us in zip(even, steps, strict=True)
-        ]
-
 
 Measure = Callable[[int], Segment]
 """Returns where a motion is at a time, as the start of a trajectory."""
