@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from tests.engine.shim.conftest import RunOn
 from tests.engine.shim.pybricks.lab import Lab
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.shim.pybricks import robotics
@@ -145,6 +146,99 @@ def test_a_race_ends_with_the_first(base: DriveBase) -> None:
     assert arm.simulated.guide is None
     with pytest.raises(TypeError):
         run_task(5)
+
+
+def test_tasks_take_turns(base: DriveBase) -> None:
+    turns: list[str] = []
+
+    async def wait_often(name: str) -> None:
+        for _ in range(3):
+            turns.append(name)
+            await call(wait, 0)
+
+    def rest() -> Any:
+        turns.append("rest")
+        yield
+        return "rested"
+
+    async def main() -> Any:
+        turns.append(str(await multitask(wait_often("a"), wait_often("b"), rest())))
+
+    run_task(main())
+    assert turns[:6] == ["a", "b", "rest", "a", "b", "a"]
+    assert turns[-1] == "(None, None, 'rested')"
+    run_task(rest())
+    assert base.done()
+
+
+def test_time_passes_in_a_loop_that_only_takes_turns(run_on: RunOn) -> None:
+    text = (
+        "from pybricks.parameters import Port\nfrom pybricks.pupdevices import Motor\n"
+        "from pybricks.tools import StopWatch, multitask, run_task, wait\n"
+        "motor, watch = Motor(Port.A), StopWatch()\n"
+        "async def poll():\n    motor.run_angle(500, 360, wait=False)\n"
+        "    while not motor.done():\n        await wait(0)\n"
+        "async def main():\n    await multitask(poll(), wait(100))\nrun_task(main())\n"
+        "print(watch.time() - 965)"
+    )
+    done = run_on(text, robot="hub", profile="pybricks4")
+    assert int(done.lines[0]) in range(60), done.errors
+
+
+def test_another_command_ends_the_wait_for_the_first(base: DriveBase) -> None:
+    arm, watch = Motor(Port.C), StopWatch()
+
+    async def turn(angle: int, after: int) -> tuple[int, Any]:
+        await call(wait, after)
+        end = await call(arm.run_angle, 500, angle)
+        return watch.time(), end
+
+    async def drive(distance: int, after: int) -> tuple[int, Any]:
+        await call(wait, after)
+        end = await call(base.straight, distance)
+        return watch.time(), end
+
+    async def main() -> Any:
+        times = await multitask(turn(3600, 0), turn(-90, 300), drive(1000, 0), drive(-10, 500))
+        assert times[0] == (300, None) and times[2] == (500, None)
+        assert times[1][0] > 700 and times[3][0] > 900
+
+    run_task(main())
+    assert arm.simulated.guide is not None
+
+
+def test_another_command_ends_the_wait_for_a_stall(base: DriveBase) -> None:
+    arm = Motor(Port.C)
+
+    async def find_stop() -> int:
+        return await call(arm.run_until_stalled, 200)  # type: ignore[no-any-return]
+
+    async def turn() -> None:
+        await call(wait, 300)
+        await call(arm.run_angle, 500, 90)
+
+    async def main() -> Any:
+        await multitask(find_stop(), turn())
+
+    run_task(main())
+    assert arm.angle() > 100 and arm.simulated.guide is not None
+    assert base.done()
+
+
+def test_an_error_in_a_task_closes_the_others(base: DriveBase) -> None:
+    arm = Motor(Port.C)
+
+    async def fail() -> None:
+        await call(wait, 100)
+        raise ZeroDivisionError
+
+    async def main() -> None:
+        with pytest.raises(ZeroDivisionError):
+            await multitask(call(arm.run_angle, 100, 3600), fail())
+        assert arm.simulated.guide is None
+
+    run_task(main())
+    assert base.done()
 
 
 def test_it_drives_to_a_place(base: DriveBase) -> None:

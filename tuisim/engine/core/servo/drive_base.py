@@ -21,7 +21,7 @@ from tuisim.engine.core.servo.settings import (
     combine_settings,
     compute_motor_settings,
 )
-from tuisim.engine.core.servo.trajectory import MILLI, Measure, Segment
+from tuisim.engine.core.servo.trajectory import MILLI, Measure, Segment, Trajectory
 
 if TYPE_CHECKING:
     from tuisim.engine.core.profile import MotorLaw
@@ -355,6 +355,11 @@ class DriveBase:
             motor.follow(self, ending)
 
     # What its motors call, because it is their guide
+
+    @property
+    def trajectory(self) -> Trajectory | None:
+        """What the distance follows, which each move begins anew."""
+        return self.distance.trajectory
 
     @property
     def end_us(self) -> int | None:

@@ -133,19 +133,20 @@ class Brick:
     def until_done(
         self,
         done: Callable[[int], bool],
-        end_us: Callable[[], int | None],
+        control: Any,
         stop: Callable[[], object] = lambda: None,
     ) -> Waiting[None]:
         """Wait until a move is done: yield the times in microseconds at which to look again.
 
         Args:
-            done: Returns whether the move is done at a time in microseconds.
-            end_us: Returns when the trajectory of the move ends; None if it has no end.
+            done: Whether the move is done at a time in microseconds.
+            control: The controller, or drive base, that moves.
             stop: Ends the move if the task that awaits it is closed.
         """
         begin = now = self.now_us
-        while not done(now):
-            until = max(end_us() or 0, now + 1)
+        trajectory = control.trajectory
+        while not (done(now) or (self.in_task and control.trajectory is not trajectory)):
+            until = max(control.end_us or 0, now + 1)
             if any(motor.blocked_ticks for motor in self.built.motors.values()):
                 until = min(until, now + BLOCKED_POLL_US)
             try:
@@ -165,7 +166,7 @@ class Brick:
         """Block until a wait is over, and return its result."""
         while True:
             try:
-                until_us = waiting.send(None)
+                until_us = waiting.send(None) or self.command()
             except StopIteration as end:
                 self.session.held_up = ""
                 result: Result = end.value

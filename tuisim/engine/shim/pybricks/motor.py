@@ -257,10 +257,11 @@ class Motor(DCMotor):
         motor = self.simulated
         self._follow(ending_of(self.ENDINGS, then))
         if wait:
-            done = self.brick.until_done(
-                lambda now_us: self._done(now_us, call), lambda: motor.control.end_us, self.stop
+            return self.brick.finish(
+                self.brick.until_done(
+                    lambda now_us: self._done(now_us, call), motor.control, self.stop
+                )
             )
-            return self.brick.finish(done)
         return None
 
     def _done(self, now_us: int, call: str) -> bool:
@@ -304,10 +305,11 @@ class Motor(DCMotor):
     def _until_stalled(self, then: Stop) -> Waiting[int]:
         motor = self.simulated
         yield from self.brick.until_done(
-            lambda _: motor.guide is None or motor.control.stalled, lambda: None
+            lambda _: motor.guide is None or motor.control.stalled, motor.control
         )
         angle = self.angle()
-        self._rest(ending_of(self.ENDINGS, then))
+        if motor.control.stalled or not self.brick.in_task:
+            self._rest(ending_of(self.ENDINGS, then))
         return angle
 
     def _rest(self, ending: Ending) -> None:

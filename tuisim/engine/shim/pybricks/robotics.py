@@ -109,7 +109,7 @@ class DriveBase(Connected):
                 self.brick.say_stalled("the wheels are", call)
             return not base.active or base.done(now_us)
 
-        return self.brick.until_done(done, lambda: base.end_us, self.stop)
+        return self.brick.until_done(done, base, self.stop)
 
     def drive(
         self,

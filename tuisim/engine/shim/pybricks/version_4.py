@@ -380,11 +380,7 @@ def _steps(task: Any) -> Waiting[Any]:
     Raises:
         TypeError: it is not a task.
     """
-    if hasattr(task, "send"):
-        return task  # type: ignore[no-any-return]
-    if hasattr(task, "__await__"):
-        return task.__await__()  # type: ignore[no-any-return]
-    raise TypeError(f"a task is needed, not {type(task).__name__}")
+    return task.__await__() if hasattr(task, "__await__") else iter(task)  # type: ignore[no-any-return]
 
 
 def run_task(task: Any = None) -> Any:
@@ -414,20 +410,25 @@ class multitask:  # noqa: N801 - as the library names it
         self._race = race
 
     def __await__(self) -> Waiting[Any]:
-        brick = Connected.brick
-        results = [None] * len(self._tasks)
-        until_us = dict.fromkeys(range(len(self._tasks)), 0)
-        while until_us:
-            for number in [number for number, until in until_us.items() if until <= brick.now_us]:
-                try:
-                    until_us[number] = self._tasks[number].send(None)
-                except StopIteration as end:
-                    results[number] = end.value
-                    del until_us[number]
-                    if self._race:
-                        for other in until_us:
-                            self._tasks[other].close()
-                        return tuple(results)
-            if until_us:
-                yield min(until_us.values())
-        return tuple(results)
+        tasks = dict(enumerate(self._tasks))
+        results = [None] * len(tasks)
+        earlier_us: list[int] = []
+        try:
+            while tasks:
+                until_us = []
+                for number, task in [*tasks.items()]:
+                    try:
+                        until_us.append(task.send(None) or Connected.brick.command())
+                    except StopIteration as end:
+                        results[number] = end.value
+                        del tasks[number]
+                        if self._race:
+                            return tuple(results)
+                # What one task has begun may end the wait of another.
+                if tasks and until_us == earlier_us:
+                    yield min(until_us)
+                earlier_us = until_us
+            return tuple(results)
+        finally:
+            for task in self._tasks:
+                task.close()
