@@ -9,9 +9,9 @@ from typing import Any, cast
 from tuisim.engine.core.driver.plant import Axle, PlantSpec
 from tuisim.engine.core.profile import PROFILES, MotorLaw
 from tuisim.engine.core.servo.bases import DriveBases
-from tuisim.engine.core.servo.hub_motors import MOTORS
+from tuisim.engine.core.servo.hub_motors import PLANTS
 from tuisim.engine.core.servo.motor import ServoMotor
-from tuisim.engine.core.servo.settings import BATTERY_V
+from tuisim.engine.core.servo.settings import BATTERY_V, MODELS
 from tuisim.engine.core.simulation import CommandHook
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.engine.runs.records import Stream
@@ -21,14 +21,14 @@ from tuisim.engine.shim.sound import Mixer
 from tuisim.settings.robots import ROBOTS
 
 TICK_NS = 10_000_000
-RECORDED_PLANTS = {
-    "large": PlantSpec(5.504587, 0.473084, 0.274603, 0.002478, 1e-7, 0.016476, 0.016476),
-    "medium": PlantSpec(10.727729, 0.291152, 0.245926, 0.000521, 1e-7, 0.024593, 0.024593),
-}
-"""The motors of the recordings: with the firmware's own data, not with those of a brick's motors."""
-
 WHEEL_KG_M2 = 0.0003
 """What a motor of a recorded drive base of a hub has to turn besides itself."""
+
+
+def build_plants(load_kg_m2: float) -> dict[str, PlantSpec]:
+    """Return the motors of the recordings by kind, with the firmware's own data and not those of a brick."""
+    loaded = {kind: plant.add_load(load_kg_m2, 0.0) for kind, plant in PLANTS.items()}
+    return {**MODELS, **loaded}
 
 
 class MotorsOnly:
@@ -73,10 +73,7 @@ class Lab:
         hub: str = "",
         robot: dict[str, float] | None = None,
     ) -> None:
-        load_kg_m2 = WHEEL_KG_M2 if robot else 0.0
-        plants = RECORDED_PLANTS | {
-            kind: motor.plant.add_load(load_kg_m2, 0.0) for kind, motor in MOTORS.items()
-        }
+        plants = build_plants(WHEEL_KG_M2 if robot else 0.0)
         self.motors = {
             port: ServoMotor(100, law, kind, Axle(plants[kind], BATTERY_V))
             for port, kind in kinds.items()

@@ -32,7 +32,10 @@ def base() -> DriveBase:
 )
 def test_a_move_ends_as_it_is_told(base: DriveBase, then: Stop, active: bool) -> None:
     base.straight(100, then)
-    wait(20)
+    # The brick tells the mean speed over 100 ms.
+    distance, speed, *_ = base.state()
+    assert distance == 100 and speed in range(18, 39)
+    wait(100)
     assert base.state()[:2] == (100, 0)
     assert base._base.active == active
 
@@ -97,10 +100,66 @@ def test_two_drive_bases_cannot_have_the_same_motor(base: DriveBase) -> None:
     motors: tuple[Any, Any] = base.left, base.right
     with pytest.raises(OSError, match="EBUSY"):
         DriveBase(*motors, 56, 114)
-    with pytest.raises(ValueError, match="Invalid argument"):
-        DriveBase(motors[1], motors[1], 56, 114)
+    for left, track_mm in ((motors[1], 114), (motors[0], 0.9)):
+        with pytest.raises(ValueError, match="Invalid argument"):
+            DriveBase(left, motors[1], 56, track_mm)
     motors[0].close()
     DriveBase(*motors, 56, 114)
+
+
+def test_a_speed_is_the_mean_over_the_window(base: DriveBase) -> None:
+    arm = Motor(Port.C)
+    arm.run(200)
+    wait(50)
+    # From rest to 100 degrees per second in 50 ms.
+    assert [arm.speed(), arm.speed(50), arm.speed(300)] == pytest.approx([25, 50, 8], abs=1)
+    wait(350)
+    assert arm.speed() == arm.speed(300) == 200
+    arm.reset_angle(0)
+    for window in (0, 301):
+        with pytest.raises(ValueError, match="Invalid argument"):
+            arm.speed(window)
+
+
+def test_what_runs_on_has_no_move_under_way(base: DriveBase) -> None:
+    base.drive(100, 20)
+    arm = Motor(Port.C)
+    arm.run(100)
+    wait(100)
+    assert base.done() and arm.done()
+
+
+def test_a_new_number_for_the_angle_ends_a_move_as_it_would_have_ended(base: DriveBase) -> None:
+    arm = Motor(Port.C)
+    for then, is_held in ((Stop.HOLD, True), (Stop.COAST, False)):
+        call(arm.run_angle, 200, 360, then, False)
+        wait(500)
+        arm.reset_angle(50)
+        wait(200)
+        assert (arm.simulated.guide is not None) == is_held
+    assert base.done()
+
+
+def test_a_smart_stop_ends_when_the_motors_rest(base: DriveBase) -> None:
+    times_ms = {}
+    for then in (Stop.HOLD, Stop.COAST, Stop.COAST_SMART, Stop.BRAKE_SMART):
+        watch = StopWatch()
+        base.straight(100, then)
+        times_ms[then] = watch.time()
+        wait(200)
+        assert base._base.active == (then is Stop.HOLD)
+    hold_ms = times_ms[Stop.HOLD]
+    assert times_ms[Stop.COAST] < hold_ms - 10
+    for then in (Stop.COAST_SMART, Stop.BRAKE_SMART):
+        assert times_ms[then] == pytest.approx(hold_ms, abs=5)
+
+
+def test_a_deceleration_stays_until_it_is_set_again(base: DriveBase) -> None:
+    base.settings(straight_acceleration=(500, 600))
+    base.settings(straight_speed=100)
+    assert base.settings() == (100, (500, 600), 131, 737)
+    base.settings(straight_acceleration=400)
+    assert base.settings() == (100, 400, 131, 737)
 
 
 def test_settings_change_while_it_drives(base: DriveBase) -> None:

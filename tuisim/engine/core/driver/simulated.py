@@ -69,9 +69,9 @@ def choose_plant(spec: RunSpec, kind: str, *, free: bool) -> PlantSpec:
 
 
 def _find_hub_plant(kind: str) -> PlantSpec:
-    from tuisim.engine.core.servo.hub_motors import MOTORS
+    from tuisim.engine.core.servo.hub_motors import PLANTS
 
-    return MOTORS[kind].plant
+    return PLANTS[kind]
 
 
 def build_motor(spec: RunSpec, kind: str, *, free: bool) -> SimulatedMotor:

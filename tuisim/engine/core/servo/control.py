@@ -10,7 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from enum import IntEnum
 
-from tuisim.engine.core.servo.settings import PAUSE_MARGIN_MS, ControlSettings
+from tuisim.engine.core.servo.settings import (
+    COUNTS_PER_DEG,
+    FULL_ACTUATION,
+    PAUSE_MARGIN_MS,
+    ControlSettings,
+)
 from tuisim.engine.core.servo.trajectory import (
     MILLI,
     MS_US,
@@ -34,6 +39,8 @@ class Ending(IntEnum):
     HOLD = 2
     NONE = 3
     """The motor keeps on running."""
+    COAST_SMART = 4
+    BRAKE_SMART = 5
 
 
 def _splice(
@@ -44,6 +51,9 @@ def _splice(
     if spliced is None or trajectory.first.acceleration != start.acceleration:
         return trajectory
     return build(spliced)
+
+
+BRAKING = Ending.BRAKE, Ending.BRAKE_SMART
 
 
 class Controller:
@@ -59,7 +69,6 @@ class Controller:
         "_behind_milli",
         "_goal",
         "_paused_us",
-        "_released",
         "_slips",
         "_stalled_us",
         "duty_limit",
@@ -88,9 +97,6 @@ class Controller:
         """How far a motion at a speed is behind its trajectory for good, in thousandths of a count."""
         self._stalled_us = 0
         """For how long the motion has hardly moved at full power, in µs."""
-        self._released = 0, 0
-        """Time at which the controller became passive, and the mean rate then, at which some firmware begins a
-        motion."""
 
     @property
     def actuation(self) -> int:
@@ -140,14 +146,8 @@ class Controller:
 
     # Commands
 
-    def release(self, now_us: int | None = None) -> None:
-        """Remove the trajectory, so that the controller is passive.
-
-        Some firmware begins the next motion at the mean rate of this one: with `now_us`, the mean rate is remembered.
-        """
-        window_us = self.settings.speed_window_ms * MS_US
-        if window_us and now_us is not None and self.trajectory is not None and not self._paused_us:
-            self._released = now_us, self._mean_rate(now_us, self.milli(now_us), window_us)
+    def release(self) -> None:
+        """Remove the trajectory, so that the controller is passive."""
         self.trajectory = None
         self.duty_limit = None
         self._stalled_us = 0
@@ -294,13 +294,7 @@ class Controller:
     def _find_start(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
         """Return where a new trajectory begins, and the present segment if it changes the speed, else None."""
         if self.trajectory is None or (self._slips and self._behind_milli):
-            start, (then_us, rate) = measured(now_us), self._released
-            window_us = self.settings.speed_window_ms * MS_US
-            left_us = max(0, then_us + window_us - now_us)
-            if left_us:
-                rate = round(start.rate + (rate - start.rate) * left_us / window_us)
-                start = start._replace(rate=rate)
-            return start, None
+            return measured(now_us), None
         then_us = now_us - self._paused_us
         running = self.trajectory.find_segment(then_us)
         start = Segment(
@@ -330,12 +324,10 @@ class Controller:
         trajectory = self.trajectory
         assert trajectory is not None
         error = self.milli(now_us) - milli
-        power = settings.kp * abs(error) // MILLI
-        limit = (
-            self.actuation
-            - settings.feed_forward
-            + settings.kp * abs(rate) * PAUSE_MARGIN_MS // 1000
-        )
+        full_unm = COUNTS_PER_DEG * settings.torque_unm
+        gain = settings.kp * FULL_ACTUATION / full_unm if full_unm else settings.kp
+        power = gain * abs(error) // MILLI
+        limit = self.actuation - settings.feed_forward + gain * abs(rate) * PAUSE_MARGIN_MS // 1000
         moved = self.milli(now_us) - self.milli(now_us - passed_us)
         # The trajectory goes on if it leads back to where the motor is: a blocked motor is free when it reverses.
         leads_back = (moved if self.timed else trajectory.even.rate) * error < 0
@@ -367,26 +359,19 @@ class Controller:
             milli, rate: Position and rate of the motion.
         """
         end_us = self.end_us
+        is_windowed = self.settings.speed_window_ms > 0
         if end_us is None:
             goal = self._goal
-            has_passed = goal is not None and (milli - goal.milli) * goal.rate >= 0
-            return self.trajectory is None or has_passed
+            if goal is None:
+                return is_windowed or self.trajectory is None
+            return (milli - goal.milli) * goal.rate >= 0
         if now_us < end_us:
             return False
-        window_us = self.settings.speed_window_ms * MS_US
-        if self.timed and not (window_us and self.settles):
+        if self.timed and not (is_windowed and self.settles):
             return True
         near = abs(self.milli(now_us) - milli) <= self.settings.position_tolerance * MILLI
-        if near and window_us:
-            rate = self._mean_rate(now_us, milli, window_us)
         return near and abs(rate) < self.settings.speed_tolerance
 
-    def _mean_rate(self, now_us: int, milli: int, window_us: int) -> int:
-        """Return the mean rate of the motion over `window_us` until now, in counts per second."""
-        assert self.trajectory is not None
-        begin_us = max(now_us - window_us, self.trajectory.first.start_us + self._paused_us)
-        return (milli - self.milli(begin_us)) * (1_000_000 // window_us) // MILLI
-
-    def lets_go(self, now_us: int, _ending: Ending) -> bool:
+    def lets_go(self, now_us: int, rate: int) -> bool:
         """Return whether a motor whose motion has ended stops following this controller; see `motor.Guide`."""
-        return self.done(now_us, self.milli(now_us), 0)
+        return self.done(now_us, self.milli(now_us), rate if self.settings.speed_window_ms else 0)

@@ -14,7 +14,6 @@ from tuisim.engine.core.motors import FOREVER
 from tuisim.engine.core.servo.control import Controller, Ending
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.servo.settings import (
-    COUNTS_PER_DEG,
     FIRMWARES,
     MODELS,
     ControlSettings,
@@ -27,10 +26,6 @@ if TYPE_CHECKING:
     from tuisim.engine.core.profile import MotorLaw
 
 
-COUNTS_PER_STEP = 2 * COUNTS_PER_DEG / 1000
-"""Counts of the sum of two motors per thousandth of a degree of one."""
-
-
 def compute_base_settings(
     motor: ControlSettings, wheel_diameter_mm: float, axle_track_mm: float
 ) -> tuple[ControlSettings, ControlSettings]:
@@ -41,9 +36,10 @@ def compute_base_settings(
         wheel_diameter_mm, axle_track_mm: The robot's sizes.
     """
     per_deg = motor.counts_per_unit
+    heading = combine_settings(motor, 2 * per_deg * axle_track_mm / wheel_diameter_mm)
     return (
         combine_settings(motor, 2 * per_deg * 360 / (pi * wheel_diameter_mm)),
-        combine_settings(motor, 2 * per_deg * axle_track_mm / wheel_diameter_mm),
+        replace(heading, torque_unm=2 * heading.torque_unm),
     )
 
 
@@ -62,17 +58,12 @@ def compute_usual_settings(
     controls = distance, distance, heading, heading
     limits = distance.speed, distance.acceleration, heading.speed, heading.acceleration
     rows = [*zip(controls, limits, firmware.pace, strict=True)]
-    if firmware.divides_units:
+    if not distance.torque_unm:
         units = [control.units(limit) * part // whole for control, limit, (part, whole) in rows]
         counts = [control.counts(unit) for control, unit in zip(controls, units, strict=True)]
     else:
-        exact = [limit * part / whole for _, limit, (part, whole) in rows]
-        # The firmware stores whole thousandths of a motor's degree per unit, so its results are rounded like this.
-        units = [
-            int(count / COUNTS_PER_STEP) // int(control.counts_per_unit / COUNTS_PER_STEP + 1e-3)
-            for control, count in zip(controls, exact, strict=True)
-        ]
-        counts = [int(count) for count in exact]
+        units = [control.tell(limit * part / whole) for control, limit, (part, whole) in rows]
+        counts = [limit * part // whole for _, limit, (part, whole) in rows]
     return (*units,), (*counts,)
 
 
@@ -181,8 +172,14 @@ class DriveBase:
 
     def find_rates(self, now_us: int) -> tuple[int, int]:
         """Return the sum and the difference of the motors' rates, in counts per second."""
-        left, right = self.left.find_counts_per_s(now_us), self.right.find_counts_per_s(now_us)
-        return left + right, left - right
+        (left, right), (left_turning, right_turning) = (
+            [
+                motor.find_counts_per_s(now_us, control.settings.speed_window_ms)
+                for motor in self.motors
+            ]
+            for control in (self.distance, self.heading)
+        )
+        return left + right, left_turning - right_turning
 
     def done(self, now_us: int) -> bool:
         """Return whether no move of the drive base is under way."""
@@ -202,7 +199,7 @@ class DriveBase:
         windowed = self.distance.settings.speed_window_ms > 0
         return windowed and self._ending in (Ending.COAST, Ending.BRAKE)
 
-    def lets_go(self, now_us: int, ending: Ending) -> bool:
+    def lets_go(self, now_us: int, _rate: int) -> bool:
         """Return whether a motor whose motion has ended stops following this drive base; see `motor.Guide`."""
         return self.done(now_us)
 
@@ -323,17 +320,18 @@ class DriveBase:
         """Stop controlling the motors, and run them with a constant power; `duty` is as of `ServoMotor.run_freely`."""
         for motor in self.motors:
             motor.run_freely(now_us, duty)
-        self.distance.release(now_us)
-        self.heading.release(now_us)
+        self.distance.release()
+        self.heading.release()
 
     def _measure_total(self, now_us: int) -> Segment:
         left, right = self.left.measure_start(now_us), self.right.measure_start(now_us)
-        return Segment(now_us, left.milli + right.milli, left.rate + right.rate, 0)
+        return Segment(now_us, left.milli + right.milli, self.find_rates(now_us)[0], 0)
 
     def _measure_difference(self, now_us: int) -> Segment:
         left, right = self.left.measure_start(now_us), self.right.measure_start(now_us)
         self._follow_gyro()
-        return Segment(now_us, left.milli - right.milli - self._offset, left.rate - right.rate, 0)
+        turned = left.milli - right.milli - self._offset
+        return Segment(now_us, turned, self.find_rates(now_us)[1], 0)
 
     def _begin(self, now_us: int) -> None:
         """Prepare for a new motion: make the controllers passive unless they move both motors.
@@ -345,8 +343,8 @@ class DriveBase:
             for motor in self.motors:
                 if motor.guide is self:
                     motor.run_freely(now_us, None)
-            self.distance.release(now_us)
-            self.heading.release(now_us)
+            self.distance.release()
+            self.heading.release()
 
     def _take(self, ending: Ending) -> None:
         self._at_us = self._behind_us = -1

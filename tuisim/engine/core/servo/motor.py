@@ -6,6 +6,7 @@ it back. A motor that runs freely is the same electric motor as under other libr
 
 from __future__ import annotations
 
+from collections import deque
 from itertools import pairwise, repeat
 from typing import TYPE_CHECKING, Protocol
 
@@ -20,18 +21,20 @@ from tuisim.engine.core.motors import (
     TIMED,
     MotorState,
 )
-from tuisim.engine.core.servo.control import Controller, Ending
+from tuisim.engine.core.servo.control import BRAKING, Controller, Ending
 from tuisim.engine.core.servo.settings import (
     COUNTS_PER_DEG,
     compute_motor_settings,
     find_steady_dps,
 )
-from tuisim.engine.core.servo.trajectory import MILLI, Segment
+from tuisim.engine.core.servo.trajectory import MILLI, MS_US, Segment
 
 if TYPE_CHECKING:
     from tuisim.engine.core.profile import MotorLaw
 
 PER_PERCENT = 100
+MAX_WINDOW_MS = 300
+"""A speed is the mean over so long at most."""
 HALVES_PER_DEG = 2 * MILLI * COUNTS_PER_DEG
 """Positions are kept in half thousandths of a count: a drive base divides a sum of counts by two."""
 
@@ -58,10 +61,14 @@ class Guide(Protocol):
     def note_lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
         """React to a motor that has lagged behind its trajectory for `passed_us`, until now."""
 
-    def lets_go(self, now_us: int, ending: Ending) -> bool:
+    def lets_go(self, now_us: int, rate: int) -> bool:
         """Return whether a motor whose motion has ended stops following this guide.
 
         It is called only for motors that do not hold their position at the end.
+
+        Args:
+            now_us: The time.
+            rate: The rate of the motor as the firmware measures it.
         """
 
 
@@ -85,6 +92,7 @@ class ServoMotor:
         "_guide",
         "_hz",
         "_jump_deg",
+        "_past",
         "_quiet",
         "_tick",
         "_tick_s",
@@ -123,6 +131,8 @@ class ServoMotor:
         self._free_us = 0
         self._free_dps = 0.0
         self._jump_deg = 0.0
+        self._past: deque[tuple[int, float]] = deque(maxlen=tick_hz * MAX_WINDOW_MS // 1000 + 1)
+        """The last ticks in which the motor was not at rest, with its positions."""
         self._tick = self._quiet = 0
         self._limit_speed()
 
@@ -154,8 +164,20 @@ class ServoMotor:
             return self._guide.find_target(now_us, self) // 2
         return self.milli
 
-    def find_counts_per_s(self, now_us: int) -> int:
-        """Return the motor's speed at a time after the last tick, in counts per second."""
+    def find_counts_per_s(self, now_us: int, window_ms: int = 0) -> int:
+        """Return the motor's speed at a time after the last tick, in counts per second.
+
+        Args:
+            now_us: The time.
+            window_ms: Over this time until then the speed is the mean; 0 for the speed at that time.
+        """
+        begin_tick = (now_us - window_ms * MS_US) / self._tick_us
+        newest = self._tick, self.position_deg
+        for (tick, before), (_, after) in pairwise((*self._past, newest) if window_ms else ()):
+            if begin_tick < tick + 1:
+                turned_deg = max(0.0, begin_tick - tick) * (after - before)
+                begin_milli = (before + turned_deg) * self.sign * MILLI * COUNTS_PER_DEG
+                return round((self.find_milli(now_us) - begin_milli) / window_ms)
         if self._guide is None:
             return round(self._free_dps * self.sign * COUNTS_PER_DEG)
         return self.counts_per_s if self._course is None else round(self._guide.rate(now_us, self))
@@ -165,7 +187,7 @@ class ServoMotor:
         return Segment(
             now_us,
             round(self.find_milli(now_us) / MILLI) * MILLI,
-            self.find_counts_per_s(now_us),
+            self.find_counts_per_s(now_us, self.control.settings.speed_window_ms),
             0,
         )
 
@@ -179,6 +201,7 @@ class ServoMotor:
         self.sign = sign
         if not keeps_angle:
             self.position_deg = self._jump_deg = 0.0
+            self._past.clear()
         self.control.settings = compute_motor_settings(self.law, self.kind, gear_ratio)
 
     def follow(self, guide: Guide | None = None, ending: Ending = Ending.HOLD) -> None:
@@ -216,7 +239,7 @@ class ServoMotor:
     @property
     def lets_go(self) -> bool:
         """Whether the motor coasts or brakes after the motion that it follows, instead of holding."""
-        return self._guide is not None and self._ending in (Ending.COAST, Ending.BRAKE)
+        return self._guide is not None and self._ending not in (Ending.HOLD, Ending.NONE)
 
     def _limit_speed(self) -> None:
         """Compute and store the highest speed that the motor's power allows."""
@@ -237,7 +260,7 @@ class ServoMotor:
             self._free_dps = self.find_counts_per_s(now_us) * self.sign / COUNTS_PER_DEG
             self._jump_deg = there - self.position_deg
             self._guide = self._course = None
-            self.control.release(now_us)
+            self.control.release()
         self.duty = None if duty is None else duty * self.sign
         self.blocked_ticks = 0
         self.mode = FOREVER if self.duty or self._free_dps or self._jump_deg else STOPPED
@@ -245,15 +268,18 @@ class ServoMotor:
     def set_position(self, now_us: int, milli: int) -> None:
         """Set the value that the motor reports for its present position, in thousandths of a count.
 
-        A motion under way ends there, and the motor holds the position.
+        A motion under way ends there: the motor holds the position, or under later firmware does what it would have
+        done at the end of the motion.
         """
         shift = milli - self.find_milli(now_us)
+        self._past.clear()
         self.position_deg += shift * self.sign / (MILLI * COUNTS_PER_DEG)
         if self._course is not None:
             self._course += 2 * shift
         if self._guide is not None:
             self.control.hold(now_us, milli)
-            self.follow()
+            windowed = self.control.settings.speed_window_ms
+            self.follow(ending=self._ending if windowed else Ending.HOLD)
 
     # What the simulation needs
 
@@ -367,17 +393,20 @@ class ServoMotor:
             self._convert_to_deg(after - before)
             for before, after in pairwise([self._course, *halves])
         ]
+        positions = [self._convert_to_deg(half) for half in (self._course, *halves)]
+        self._past.extend(enumerate(positions[:-1], self._tick))
         self._course = halves[-1]
         self._tick = self._tick + ticks
-        self.position_deg = self._convert_to_deg(halves[-1])
+        self.position_deg = positions[-1]
         self.speed_dps = turns[-1] * self._hz
-        return Glide(turns, [self._convert_to_deg(half) for half in halves])
+        return Glide(turns, positions[1:])
 
     def step(self, tick: int, noise_dps: float) -> float:
         """Advance the motor by one tick, and return the rotation of the wheel in degrees; see `Motor.step`."""
         self._tick = tick
         if self.mode == STOPPED:
             return 0.0
+        self._past.append((tick - 1, self.position_deg))
         now_us = tick * self._tick_us
         guide = self._guide
         if guide is None:
@@ -415,16 +444,17 @@ class ServoMotor:
         """End the motor's motion: from now on it stands still, and holds, brakes or coasts."""
         guide = self._guide
         holds = self._ending == Ending.HOLD
-        if not holds and guide is not None and not guide.lets_go(now_us, self._ending):
+        rate = self.measure_start(now_us).rate
+        if not holds and guide is not None and not guide.lets_go(now_us, rate):
             return
         self.mode = STOPPED
         self.speed_dps = 0.0
         self.blocked_ticks = 0
         if not holds and guide is not None:
-            self.control.release(now_us)
+            self.control.release()
             self._guide = None
             self._free_dps = 0.0
-            self.duty = 0 if self._ending == Ending.BRAKE else None
+            self.duty = 0 if self._ending in BRAKING else None
 
     def _run_freely(self, now_us: int) -> float:
         """Run one tick of the motor without a guide; return its rotation in degrees."""

@@ -9,17 +9,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import pi
-from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
+from tuisim.engine.core.driver.plant import PlantSpec
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.core.servo.trajectory import divide
 
-if TYPE_CHECKING:
-    from tuisim.engine.core.servo.hub_motors import HubMotor
-
 COUNTS_PER_DEG = 2
 """Counts of a motor's encoder per degree."""
+STEPS = 250
+"""Steps of the firmware, thousandths of a degree, per count of the sum of two motors."""
 FULL_ACTUATION = 10_000
 """Full power, in hundredths of a percent."""
 PAUSE_MARGIN_MS = 12
@@ -41,11 +40,13 @@ class ControlSettings:
     kp: int
     ki: int
     kd: int
+    """The gains, in hundredths of a percent of the power per count (and second); if `torque_unm` is not 0, in micro-Nm
+    per degree."""
     integral_range: int
     integral_rate: int
     feed_forward: int
     """Power that is added in the direction of motion, in hundredths of a percent."""
-    position_tolerance: int
+    position_tolerance: float
     """A move is done when it is this close to its target..."""
     speed_tolerance: int
     """...and slower than this."""
@@ -56,12 +57,25 @@ class ControlSettings:
     speed_window_ms: int = 0
     """Time over which the speed is averaged to decide whether a move is done; 0 uses the present speed."""
     torque_unm: int = 0
-    """The torque at full power, in micro-Nm; it is shown to programs, but has no effect."""
+    """The highest torque, in micro-Nm, of firmware that computes with torques; 0 for other firmware."""
 
     @property
     def counts_per_unit(self) -> float:
         """Number of the controller's counts per unit in which the program gives positions."""
         return self.scale / _ONE
+
+    @property
+    def _steps(self) -> int:
+        """Steps of the firmware, thousandths of a degree, per unit of the program; whole ones, if it has such."""
+        return int(self.counts_per_unit * STEPS + 1e-3)
+
+    def tell(self, counts: float) -> int:
+        """Return a rate or a setting in the program's units: rounded, or cut off where there are torques."""
+        return int(counts * STEPS / self._steps) if self.torque_unm else self.units(int(counts))
+
+    def take(self, units: int) -> int:
+        """Return a setting in counts, which `tell` gives back as it was."""
+        return -(-units * self._steps // STEPS) if self.torque_unm else self.counts(units)
 
     def counts(self, units: int) -> int:
         """Return a length or angle in the program's units as counts, rounded."""
@@ -73,7 +87,7 @@ class ControlSettings:
 
     def describe(self) -> dict[str, str]:
         """Return the limits and tolerances of a motor as texts, by their names."""
-        moves_done = f"{self.units(self.position_tolerance)} deg, below {self.units(self.speed_tolerance)} deg/s"
+        moves_done = f"{self.tell(self.position_tolerance)} deg, below {self.units(self.speed_tolerance)} deg/s"
         return {
             "highest speed": f"{self.units(self.speed)} deg/s",
             "acceleration and deceleration": f"{self.units(self.acceleration)} deg/s²",
@@ -88,22 +102,16 @@ def _multiply(number: int, factor: int) -> int:
     return size if number >= 0 else -size
 
 
-@dataclass(frozen=True, slots=True)
-class MotorModel:
-    """Constants of a motor that limit its speed under control, as measured by the authors of the firmware."""
-
-    resistance_ohm: float
-    back_emf_v_s: float
-    torque_nm_per_a: float
-    friction_nm: float
-
-
-MODELS: Mapping[str, MotorModel] = {
-    "large": MotorModel(5.504587, 0.473084, 0.274603, 0.016476),
-    "medium": MotorModel(10.727729, 0.291152, 0.245926, 0.024593),
+MODELS: Mapping[str, PlantSpec] = {
+    "large": PlantSpec(5.504587, 0.473084, 0.274603, 0.002478, 1e-7, 0.016476, 0.016476),
+    "medium": PlantSpec(10.727729, 0.291152, 0.245926, 0.000521, 1e-7, 0.024593, 0.024593),
 }
-"""Limits of each kind of motor, by `MotorSpec.kind`."""
+"""What limits each kind of motor, by `MotorSpec.kind`, by the data that the firmware's authors measured."""
 
+SPEED_WINDOW_MS = 100
+"""Firmware that computes with torques measures speeds over this time."""
+TUNED_MV = 7500
+"""The gains of firmware that computes with torques fit the torque at this voltage."""
 BATTERY_V = 8.0
 """The voltage at which the motors' numbers hold."""
 
@@ -113,11 +121,20 @@ class ServoKind:
     """Settings that differ between kinds of motor; angles in degrees, power in percent."""
 
     speed: int
-    acceleration: int
-    gains: tuple[int, ...]
-    feed_forward: int
     position_tolerance_deg: int
     torque_unm: int = 0
+    acceleration: int = 2000
+    gains: tuple[int, ...] = ()
+    """Empty to compute them from the torque."""
+    feed_forward: int = 0
+    max_mv: int = 9000
+    """The voltage of the torque."""
+
+    def compute_gains(self, tolerance_deg: int) -> tuple[int, ...]:
+        """Return kp and ki for a tolerance of the position, and kd for the usual one."""
+        torque_unm = self.torque_unm * min(self.max_mv, TUNED_MV) // self.max_mv
+        kp = torque_unm // tolerance_deg
+        return kp, kp // 2, torque_unm // self.position_tolerance_deg // 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,24 +147,29 @@ class Firmware:
     """The usual speed and acceleration of a drive base, and those of its turns, as fractions of their limits."""
     integral: tuple[int, int]
     """`ControlSettings.integral_range` and `integral_rate`."""
-    divides_units: bool
-    """Whether these are fractions of limits that are rounded to units of the program."""
-    speed_window_ms: int
-    """The value of `ControlSettings.speed_window_ms`."""
 
 
 THIRD = (1, 3)
+# The EV3 of version 4 has its own factors of the gains, which nobody has published: here they are those of the hubs.
 FIRMWARES: Mapping[MotorLaw, Firmware] = {
     MotorLaw.PYBRICKS: Firmware(
-        {"large": ServoKind(800, 1600, (400, 1200, 5), 0, 5), "medium": ServoKind(1000, 4000, (300, 400, 3), 20, 5)},
-        15, (THIRD, THIRD, THIRD, THIRD), (45, 10), divides_units=True, speed_window_ms=0,
+        {
+            "large": ServoKind(800, 5, 0, 1600, (400, 1200, 5)),
+            "medium": ServoKind(1000, 5, 0, 4000, (300, 400, 3), 20),
+        },
+        15, (THIRD, THIRD, THIRD, THIRD), (45, 10),
     ),
     MotorLaw.PYBRICKS_4: Firmware(
         {
-            "large": ServoKind(800, 2000, (400, 1200, 5), 0, 10, 448_976),
-            "medium": ServoKind(1200, 2000, (300, 400, 3), 20, 10, 206_319),
+            "large": ServoKind(800, 10, 448_976),
+            "medium": ServoKind(1200, 10, 206_319),
+            "large-angular": ServoKind(1000, 11, 560_795),
+            "medium-angular": ServoKind(1000, 11, 199_554),
+            "small-angular": ServoKind(620, 11, 62_415, max_mv=6000),
+            "interactive": ServoKind(1200, 12, 135_083),
+            "technic": ServoKind(1500, 20, 263_601),
         },
-        20, ((2, 5), (3, 8), THIRD, (3, 8)), (16, 30), divides_units=False, speed_window_ms=100,
+        20, ((2, 5), (1, 1), THIRD, (1, 1)), (16, 30),
     ),
 }  # fmt: skip
 
@@ -160,8 +182,8 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
         gear_ratio: Turns of the motor per turn of what it drives.
     """
     firmware = FIRMWARES[law]
-    motor = firmware.motors.get(kind) or _build_hub_kind(kind)
-    kp, ki, kd = motor.gains
+    motor = firmware.motors[kind]
+    kp, ki, kd = motor.gains or motor.compute_gains(motor.position_tolerance_deg)
     return ControlSettings(
         scale=round(COUNTS_PER_DEG * gear_ratio * _ONE),
         speed=motor.speed * COUNTS_PER_DEG,
@@ -178,32 +200,20 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
         stall_speed=firmware.stall_speed_dps * COUNTS_PER_DEG,
         stall_time_ms=200,
         torque_unm=motor.torque_unm,
-        speed_window_ms=firmware.speed_window_ms,
+        speed_window_ms=SPEED_WINDOW_MS if motor.torque_unm else 0,
     )
 
 
 def find_steady_dps(kind: str, actuation: int) -> float:
     """Return the speed that a kind of motor reaches in the end at a power; 0 if friction keeps it at rest."""
-    model = MODELS.get(kind) or _find_hub_motor(kind).plant
+    if (model := MODELS.get(kind)) is None:
+        from tuisim.engine.core.servo.hub_motors import PLANTS
+
+        model = PLANTS[kind]
     ideal_dps = BATTERY_V * abs(actuation) / FULL_ACTUATION / model.back_emf_v_s * 180 / pi
     friction_v = model.resistance_ohm * model.friction_nm / model.torque_nm_per_a
     speed = max(0.0, ideal_dps - friction_v / model.back_emf_v_s * 180 / pi)
     return speed if actuation >= 0 else -speed
-
-
-def _build_hub_kind(kind: str) -> ServoKind:
-    """Return the settings of a hub's motor. Gains are converted to hundredths of a percent of the power per count."""
-    motor = _find_hub_motor(kind)
-    gains = tuple(
-        round(gain * FULL_ACTUATION / motor.torque_unm / COUNTS_PER_DEG) for gain in motor.gains
-    )
-    return ServoKind(motor.speed_dps, 2000, gains, 0, motor.tolerance_deg, motor.torque_unm)
-
-
-def _find_hub_motor(kind: str) -> HubMotor:
-    from tuisim.engine.core.servo.hub_motors import MOTORS
-
-    return MOTORS[kind]
 
 
 def combine_settings(motor: ControlSettings, counts_per_unit: float) -> ControlSettings:
@@ -213,18 +223,22 @@ def combine_settings(motor: ControlSettings, counts_per_unit: float) -> ControlS
         motor: The settings of each motor.
         counts_per_unit: Counts of the sum or the difference per mm or degree of the robot.
     """
+    has_torque = motor.torque_unm > 0
+    kp = divide(motor.kp, 2)
     return replace(
         motor,
         scale=round(counts_per_unit * _ONE),
         speed=2 * motor.speed,
-        acceleration=4 * motor.acceleration,
+        acceleration=3 * motor.acceleration // 2 if has_torque else 4 * motor.acceleration,
         actuation=2 * motor.actuation,
-        kp=divide(motor.kp, 2),
-        ki=divide(motor.ki, 2),
-        kd=divide(motor.kd, 2),
+        kp=kp,
+        ki=0 if has_torque else divide(motor.ki, 2),
+        kd=motor.kd if has_torque else divide(motor.kd, 2),
         integral_range=2 * motor.integral_range,
         integral_rate=2 * motor.integral_rate,
-        position_tolerance=2 * motor.position_tolerance,
+        # With torques, a move is done where the proportional part uses up the torque.
+        position_tolerance=2
+        * (COUNTS_PER_DEG * motor.torque_unm / max(kp, 1) or motor.position_tolerance),
         speed_tolerance=2 * motor.speed_tolerance,
         stall_speed=2 * motor.stall_speed,
     )

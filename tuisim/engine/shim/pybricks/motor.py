@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.commands.servo import SETTINGS
-from tuisim.engine.core.servo.control import Controller, Ending
+from tuisim.engine.core.servo.control import BRAKING, Controller, Ending
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.servo.settings import FULL_ACTUATION
 from tuisim.engine.core.servo.trajectory import MAX_DURATION_US, MILLI, MS_US
@@ -288,9 +288,9 @@ class Motor(DCMotor):
 
     def move_done(self, now_us: int, control: Controller) -> bool:
         """Return whether no move of a controller of the motor is under way."""
-        return control.done(
-            now_us, self.simulated.find_milli(now_us), self.simulated.find_counts_per_s(now_us)
-        )
+        motor = self.simulated
+        rate = motor.find_counts_per_s(now_us, control.settings.speed_window_ms)
+        return control.done(now_us, motor.find_milli(now_us), rate)
 
     def run_until_stalled(
         self, speed: float, then: Stop = Stop.COAST, duty_limit: float | None = None
@@ -316,7 +316,7 @@ class Motor(DCMotor):
         if ending is Ending.HOLD:
             self.hold()
         else:
-            self._run_freely(0 if ending is Ending.BRAKE else None)
+            self._run_freely(0 if ending in BRAKING else None)
 
 
 class Control(Connected):
@@ -350,7 +350,7 @@ class Control(Connected):
             return tuple(
                 getattr(settings, name) // FACTORS[name]
                 if name in FACTORS
-                else settings.units(getattr(settings, name))
+                else settings.tell(getattr(settings, name))
                 for name in values
             )
         is_active = self._control.trajectory is not None and not self._owner.has_let_go()
@@ -359,7 +359,7 @@ class Control(Connected):
         if any(value < 0 for value in given.values()):
             raise invalid_argument()
         for name, value in given.items():
-            number = value * FACTORS[name] if name in FACTORS else settings.counts(value)
+            number = value * FACTORS[name] if name in FACTORS else settings.take(value)
             self._owner.change_setting(self._control, SETTINGS.index(name), number)
         return None
 

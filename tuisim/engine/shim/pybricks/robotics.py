@@ -25,6 +25,8 @@ class DriveBase(Connected):
     """A robot with two driven wheels, which drives straight and turns."""
 
     CONTROL: ClassVar[type[Control]] = Control
+    MIN_SIZE_MM: ClassVar[float] = 1 / 65536
+    """Of the wheels and of the track; the firmware computes with such fractions."""
     current: ClassVar[DriveBase | None] = None
     """The newest drive base of the program: when it is created, it stops the one before."""
     log = refused_part("DriveBase", "log", LOGGER)
@@ -39,7 +41,8 @@ class DriveBase(Connected):
         self.brick.plugs.make_wheels(*left_motor.port_names, *right_motor.port_names, kind)
         left, right = left_motor.simulated, right_motor.simulated
         are_alike = left.control.settings == right.control.settings
-        if left is right or not are_alike or wheel_diameter <= 0 or axle_track <= 0:
+        is_tiny = min(wheel_diameter, axle_track) < self.MIN_SIZE_MM
+        if left is right or not are_alike or is_tiny:
             raise invalid_argument()
         self.left, self.right = left_motor, right_motor
         if DriveBase.current is not None:
@@ -167,9 +170,9 @@ class DriveBase(Connected):
         (distance, angle), (speed, turn_rate) = self._position(now_us), base.find_rates(now_us)
         return (
             distance,
-            base.distance.settings.units(speed),
+            base.distance.settings.tell(speed),
             angle,
-            base.heading.settings.units(turn_rate),
+            base.heading.settings.tell(turn_rate),
         )
 
     def reset(self) -> None:

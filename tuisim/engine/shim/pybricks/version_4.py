@@ -12,7 +12,13 @@ from typing import Any, ClassVar
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.commands.servo import SETTINGS
 from tuisim.engine.core.servo.control import Ending
-from tuisim.engine.core.servo.settings import COUNTS_PER_DEG, FULL_ACTUATION
+from tuisim.engine.core.servo.motor import MAX_WINDOW_MS
+from tuisim.engine.core.servo.settings import (
+    BATTERY_V,
+    COUNTS_PER_DEG,
+    FIRMWARES,
+    FULL_ACTUATION,
+)
 from tuisim.engine.core.servo.trajectory import MILLI
 from tuisim.engine.shim.pybricks import ev3devices, motor, robotics, tools
 from tuisim.engine.shim.pybricks.brick import (
@@ -30,10 +36,10 @@ from tuisim.engine.shim.pybricks.parameters import Direction, NamedEnum, Port
 from tuisim.engine.shim.pybricks.unsimulated import MODEL
 from tuisim.engine.shim.unsupported.modules import refused_part
 
-SPEEDS_DPS = 0, 2000
-"""The lowest and the highest speed that a setting may give, even if no motor is so fast..."""
-ACCELERATIONS_DPS2 = 50, 20_000
-"""...and the lowest and the highest acceleration."""
+RANGES = (0, 2000), (50, 20_000)
+"""The speeds of a motor that a setting may ask for, even if no motor is so fast, and the accelerations."""
+STALLED_TICKS = 25
+"""A motor that runs at a power and stands for 250 ms is stalled."""
 MIN_PROFILE_DEG = 5
 """The least tolerance of the position that a program can choose for a motor."""
 MIN_RADIUS_MM = 10
@@ -49,10 +55,9 @@ class Stop(NamedEnum):
 class Motor(motor.Motor):
     """A motor under version 4 of Pybricks."""
 
-    # A smart ending has the same effect as a plain one, because a simulated motor is always where it should be.
     ENDINGS: ClassVar[Mapping[Any, Ending]] = {
         **motor.Motor.ENDINGS,
-        **{stop: Ending[stop.name.removesuffix("_SMART")] for stop in Stop},
+        **{stop: Ending(stop.value) for stop in Stop},
     }
     model = refused_part("Motor", "model", MODEL)
 
@@ -66,8 +71,13 @@ class Motor(motor.Motor):
     ) -> None:
         self._set_up(port, positive_direction, gear_ratio(gears), keeps_angle=not reset_angle)
         self.control = Control(self, self.simulated.control)
+        motor = self.simulated
+        kind = FIRMWARES[motor.law].motors[motor.kind]
+        self._max_mv = kind.max_mv
         if profile is not None:
-            self.control.target_tolerances(position=max(MIN_PROFILE_DEG, whole(profile)))
+            tolerance = max(MIN_PROFILE_DEG, whole(profile))
+            self.control.target_tolerances(position=tolerance)
+            self.control.pid(*kind.compute_gains(tolerance)[:2])
 
     def _command(self) -> None:
         """Count a command. If a drive base moves or holds the motor, that lets both of its motors coast."""
@@ -95,10 +105,12 @@ class Motor(motor.Motor):
         super().reset_angle(angle)
 
     def speed(self, window: float = 100) -> int:
-        """Return the speed in degrees per second; the window of time changes nothing, because the speed is exact."""
-        if whole(window) <= 0:
-            raise invalid_argument()
-        return super().speed()
+        """Return the mean speed over the last `window` milliseconds, in degrees per second."""
+        window_ms = whole(window)
+        _check_range(window_ms, 1, MAX_WINDOW_MS)
+        now_us = self.brick.read("speed", *self.port_names)
+        rate = self.simulated.find_counts_per_s(now_us, window_ms)
+        return self.simulated.control.settings.tell(rate)
 
     def done(self) -> bool:
         """Return whether no move of the motor is under way."""
@@ -106,7 +118,9 @@ class Motor(motor.Motor):
 
     def stalled(self) -> bool:
         """Return whether something blocks the motor."""
-        return self.control.stalled()
+        motor = self.simulated
+        is_blocked = motor.blocked_ticks >= STALLED_TICKS and bool(motor.duty)
+        return self.control.stalled() or is_blocked
 
     def load(self) -> int:
         """Return the load on the motor in mNm: always 0 for a simulated motor."""
@@ -115,14 +129,12 @@ class Motor(motor.Motor):
 
     def settings(self, max_voltage: float | None = None) -> tuple[int] | None:
         """Set the highest voltage in mV; without an argument, return it."""
-        control = self.simulated.control
-        full_mv = 6000 if self.simulated.kind == "small-angular" else 9000
         if max_voltage is None:
-            return (control.settings.actuation * full_mv // FULL_ACTUATION,)
-        actuation = FULL_ACTUATION * whole(max_voltage) // full_mv
-        self.change_setting(
-            control, SETTINGS.index("actuation"), max(PERCENT, min(FULL_ACTUATION, actuation))
-        )
+            return (self._max_mv,)
+        self._max_mv = whole(max_voltage)
+        actuation = int(FULL_ACTUATION * self._max_mv / BATTERY_V / 1000)
+        limited = max(PERCENT, min(FULL_ACTUATION, actuation))
+        self.change_setting(self.simulated.control, SETTINGS.index("actuation"), limited)
         return None
 
     def close(self) -> None:
@@ -142,18 +154,22 @@ class Control(motor.Control):
 
     SETTINGS_WHILE_ACTIVE = True
 
+    def check(self, value: float, kind: int) -> int:
+        """Return a speed, of kind 0, or an acceleration, of kind 1, if the firmware takes it; else raise ValueError."""
+        number = whole(value)
+        motor_deg = number * self.scale / COUNTS_PER_DEG / len(self._owner.port_names)
+        _check_range(motor_deg, *RANGES[kind])
+        return number
+
     def limits(
         self, speed: float | None = None, acceleration: Any = None, torque: float | None = None
     ) -> tuple[int, ...] | None:
-        """Set the highest speed, acceleration and torque in mNm; without arguments, return them.
-
-        The torque has no effect on a simulated motor.
-        """
+        """Return the highest speed, acceleration and torque in mNm, or set them."""
         if isinstance(acceleration, tuple):
             acceleration = acceleration[0]
-        for value, lowest, highest in ((speed, *SPEEDS_DPS), (acceleration, *ACCELERATIONS_DPS2)):
+        for kind, value in enumerate((speed, acceleration)):
             if value is not None:
-                _check_range(whole(value) * self.scale / COUNTS_PER_DEG, lowest, highest)
+                self.check(value, kind)
         return self._access(speed=speed, acceleration=acceleration, torque_unm=torque)
 
     def pid(  # type: ignore[override]
@@ -165,10 +181,8 @@ class Control(motor.Control):
         integral_rate: float | None = None,
     ) -> tuple[int, ...] | None:
         """Set the gains in micro-Nm per degree (and second), and two more numbers; without arguments, return them."""
-        scale = self._control.settings.torque_unm * COUNTS_PER_DEG / FULL_ACTUATION
-        kp, ki, kd = (None if gain is None else round(gain / scale) for gain in (kp, ki, kd))
         gains = super().pid(kp, ki, kd, integral_deadzone, integral_rate)
-        return gains and (*(round(gain * scale) for gain in gains[:3]), *gains[3:5])
+        return gains and gains[:5]
 
     def load(self) -> int:
         """Return the load on the motor or drive base in mNm: always 0 in the simulation."""
@@ -180,6 +194,7 @@ class DriveBase(robotics.DriveBase):
     """A robot with two driven wheels, under version 4 of Pybricks."""
 
     CONTROL = Control
+    MIN_SIZE_MM = 1
 
     _stops: tuple[int, ...] = ()
     """The decelerations of `straight` and `turn`, if `settings` has set any."""
@@ -276,23 +291,22 @@ class DriveBase(robotics.DriveBase):
         pairs = [value if isinstance(value, tuple) else (value, value) for value in values]
         current = super().settings(*(first for first, _ in pairs))
         usual = self._base.usual[1::2]
+        stops = self._stops or usual
         if current is not None:
-            stops = zip(usual, self._stops or usual, strict=True)
-            straight, turn = (start if start == stop else (start, stop) for start, stop in stops)
+            both = zip(usual, stops, strict=True)
+            straight, turn = (start if start == stop else (start, stop) for start, stop in both)
             return current[0], straight, current[2], turn
         self._stops = tuple(
-            start if stop is None else self._check_setting(abs(whole(stop)), index)
-            for index, start, (_, stop) in zip((1, 3), usual, pairs[1::2], strict=True)
+            before if stop is None else self._check_setting(abs(whole(stop)), index)
+            for index, before, (_, stop) in zip((1, 3), stops, pairs[1::2], strict=True)
         )
         if self._stops != usual:
             self.tell(Call.SET_SLOWING, *self._stops)
         return None
 
     def _check_setting(self, value: int, index: int) -> int:
-        control = (self._base.distance if index < 2 else self._base.heading).settings
-        motor_units = value * control.counts_per_unit / (2 * COUNTS_PER_DEG)
-        _check_range(motor_units, *(ACCELERATIONS_DPS2 if index % 2 else SPEEDS_DPS))
-        return value
+        controls = self.distance_control, self.heading_control
+        return controls[index // 2].check(value, index % 2)  # type: ignore[no-any-return]
 
     def brake(self) -> None:
         """Stop the drive base, and let its motors brake."""
@@ -315,15 +329,13 @@ class DriveBase(robotics.DriveBase):
     def reset(self, distance: float = 0, angle: float = 0) -> None:
         """Set the distance in mm and the angle in degrees that the drive base shows now."""
         self.stop()
-        super().reset()
         base = self._base
-        total, difference = self._zeros
-        total -= base.distance.settings.counts(whole(distance))
         if base.uses_gyro:
             self.brick.tell(0, Call.SET_GYRO, whole(angle))
-            self._zeros = total, 0
-        else:
-            self._zeros = total, difference - base.heading.settings.counts(whole(angle))
+        super().reset()
+        total, difference = self._zeros
+        total -= base.distance.settings.counts(whole(distance))
+        self._zeros = total, difference - base.heading.settings.counts(whole(angle))
 
 
 class GyroDriveBase(DriveBase):
