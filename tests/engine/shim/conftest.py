@@ -14,6 +14,7 @@ from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.remote_spec import REMOTE_CHANNELS, REMOTE_CODES, BeaconSpec, RemotePress
 from tuisim.engine.core.spec import (
+    ColorSensorSpec,
     GyroSpec,
     InfraredSpec,
     MotorSpec,
@@ -111,6 +112,9 @@ ROBOTS = {
     "geared": RobotSpec(gear_ratio=0.5),
     "newer gyro": RobotSpec(gyro=GyroSpec(keeps_angle=True)),
     "hub": BUILT_IN["Prime_Robot"],
+    "hub with an eye": replace(
+        BUILT_IN["Prime_Robot"], color_sensors=(ColorSensorSpec("eye", "E", 60.0, 0.0),)
+    ),
 }
 WORLDS = {
     "empty": FAR_WALL,

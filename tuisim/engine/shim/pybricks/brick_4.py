@@ -111,10 +111,15 @@ class System(Connected):
         """Return `read` bytes of the storage from `offset` on, or write the bytes `write` there.
 
         The bytes stay when the program ends.
+
+        Raises:
+            TypeError: the program asks for both or neither.
         """
-        if write is not None:
+        if read is None and write is not None:
             self._stored[offset : offset + len(write)] = write
             return None
+        if write is not None:
+            raise TypeError("read or write, not both")
         return bytes(self._stored[offset : offset + whole(read)])
 
     def reset_storage(self) -> None:

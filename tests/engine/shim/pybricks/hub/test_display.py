@@ -62,6 +62,14 @@ def test_a_text_is_shown_character_by_character(lab: Lab, hub: Any) -> None:
     assert read_rows(lab) == ["     "] * 5
 
 
+@pytest.mark.parametrize("symbols", [("A",), ("A", "BC"), (1, 100)])
+def test_a_menu_takes_characters_and_numbers_of_two_digits(
+    hub: Any, symbols: tuple[Any, ...]
+) -> None:
+    with pytest.raises(ValueError, match="Invalid argument"):
+        hub_menu(*symbols)
+
+
 def test_a_menu_is_chosen_from_by_buttons(lab: Lab, hub: Any) -> None:
     presses = {100: "right", 200: "", 300: "right", 400: "", 500: "left", 600: "", 700: "enter"}
 

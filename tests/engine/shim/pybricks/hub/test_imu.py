@@ -50,8 +50,9 @@ def test_the_heading_is_not_reset_while_it_is_needed(hub: Any) -> None:
 def test_settings_are_told_as_they_were_made(hub: Any) -> None:
     hub.imu.settings(3, heading_correction=363)
     assert hub.imu.settings()[:2] == (3, 2500.0) and hub.imu.settings()[-1] == 363
-    with pytest.raises(ValueError, match="Invalid argument"):
-        hub.imu.settings(heading_correction=180)
+    for wrong in ({"heading_correction": 180}, {"angular_velocity_scale": (360, 376, 360)}):
+        with pytest.raises(ValueError, match="Invalid argument"):
+            hub.imu.settings(**wrong)
 
 
 def test_a_hub_without_a_gyro_has_no_heading() -> None:

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from tests.engine.shim.conftest import RunOn
 from tests.engine.shim.pybricks.lab import TICK_NS, Lab
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.core.servo.trajectory import MILLI
@@ -284,6 +285,17 @@ def test_a_motor_that_stands_at_full_power_is_stalled() -> None:
     assert stalled_ms[0] in range(490, 560) and motor.done()
     motor.stop()
     assert not motor.stalled()
+
+
+def test_ambient_light_is_grey(run_on: RunOn) -> None:
+    text = (
+        "from pybricks.hubs import PrimeHub\nfrom pybricks.parameters import Color, Port\n"
+        "from pybricks.pupdevices import ColorSensor\nfrom pybricks.tools import StopWatch\n"
+        "eye = ColorSensor(Port.E)\nwatch = StopWatch()\nlit = eye.hsv()\nwatch.reset()\n"
+        "print(eye.hsv(surface=False) == Color(0, 0, eye.ambient()), eye.color(False), watch.time())"
+    )
+    done = run_on(text, robot="hub with an eye", profile="pybricks4")
+    assert done.lines == ["True Color.NONE 30"], done.errors
 
 
 def test_no_motor_is_made_in_a_task() -> None:

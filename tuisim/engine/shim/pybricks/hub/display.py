@@ -169,10 +169,11 @@ def hub_menu(*symbols: Any) -> Any:
     """Let the user choose a symbol, a character or a number, with the left, right and centre buttons, and return it.
 
     Raises:
-        ValueError: there are fewer than two symbols.
+        ValueError: there are fewer than two symbols, or one is longer than a character or two digits.
         RuntimeError: a task runs.
     """
     Connected.brick.require_no_task()
-    if len(symbols) < 2:
+    too_long = any(len(str(symbol)) > 2 - isinstance(symbol, str) for symbol in symbols)
+    if len(symbols) < 2 or too_long:
         raise invalid_argument()
     return (Display.current or Display())._choose(symbols)

@@ -29,7 +29,7 @@ UNCORRECTED = (
 )
 """The settings of a hub that was not calibrated."""
 MAX_CORRECTION_DEG = 15
-"""Largest difference between the correction of the heading and a whole turn, in degrees."""
+"""Largest difference between the correction of the heading, or a scale, and a whole turn, in degrees."""
 
 
 class Accelerometer(Connected):
@@ -147,7 +147,7 @@ class IMU(Accelerometer):
         """Set the thresholds of rest and the corrections; without arguments, return them. They change no measurement.
 
         Raises:
-            ValueError: the correction of the heading is far from a whole turn.
+            ValueError: a correction or a scale is far from a whole turn.
         """
         given = (
             angular_velocity_threshold,
@@ -159,7 +159,8 @@ class IMU(Accelerometer):
         )
         if all(value is None for value in given):
             return self._settings
-        if heading_correction is not None and abs(heading_correction - 360) > MAX_CORRECTION_DEG:
+        turns = heading_correction or 360, *(angular_velocity_scale or ())
+        if any(abs(turn_deg - 360) > MAX_CORRECTION_DEG for turn_deg in turns):
             raise invalid_argument()
         self.brick.command()
         pairs = zip(given, self._settings, strict=True)

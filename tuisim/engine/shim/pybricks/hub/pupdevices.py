@@ -82,9 +82,9 @@ class ColorSensor(Sensor):
     KIND = "color"
     SWITCH_US = 30_000
     lights = Lights()
-    _colors: Sequence[Any] = (
-        *(Color.RED, Color.YELLOW, Color.GREEN, Color.BLUE, Color.WHITE, Color.NONE),
-    )
+    _colors: Sequence[Any] = [
+        Color[name] for name in ("RED", "YELLOW", "GREEN", "BLUE", "WHITE", "NONE")
+    ]
 
     def __init__(self, port: Port) -> None:
         super().__init__(port)
@@ -104,20 +104,29 @@ class ColorSensor(Sensor):
         """Return the ambient light in percent."""
         return self._read_as("COL-AMBIENT", int)
 
+    def _read_hsv(self, surface: bool, convert: Callable[[tuple[int, int, int]], Result]) -> Result:
+        """Measure hue, saturation and value, and return what `convert` makes of them.
+
+        Args:
+            surface: Whether to measure with the sensor's light; without it, the ambient light is grey.
+            convert: Converts them.
+        """
+        if surface:
+            return self._read_light(lambda *channels: convert(measure_hsv(*channels)))
+        return self._read_as("COL-AMBIENT", lambda percent: convert((0, 0, percent)))
+
     def hsv(self, surface: bool = True) -> Any:
         """Return hue, saturation and value of what the sensor sees, as a `Color`."""
-        return self._read_light(lambda *channels: Color(*measure_hsv(*channels)))
+        return self._read_hsv(surface, lambda measured: Color(*measured))
 
     def color(self, surface: bool = True) -> Any:
         """Return the detectable colour that is nearest to what the sensor sees."""
-        return self._read_light(
-            lambda *channels: find_nearest(measure_hsv(*channels), self._colors)
-        )
+        return self._read_hsv(surface, lambda measured: find_nearest(measured, self._colors))
 
     def detectable_colors(self, colors: Any = None) -> Sequence[Any] | None:
         """Set the colours from which `color` chooses; without an argument, return them."""
         if colors is None:
-            return self._colors
+            return (*self._colors,)
         self._colors = tuple(colors)
         return None
 
