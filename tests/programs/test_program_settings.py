@@ -437,6 +437,16 @@ FORMATTED = "from pybricks.tools import wait\nprint(f'{1}')\n"
             "p.py:2: the brick's Python would refuse this line (f-string), and 1 more",
         ),
         (FORMATTED, {"profile": "pybricks4"}, ""),
+        (
+            f"import time\n{FORMATTED}",
+            {},
+            "p.py:3: the brick's Python would refuse this line (f-string)",
+        ),
+        (
+            f"import time\n{FORMATTED}",
+            {"profile": "pybricks4"},
+            "p.py:1: the brick's Python would refuse this line (time)",
+        ),
         (FORMATTED.replace("f'", "'"), {}, ""),
         (f"{USUAL}print(f'')\n", {}, ""),
     ],

@@ -335,8 +335,12 @@ def _decide_ground(facts: SourceFacts, free: Collection[str]) -> dict[str, bool]
 
 def _find_refused(facts: SourceFacts, profile: str | ProfileSpec) -> tuple[RefusedLine, ...]:
     """Return the lines that the Python of the simulated brick would refuse."""
-    law = _find_law(profile) if facts.refused else None
-    return facts.refused if law is MotorLaw.PYBRICKS else ()
+    if not facts.refused:
+        return ()
+    from tuisim.programs.robot.brick_syntax import MISSING
+
+    is_later = _find_law(profile) is MotorLaw.PYBRICKS_4
+    return tuple(line for line in facts.refused if (line.what in MISSING) == is_later)
 
 
 def _find_shown(facts: SourceFacts, free: Collection[str]) -> tuple[str, ...] | None:

@@ -32,6 +32,10 @@ def found(text: str) -> list[tuple[int, str]]:
         ("c = {**a}", "** in a dictionary"),
         ("f(*a, 1)", "something after * in a call"),
         ("f(*a, *b)", "something after * in a call"),
+        ("import sys, time", "time"),
+        ("from collections import namedtuple", "collections"),
+        ("class A:\n    @property\n    def b(self): pass", "property"),
+        ("open('log.txt')", "open"),
     ],
 )
 def test_a_refused_line_is_found(text: str, what: str) -> None:
@@ -47,6 +51,8 @@ def test_a_refused_line_is_found(text: str, what: str) -> None:
         "f(1, *a, x=1, **b)",
         "def f(a: int, *b, c=1, **d) -> int: return lambda *x: x",
         "n = 1_000",
+        "time = watch.time()\nwait(time)",
+        "def open(): pass\nopen()\ngripper.open()",
         "async def f():\n    async with a: await b",
         "def f():\n    nonlocal_ = yield from g()",
     ],

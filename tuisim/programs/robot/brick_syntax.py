@@ -1,4 +1,7 @@
-"""Syntax that MicroPython 1.11 on the brick refuses: it has the syntax of Python 3.4, and a bit more."""
+"""What MicroPython on a brick refuses: 1.11, of Pybricks 2.0, has the syntax of Python 3.4 and a bit more.
+
+The MicroPython of Pybricks 4 has newer syntax, but lacks some modules and names.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,12 @@ import ast
 from collections.abc import Iterable, Iterator
 
 from tuisim.base.data_class import dataclass
+from tuisim.programs.robot.course import find_definitions
 from tuisim.programs.robot.source import Module
+
+MISSING_MODULES = "array", "asyncio", "collections", "os", "threading", "time"
+MISSING = (*MISSING_MODULES, "filter", "frozenset", "open", "property")
+"""What Pybricks 4 lacks; it refuses nothing else of what `_name_refused` tells, and Pybricks 2.0 has it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +24,7 @@ class RefusedLine:
     file: str
     line: int
     what: str
-    """The refused syntax, such as `f-string`."""
+    """The refused syntax, such as `f-string`, or name."""
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}: the brick's Python would refuse this line ({self.what})"
@@ -32,14 +40,20 @@ def find_refused_lines(modules: Iterable[Module]) -> tuple[RefusedLine, ...]:
 
 
 def _find_refused(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    own = {*find_definitions(tree)}
     for node in ast.walk(tree):
-        if what := _name_refused(node):
+        what = _name_refused(node)
+        if what and what not in own:
             yield getattr(node, "lineno", 0), what
 
 
 def _name_refused(node: ast.AST) -> str:
     """Return what syntax a node is that the brick refuses; empty if the brick accepts it."""
     match node:
+        case ast.alias(name=name) | ast.ImportFrom(module=str(name)) if name in MISSING_MODULES:
+            return name
+        case ast.Name(id="filter" | "frozenset" | "open" | "property" as name, ctx=ast.Load()):
+            return name
         case ast.JoinedStr():
             return "f-string"
         case ast.NamedExpr():
