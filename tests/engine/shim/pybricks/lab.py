@@ -40,6 +40,7 @@ class MotorsOnly:
         self._robot = robot
         self.zero_deg = 0.0
         self.motors, self.bases = motors, DriveBases()
+        self.scales: dict[ServoMotor, float] = {}
         self.find_number = motors.index
         self.on_command: CommandHook = lambda *_: None
 
