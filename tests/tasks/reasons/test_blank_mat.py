@@ -28,6 +28,13 @@ LOGS = """
 for row in range(40):
     print("Light:", sensor.reflected_light_intensity)
 """
+WATCHES = """
+darkest = 100
+for row in range(40):
+    light = sensor.reflected_light_intensity
+    if light < darkest:
+        darkest = light
+"""
 REMEDY = "the mat is plain white: -b Loop gives it a line (tuisim backgrounds)"
 
 
@@ -38,9 +45,10 @@ REMEDY = "the mat is plain white: -b Loop gives it a line (tuisim backgrounds)"
         (HEAD + LIBRARY, REMEDY),
         (HEAD + FOLLOW.format(turns=5), ""),
         (HEAD + LOGS, ""),
+        (HEAD + WATCHES, ""),
         ("# %%sim_magic -b Loop" + HEAD + FOLLOW.format(turns=40), ""),
     ],
-    ids=["own loop", "follow_line", "reads seldom", "only logs", "a line"],
+    ids=["own loop", "follow_line", "reads seldom", "only logs", "stands still", "a line"],
 )
 def test_a_follower_on_the_plain_mat_is_told_how_to_get_a_line(text: str, told: str) -> None:
     assert describe_blank_mat(run_text(text)) == told

@@ -27,6 +27,9 @@ def describe_blank_mat(run: StoredRun) -> str:
     """Return that a run which is over steered by light on plain white, and what gives it a line; else empty."""
     world = run.spec.world
     is_blank = world.background == EMPTY_MAT and not world.pen_marks
+    last = run.telemetry.last()
+    if last is None or last.pose == world.start:
+        return ""
     if not is_blank or run.end is None or run.end.end not in (End.FINISHED, End.RAISED):
         return ""
     rows = read_readings(run.folder).find(MODES_BY_KIND["color"])
