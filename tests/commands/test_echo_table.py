@@ -87,3 +87,16 @@ def test_a_pipe_gets_every_table_as_it_is(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr("sys.stdout.isatty", lambda: False)
     assert draw_table(*BANDS).splitlines()[0].split("  ")[0] == "VARIABLE"
     assert len(draw_table(*WORDS).splitlines()) == 2
+
+
+def test_columns_whose_rows_are_alike_give_way_in_a_terminal_that_is_still_too_narrow(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    heads, rows = BANDS
+    other = ("Colour", 2, "1.67", "1.93", 7, "86.27", "85.50", "1.20", "pale grey", "200")
+    table = draw_table(heads, [*rows, other])
+    assert "Colour" in table
+    monkeypatch.setenv("COLUMNS", "65")
+    table = draw_table(heads, [*rows, other])
+    assert "Colour" not in table and "86.27" in table
+    assert max(map(len, table.split("\n"))) <= 65

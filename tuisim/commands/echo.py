@@ -194,8 +194,8 @@ def draw_table_lines(
     """Yield columns of text under their heads, aligned.
 
     In a terminal that is too narrow for it, the longest texts are broken between words; if that is not enough, heads of
-    several words take a line for each, and the gaps are narrower. Only if nothing else helps words are cut. Numbers and
-    dates stay whole.
+    several words take a line for each, and the gaps are narrower. Only if nothing else helps words are cut, and columns
+    left out in which all rows are alike. Numbers and dates stay whole.
 
     Args:
         heads: One for each column.
@@ -207,6 +207,32 @@ def draw_table_lines(
         for column in columns
     ]
     room = _measure_columns() if sys.stdout.isatty() else None
+    cells, widths, gap = _fit_cells(heads, body, room)
+    differing = [number for number, column in enumerate(columns) if len({*column}) > 1]
+    if room and _sum_widths(widths, gap) > room and 0 < len(differing) < len(heads):
+        return draw_table_lines(
+            [heads[number] for number in differing],
+            [columns[number] for number in differing],
+            [right[number] for number in differing],
+        )
+    pads = [str.rjust if at_right else str.ljust for at_right in right]
+    padded = [
+        map(pad, column, repeat(width))
+        for pad, column, width in zip(pads, cells, widths, strict=True)
+    ]
+    return (line.rstrip() for line in map(gap.join, zip(*padded, strict=True)))
+
+
+def _fit_cells(
+    heads: Sequence[str], body: Sequence[Sequence[str]], room: int | None
+) -> tuple[list[list[str]], list[int], str]:
+    """Return columns of texts under their heads, as narrow as they need to be, their widths, and the text between two.
+
+    Args:
+        heads: One for each column.
+        body: Texts of each column.
+        room: For a row, in characters; None for any length.
+    """
     above = _stack_heads(heads)
     for lines, gap, min_widths in (
         ([[*heads]], "  ", _GOOD_CELLS),
@@ -238,12 +264,7 @@ def draw_table_lines(
         ]
         if _sum_widths(widths, gap) <= room:
             break
-    pads = [str.rjust if at_right else str.ljust for at_right in right]
-    padded = [
-        map(pad, column, repeat(width))
-        for pad, column, width in zip(pads, cells, widths, strict=True)
-    ]
-    return (line.rstrip() for line in map(gap.join, zip(*padded, strict=True)))
+    return cells, widths, gap
 
 
 def _stack_heads(heads: Sequence[str]) -> list[list[str]]:
