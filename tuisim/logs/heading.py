@@ -13,7 +13,7 @@ from tuisim.base.errors import LogError, counted
 from tuisim.engine.core.conditions import NUMBER
 from tuisim.logs.arrow import make_names_unique
 from tuisim.logs.cells import EMPTY_CELLS, is_unit
-from tuisim.logs.columns import NAMES, parse_time_name
+from tuisim.logs.columns import parse_time_name
 from tuisim.logs.dates import is_date, is_moment
 from tuisim.logs.warnings import Notes
 
@@ -78,8 +78,6 @@ class _Rank(NamedTuple):
     """Columns with numbers or times."""
     words: int
     """Columns with words, negative: the fewer, the better."""
-    as_wide: int
-    """Lines with as many cells, also outside of the run; 0 if they were not counted."""
     width: int
 
 
@@ -96,7 +94,7 @@ class _Run(NamedTuple):
         numbers = sum(kind in "nt" for kind in self.kinds)
         words = -self.kinds.count("w")
         width = len(self.kinds)
-        return _Rank(width > 1 and numbers > 0, self.length, numbers, words, 0, width)
+        return _Rank(width > 1 and numbers > 0, self.length, numbers, words, width)
 
 
 def parse_kinds(cells: Sequence[str]) -> str:
@@ -128,66 +126,69 @@ def find_heading(
     Raises:
         LogError: `header_row` is not the number of one of the lines.
     """
+    comments: Sequence[tuple[int, str]] = ()
     if header_row:
-        return _read_heading(lines, notes, separator, header_row)
-    separator, lines = _read_excel_line(lines, separator)
-    sign = _find_comment_sign([text for _, text in lines])
-    comments = list(takewhile(lambda line: sign and line[1].startswith(sign), lines))
+        lines = [line for line in lines if line[0] >= header_row]
+        if not lines or lines[0][0] != header_row:
+            raise LogError(f"has no line {header_row} for --header", "lines count from 1")
+    else:
+        if lines and (excel := _EXCEL.fullmatch(lines[0][1])):
+            separator = separator or excel[1]
+            lines = lines[1:]
+        comments, lines = _split_comments(lines)
     # Other signs may also begin a row below: percent signs, a row of units.
-    has_comments = sign == "#"
-    body = [
-        line for line in lines[len(comments) :] if not (has_comments and line[1].startswith(sign))
-    ]
-    if not body:
+    has_comments = bool(comments) and comments[0][1].startswith("#")
+    if not lines:
         return Heading(has_comments=has_comments)
-    separator = separator or sniff_separator([text for _, text in body])
-    table = list(_split_lines(body, separator))
-    run = _find_table(table)
-    start = _find_first_row(table, run)
-    above = table[:start]
-    names: list[str] | None = None
-    if comments and not above:
-        row, text = comments[-1]
-        names = _find_comment_names(text.removeprefix(sign), table, separator)
-    if names is None:
-        names, above, start = _find_names(table, above, start, run)
+    separator = separator or sniff_separator([text for _, text in lines])
+    table = list(_split_lines(lines, separator))
+    if header_row:
+        run = _find_table(table[1:] or table)
+        start = min(1 + run.start, len(table))
+        names: Sequence[str] | None = table[0].cells
+        row = header_row
+        _tell_unread(table[1:start], "below the heading", notes)
+    else:
+        if comments and (heading := _read_comment(comments[-1], table[0], separator)):
+            table = [heading, *table]
+        run = _find_table(table)
+        start = _find_first_row(table, run)
+        names, above, start = _find_names(table, table[:start], start, run)
         row = table[len(above)].row
+        _tell_unread(above, "above the table", notes)
     if names is None:
         names = _number_columns(table[start].cells, notes)
         row = 0
-    _tell_unread(above, "above the table", notes)
     follow = table[start].row if start < len(table) else table[-1].next_row
     return Heading(_clean_names(names, notes), separator, has_comments, follow, run.kinds, row)
 
 
-def _read_excel_line(
-    lines: Sequence[tuple[int, str]], separator: str
-) -> tuple[str, Sequence[tuple[int, str]]]:
-    """Return the separator, and the lines without a first one such as `sep=;`, in which Excel names the separator."""
-    excel = _EXCEL.fullmatch(lines[0][1]) if lines else None
-    return (separator or excel[1], lines[1:]) if excel else (separator, lines)
+def _split_comments(
+    lines: Sequence[tuple[int, str]],
+) -> tuple[Sequence[tuple[int, str]], Sequence[tuple[int, str]]]:
+    """Return the comments above a table, and the other lines."""
+    texts = [text for _, text in lines]
+    sign = next((sign for sign in _COMMENT_SIGNS if texts and texts[0].startswith(sign)), "")
+    rest = [text for text in texts if not text.startswith(sign)]
+    if not sign or (sign in SEPARATORS and any(sign in text for text in rest)):
+        return (), lines
+    comments = list(takewhile(lambda line: line[1].startswith(sign), lines))
+    below = lines[len(comments) :]
+    return comments, [line for line in below if sign != "#" or not line[1].startswith(sign)]
+
+
+def _read_comment(comment: tuple[int, str], below: _Line, separator: str) -> _Line | None:
+    """Return a comment as a line of names; None if it has more or fewer words than the line below it has cells."""
+    row, text = comment
+    names = [name.strip() for name in split_cells(text.lstrip("#%/; \t"), separator)]
+    kinds = parse_kinds(names)
+    is_heading = len(names) == len(below.cells) and is_words(kinds)
+    return _Line(row, names, kinds, below.row) if is_heading else None
 
 
 def _tell_unread(lines: Sequence[_Line], where: str, notes: Notes) -> None:
     unread = f"{counted(len(lines), 'line')} {where} not read"
     notes.say_rows(unread, [line.row for line in lines])
-
-
-def _read_heading(
-    lines: Sequence[tuple[int, str]], notes: Notes, separator: str, header_row: int
-) -> Heading:
-    """Return the format of the table whose heading is in a known line."""
-    lines = [line for line in lines if line[0] >= header_row]
-    if not lines or lines[0][0] != header_row:
-        raise LogError(f"has no line {header_row} for --header", "lines count from 1")
-    separator = separator or sniff_separator([text for _, text in lines])
-    first, *rest = _split_lines(lines, separator)
-    kinds = _find_table(rest or [first]).kinds
-    below = takewhile(lambda line: is_words(line.kinds) and "-" not in line.kinds, rest)
-    unread = list(below) if has_numbers(kinds) else []
-    _tell_unread(unread, "below the heading", notes)
-    follow = unread[-1].next_row if unread else first.next_row
-    return Heading(_clean_names(first.cells, notes), separator, False, follow, kinds, header_row)
 
 
 def _clean_names(names: Sequence[str], notes: Notes) -> tuple[str, ...]:
@@ -250,12 +251,7 @@ def sniff_separator(lines: Sequence[str]) -> str:
     best = max(SEPARATORS, key=ranks.__getitem__)
     signs = ranks[best]
     blanks = ranks[BLANKS]
-    is_better = (blanks.as_wide, blanks.words, blanks.numbers) > (
-        signs.as_wide,
-        signs.words,
-        signs.numbers,
-    )
-    beats = best == "," and is_better and _has_inner_commas(lines)
+    beats = best == "," and blanks > signs and _has_inner_commas(lines)
     if blanks.is_table and (beats or not signs.is_table) and 2 * blanks.length >= len(lines) - 1:
         return BLANKS
     if signs.is_table:
@@ -268,9 +264,7 @@ def sniff_separator(lines: Sequence[str]) -> str:
 
 
 def _rank_separator(lines: Sequence[str], separator: str) -> _Rank:
-    table = list(_split_lines(list(enumerate(lines)), separator))
-    rank = _find_table(table).rank
-    return rank._replace(as_wide=sum(len(line.cells) == rank.width for line in table))
+    return _find_table(list(_split_lines(list(enumerate(lines)), separator))).rank
 
 
 def _has_inner_commas(lines: Sequence[str]) -> bool:
@@ -334,20 +328,6 @@ def has_numbers(kinds: str) -> bool:
 def is_words(kinds: str) -> bool:
     """Return whether cells of these kinds may be names: there are words, and no numbers."""
     return "w" in kinds and "n" not in kinds
-
-
-def _find_comment_names(text: str, table: Sequence[_Line], separator: str) -> list[str] | None:
-    """Return the column names in a comment; None if it has more or fewer names than the rows have cells."""
-    width = len(table[0].cells)
-    names = [name.strip() for name in split_cells(text.strip(), separator)]
-    if len(names) != width:
-        names = text.split()
-        if parse_time_name(names[0] if names else "").base not in NAMES:
-            # Without the name of a time first, the line may be a sentence.
-            return None
-    alike = len(table) < 2 or table[0].kinds == table[1].kinds
-    is_heading = len(names) == width and alike and parse_kinds(names).strip("n") != ""
-    return names if is_heading else None
 
 
 def _find_names(
