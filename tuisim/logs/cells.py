@@ -37,29 +37,36 @@ class NumberForm:
     """Replacements that give Python's form of the number: regular expressions and texts."""
     words: str = ""
     """The form in words, such as that the numbers have a unit; empty for Python's own form."""
+    decimal: str = ""
+    """The decimal sign, if no other one is possible."""
     is_hexadecimal: bool = False
 
 
-PLAIN = NumberForm()
+PLAIN = NumberForm(decimal=".")
 DECIMAL_COMMA = NumberForm(
-    rf"^[+-]?\d*,?\d+(?:[eE][+-]?\d+)?$|{_SPECIAL}", ((",", "."),), "have a comma as decimal sign"
+    rf"^[+-]?\d*,?\d+(?:[eE][+-]?\d+)?$|{_SPECIAL}",
+    ((",", "."),),
+    "have a comma as decimal sign",
+    ",",
 )
 _COMMAS = NumberForm(
     r"^[+-]?(?:\d{1,3}(?:,\d{3})+|\d{1,3})(?:\.\d*)?$",
     ((",", ""),),
     "have commas between thousands (1,000 is a thousand)",
+    ".",
 )
 _POINTS = NumberForm(
     r"^[+-]?(?:\d{1,3}(?:\.\d{3})+|\d{1,3})(?:,\d*)?$",
     ((r"\.", ""), (",", ".")),
     "have points between thousands (1.000 is a thousand)",
+    ",",
 )
 _GAPS = NumberForm(
     r"^[+-]?\d{1,3}(?:[ '\x{a0}\x{202f}’]\d{3})*(?:[.,]\d*)?$",
     ((r"[ '\x{a0}\x{202f}’]", ""), (",", ".")),
     "have gaps between thousands",
 )
-_HEXADECIMAL = NumberForm(r"^0[xX][0-9a-fA-F]{1,15}$", (), "are hexadecimal", True)
+_HEXADECIMAL = NumberForm(r"^0[xX][0-9a-fA-F]{1,15}$", (), "are hexadecimal", is_hexadecimal=True)
 _TRUTHS = NumberForm(r"^(?i:true|false)$", ((r"(?i)true", "1"), (r"(?i)false", "0")))
 
 
@@ -101,15 +108,12 @@ def find_form(cells: pa.Array, separator: str, decimal: str) -> NumberForm | Non
     special = pc.match_substring_regex(texts, _SPECIAL)
     if not pc.all(special).as_py():
         texts = texts.filter(pc.invert(special))
-    if decimal == ",":
-        forms: tuple[NumberForm, ...] = (DECIMAL_COMMA, _POINTS)
-    elif decimal:
-        forms = (PLAIN, _COMMAS, _GAPS, _HEXADECIMAL)
-    elif separator == ",":
-        forms = (PLAIN, _COMMAS, DECIMAL_COMMA, _POINTS, _GAPS, _HEXADECIMAL)
-    else:
-        forms = (PLAIN, DECIMAL_COMMA, _COMMAS, _POINTS, _GAPS, _HEXADECIMAL)
-    forms += (_TRUTHS,)
+    commas = (_COMMAS, DECIMAL_COMMA) if separator == "," else (DECIMAL_COMMA, _COMMAS)
+    forms = [
+        form
+        for form in (PLAIN, *commas, _POINTS, _GAPS, _HEXADECIMAL, _TRUTHS)
+        if not decimal or form.decimal in ("", decimal)
+    ]
     return _choose_form(texts, forms) or _find_unit_form(texts, forms)
 
 
