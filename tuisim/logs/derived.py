@@ -142,9 +142,13 @@ def _sample_column(log: Log, name: str, base: Series) -> FloatArray:
         return log.numbers(name)[base.rows]
     if (known := find_computed_columns(log).get(name)) is not None:
         return known()[base.rows]
-    numbers = list_numeric_columns(schema)
-    there = dict.fromkeys((*(known.partition(" #")[0] for known in log.names), *numbers, TIME))
-    raise LogError(f"no variable {name!r}", among(name, there), file=log.title)
+    raise LogError(f"no variable {name!r}", among(name, _list_names(log)), file=log.title)
+
+
+def _list_names(log: Log) -> list[str]:
+    """Return the names of variables, without numbers of runs, and of columns with numbers."""
+    variables = (name.partition(" #")[0] for name in log.names)
+    return [*dict.fromkeys((*variables, *list_numeric_columns(log.table.schema), TIME))]
 
 
 def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
@@ -156,14 +160,7 @@ def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
 
 def list_expression_words(log: Log) -> Iterator[str]:
     """Yield the words allowed in an expression: variables, columns, functions."""
-    known = dict.fromkeys(
-        (
-            *(name.partition(" #")[0] for name in log.names),
-            *list_numeric_columns(log.table.schema),
-            TIME,
-        )
-    )
-    yield from (name if name.isidentifier() else f"`{name}`" for name in known)
+    yield from (name if name.isidentifier() else f"`{name}`" for name in _list_names(log))
     yield from find_computed_columns(log)
     yield from (f"{name}(" for name in (*SIGNALS, *FUNCTIONS))
     yield from CONSTANTS
