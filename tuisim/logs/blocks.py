@@ -20,12 +20,7 @@ MAX_LINE_BYTES = 1 << 20
 MAX_DOCUMENT_BYTES = 64 << 20
 """Larger JSON documents, which may be a single line, are not read."""
 
-_BOMS = (
-    (codecs.BOM_UTF8, "utf-8"),
-    (codecs.BOM_UTF16_LE, "utf-16-le"),
-    (codecs.BOM_UTF16_BE, "utf-16-be"),
-)
-
+_UTF_8 = "utf-8-sig"
 _GUESSES = {"cp1252": "Windows-1252", "gbk": "GBK", "shift_jis": "Shift-JIS"}
 """Encodings that are tried in this order if a text is not UTF-8, with their names."""
 
@@ -65,7 +60,7 @@ class LineCutter:
         self._newlines = io.IncrementalNewlineDecoder(None, translate=True)
         self._is_known = encoding != ""
         """Whether the encoding was chosen, so that bytes which do not fit are replaced."""
-        encoding = encoding or "utf-8"
+        encoding = encoding or _UTF_8
         try:
             # Python knows more codecs than those of text: hex, rot13, undefined.
             b"0".decode(encoding, "replace")
@@ -108,18 +103,17 @@ class LineCutter:
 
     def _decode(self, data: bytes) -> str:
         if not self._is_known and self._row == 1 and not self._rest:
-            data = self._find_mark(data)
+            self._find_utf_16(data)
         try:
             return self._decoder.decode(data, final=not data)
         except UnicodeDecodeError:
             return self._guess(self._decoder.getstate()[0] + data)
 
-    def _find_mark(self, data: bytes) -> bytes:
-        """Choose UTF-16 if the first bytes of a text are in it; return them without a byte order mark."""
-        for mark, encoding in _BOMS:
-            if data.startswith(mark):
-                self._choose(encoding)
-                return data[len(mark) :]
+    def _find_utf_16(self, data: bytes) -> None:
+        """Choose UTF-16 if the first bytes of a text are in it."""
+        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            self._choose("utf-16")
+            return
         head = data[:2000]
         for odd, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
             # UTF-16 without a byte order mark: every second byte is null.
@@ -127,10 +121,9 @@ class LineCutter:
             if nulls > 0.4 * len(head[odd::2]) and len(head) > 3 and 0 not in head[1 - odd :: 2]:
                 self._notes.say(f"read as {encoding.upper()}")
                 self._choose(encoding)
-        return data
 
     def _choose(self, encoding: str) -> None:
-        self._is_known |= encoding != "utf-8"
+        self._is_known |= encoding != _UTF_8
         self._decoder = codecs.getincrementaldecoder(encoding)(
             "replace" if self._is_known else "strict"
         )
