@@ -106,12 +106,8 @@ def match_condition(column: pa.ChunkedArray, condition: ValueCondition) -> BoolA
     if condition.operator is Operator.CONTAINS:
         return match_text(column, condition.value)
     if condition.operator is Operator.CHANGES:
-        turns = (
-            _convert_mask(pc.not_equal(column[1:], column[:-1]))
-            if len(column) > 1
-            else np.zeros(0, bool)
-        )
-        return np.concatenate((np.zeros(min(1, len(column)), bool), turns))
+        turns = _convert_mask(pc.not_equal(column[1:], column[:-1]))
+        return np.append(False, turns)[: len(column)]
     compare: Callable[[Any, Any], Any] = getattr(pc, condition.operator.name.lower())
     kind = column.type
     if not (pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_duration(kind)):
