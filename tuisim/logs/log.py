@@ -38,26 +38,24 @@ class Member:
 
 def list_members(table: pa.Table, layout: Layout) -> list[Member]:
     """Return the series of a table, in order of first appearance."""
-    runs, run_codes = _encode_column(table.column(layout.run)) if layout.run else ([0], None)
+    runs, codes = _encode_column(table.column(layout.run)) if layout.run else ([0], _NO_ROWS)
     several = len(runs) > 1
-    if not layout.variable:
-        rows_of = _group_rows(run_codes, len(runs)) if several and run_codes is not None else [None]
-        keys = [(name, index) for index in range(len(runs)) for name in layout.values]
-        return [_build_member(name, runs[index], rows_of[index], several) for name, index in keys]
-    names, codes = _encode_column(table.column(layout.variable))
-    if not several or run_codes is None:
-        rows_of = [None] if len(names) == 1 else _group_rows(codes, len(names))
-        run = runs[0] if runs else 0
-        return [
-            _build_member(name, run, rows, False) for name, rows in zip(names, rows_of, strict=True)
-        ]
-    # Often most pairs of variable and run do not occur: number only those that do.
-    pairs, pair_codes = _encode_column(wrap_int64(codes.astype(np.int64) * len(runs) + run_codes))
-    rows_of = _group_rows(pair_codes, len(pairs))
-    keys = [(names[pair // len(runs)], runs[pair % len(runs)]) for pair in pairs]
+    names: Sequence[Any] = [None]
+    groups: Sequence[int] = range(len(runs))
+    if layout.variable:
+        names, name_codes = _encode_column(table.column(layout.variable))
+        groups = range(len(names))
+        if several:
+            # Often most pairs of variable and run do not occur: number only those that do.
+            pairs = name_codes.astype(np.int64) * len(runs) + codes
+            groups, codes = _encode_column(wrap_int64(pairs))
+        else:
+            codes = name_codes
+    all_rows = [None] if len(groups) == 1 else _group_rows(codes, len(groups))
     return [
-        _build_member(name, run, rows, True)
-        for (name, run), rows in zip(keys, rows_of, strict=True)
+        _build_member(name, runs[group % len(runs)], rows, several)
+        for group, rows in zip(groups, all_rows, strict=True)
+        for name in ([names[group // len(runs)]] if layout.variable else layout.values)
     ]
 
 
@@ -138,6 +136,8 @@ class Log:
     """Metadata of the runs, if the file was exported by tuisim."""
     form: ReadChoices = NO_CHOICES
     """How a text was read: what was chosen, else what was found."""
+    first_lines: Sequence[tuple[int, str]] = ()
+    """The first lines of a text that are not blank, each with its number."""
     derived: Mapping[str, Series] = field(default_factory=dict)
     _cache: LogCache = field(default_factory=LogCache, repr=False, compare=False)
 

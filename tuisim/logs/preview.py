@@ -8,7 +8,7 @@ from tuisim.base.errors import shortened
 from tuisim.logs.choices import WORDS, ReadChoices
 from tuisim.logs.columns import ROW, UNIT_NAMES, is_numeric, list_time_columns
 from tuisim.logs.log import Log
-from tuisim.logs.reader import read_beginning, read_first_lines
+from tuisim.logs.reader import read_beginning
 
 _MAX_LINE = 60
 """Maximum number of characters of a line of the file."""
@@ -23,21 +23,17 @@ class Preview:
 
     Args:
         path: The file.
-        choices: How it is read at first.
-        log: Its first rows, read in this way.
-
-    Raises:
-        LogError: it cannot be read.
+        log: Its first rows.
     """
 
     MAX_CELL = 24
     """Maximum number of characters of a cell."""
 
-    def __init__(self, path: str, choices: ReadChoices, log: Log) -> None:
+    def __init__(self, path: str, log: Log) -> None:
         self._path = path
         self.log = log
         """The rows as they are read now."""
-        self.lines = read_first_lines(path, choices.encoding)
+        self.lines = log.first_lines
         """The first lines of a text, each with its number."""
 
     def read(self, choices: ReadChoices) -> None:

@@ -153,21 +153,29 @@ def _build_log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: Rea
     if has_guessed_order(table, layout):
         notes.say(f"the dates in {layout.time!r} are read as day, month, year")
     metadata = arrow.read_metadata(parts[0].schema) or read_companion(Path(title))
-    if metadata:
-        return Log(title, table, layout, notes.texts(), notes.left_out, metadata, notes.form)
     # Of the rows so far, so that they are collected anew each time.
     later = Notes()
-    if not choices.unit and (unit_s := guess_unit_s(table, layout)) is not None:
-        layout = replace(layout, unit_s=unit_s)
-        later.say(
-            f"the times in {layout.time!r} are whole numbers in large steps: read as"
-            f" {UNIT_NAMES[unit_s]} (--unit selects another)"
-        )
-    table, layout, seconds = order_times(table, layout, later)
-    _tell_odd_columns(table, layout, unread, later)
-    texts = (*notes.texts(), *later.texts())
-    cache = LogCache(times_s=seconds)
-    return Log(title, table, layout, texts, notes.left_out, metadata, notes.form, _cache=cache)
+    seconds = None
+    if not metadata:
+        if not choices.unit and (unit_s := guess_unit_s(table, layout)) is not None:
+            layout = replace(layout, unit_s=unit_s)
+            later.say(
+                f"the times in {layout.time!r} are whole numbers in large steps: read as"
+                f" {UNIT_NAMES[unit_s]} (--unit selects another)"
+            )
+        table, layout, seconds = order_times(table, layout, later)
+        _tell_odd_columns(table, layout, unread, later)
+    return Log(
+        title,
+        table,
+        layout,
+        (*notes.texts(), *later.texts()),
+        notes.left_out,
+        metadata,
+        notes.form,
+        notes.first_lines,
+        _cache=LogCache(times_s=seconds),
+    )
 
 
 def _tell_odd_columns(table: pa.Table, layout: Layout, unread: str, notes: Notes) -> None:
@@ -197,24 +205,6 @@ def read_companion(path: Path) -> Mapping[str, Any]:
     except (OSError, ValueError, RecursionError):
         return {}
     return metadata if isinstance(metadata, dict) else {}
-
-
-def read_first_lines(path: str, encoding: str) -> list[tuple[int, str]]:
-    """Return the first lines of a text that are not blank, each with its number; none of Parquet and Arrow files.
-
-    Raises:
-        LogError: it cannot be read.
-    """
-    notes = Notes()
-    with _name_in_errors(path), open(path, "rb") as handle:
-        head = handle.read(MAGIC_BYTES)
-        handle.seek(0)
-        if head.startswith(tuple(arrow.FORMATS)):
-            return []
-        text = unpack(head, handle, notes) or handle
-        cutter = LineCutter(notes, encoding=encoding)
-        block = cutter.feed(text.read(FIRST_BYTES) or b"") or cutter.feed(b"")
-    return [] if block is None else list(islice(block.lines(), _SHOWN_LINES))
 
 
 def join_tables(parts: Sequence[pa.Table]) -> pa.Table:
@@ -338,7 +328,8 @@ def _refuse_binary(data: bytes) -> None:
 def _choose_reader(
     block: Block, suffix: str, choices: ReadChoices, notes: Notes
 ) -> CsvReader | ObjectReader | DocumentReader:
-    lines = [line for _, line in islice(block.lines(), _JUDGED_LINES)]
+    notes.first_lines = list(islice(block.lines(), _SHOWN_LINES))
+    lines = [line for _, line in notes.first_lines[:_JUDGED_LINES]]
     is_table = suffix in _TABLES or choices.header > 0 or choices.separator != ""
     if has_tuples(lines):
         return CsvReader(notes, choices, strip_brackets)

@@ -27,6 +27,8 @@ class Notes:
     def __init__(self) -> None:
         self.form = NO_CHOICES
         """How a text is read: what was chosen, else what was found."""
+        self.first_lines: Sequence[tuple[int, str]] = ()
+        """The first lines of a text that are not blank, each with its number."""
         self._rows: dict[tuple[str, str], list[int]] = {}
         self._counts: dict[tuple[str, str], int] = {}
         self._general: dict[str, None] = {}

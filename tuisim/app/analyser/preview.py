@@ -59,7 +59,7 @@ class PreviewDialog(Dialog[ReadChoices]):
         super().__init__()
         self.TITLE_TEXT = f"How to read {Path(file).name}"
         self._choices = choices
-        self._preview = Preview(file, choices, log)
+        self._preview = Preview(file, log)
 
     def compose_content(self) -> ComposeResult:
         for names in (("header",), ("separator", "decimal"), ("time", "unit")):
