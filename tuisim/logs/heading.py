@@ -37,8 +37,8 @@ _NUMBER = re.compile(
 )
 _MIN_PART = 10
 """The table has at least one row for this many of the longest run of rows alike."""
-_MAX_LINES = 10
-"""Lines of a heading whose names have line breaks."""
+_MAX_LINES, _MAX_JOINS = 100, 100
+"""Maximum lines of a quoted row, and maximum failed attempts to join lines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,20 +128,16 @@ def find_heading(
     """
     comments: Sequence[tuple[int, str]] = ()
     if header_row:
-        lines = [line for line in lines if line[0] >= header_row]
-        if not lines or lines[0][0] != header_row:
-            raise LogError(f"has no line {header_row} for --header", "lines count from 1")
+        lines = _skip_to(lines, header_row)
     else:
-        if lines and (excel := _EXCEL.fullmatch(lines[0][1])):
-            separator = separator or excel[1]
-            lines = lines[1:]
+        separator, lines = _read_excel_line(lines, separator)
         comments, lines = _split_comments(lines)
     # Other signs may also begin a row below: percent signs, a row of units.
     has_comments = bool(comments) and comments[0][1].startswith("#")
     if not lines:
         return Heading(has_comments=has_comments)
     separator = separator or sniff_separator([text for _, text in lines])
-    table = list(_split_lines(lines, separator))
+    table = _split_lines(lines, separator)
     if header_row:
         run = _find_table(table[1:] or table)
         start = min(1 + run.start, len(table))
@@ -161,6 +157,22 @@ def find_heading(
         row = 0
     follow = table[start].row if start < len(table) else table[-1].next_row
     return Heading(_clean_names(names, notes), separator, has_comments, follow, run.kinds, row)
+
+
+def _skip_to(lines: Sequence[tuple[int, str]], row: int) -> Sequence[tuple[int, str]]:
+    """Return the lines from one on; raise a LogError if there is none with its number."""
+    lines = [line for line in lines if line[0] >= row]
+    if not lines or lines[0][0] != row:
+        raise LogError(f"has no line {row} for --header", "lines count from 1")
+    return lines
+
+
+def _read_excel_line(
+    lines: Sequence[tuple[int, str]], separator: str
+) -> tuple[str, Sequence[tuple[int, str]]]:
+    """Return the separator, and the lines without a first one such as `sep=;`, in which Excel names the separator."""
+    excel = _EXCEL.fullmatch(lines[0][1])
+    return (separator or excel[1], lines[1:]) if excel else (separator, lines)
 
 
 def _split_comments(
@@ -196,14 +208,6 @@ def _clean_names(names: Sequence[str], notes: Notes) -> tuple[str, ...]:
     return tuple(make_names_unique([" ".join(name.split()) for name in names], notes))
 
 
-def _find_comment_sign(texts: Sequence[str]) -> str:
-    """Return the sign of comments with which the first line begins; empty if it has none, or separates cells by it."""
-    sign = next((sign for sign in _COMMENT_SIGNS if texts and texts[0].startswith(sign)), "")
-    if sign in SEPARATORS and any(sign in text for text in texts if not text.startswith(sign)):
-        return ""
-    return sign
-
-
 def split_cells(line: str, separator: str) -> list[str]:
     """Return the cells of a line; an unclosed quote is an ordinary character."""
     if separator == BLANKS:
@@ -222,27 +226,56 @@ def close_quotes(text: str, separator: str) -> str:
     return re.sub(rf'(?m)(?:^|(?<={sign}))[ \t]+(?=")|(?<=")[ \t]+(?={sign})', "", text)
 
 
-def _split_lines(lines: Sequence[tuple[int, str]], separator: str) -> Iterator[_Line]:
-    """Yield the lines, split into cells; a heading with line breaks in quoted names is a single line."""
-    texts = [text for _, text in lines]
-    joined, end = join_lines(texts[:_MAX_LINES], separator) if texts[0].count('"') % 2 else ([], 0)
-    is_heading = end < len(lines) and 1 < len(joined) == len(split_cells(texts[end], separator))
-    if is_heading:
-        yield _Line(lines[0][0], joined, parse_kinds(joined), lines[end][0])
-    for index in range(end if is_heading else 0, len(lines)):
-        row, text = lines[index]
-        cells = split_cells(text, separator)
-        next_row = lines[index + 1][0] if index + 1 < len(lines) else row + 1
-        yield _Line(row, cells, parse_kinds(cells), next_row)
+def _split_lines(lines: Sequence[tuple[int, str]], separator: str) -> list[_Line]:
+    return [
+        _Line(row, cells, parse_kinds(cells), next_row)
+        for row, cells, next_row in split_rows(lines, separator, 0)
+    ]
 
 
-def join_lines(lines: Sequence[str], separator: str) -> tuple[list[str], int]:
-    """Return the cells of a row that goes on in further lines between quotes, none if it does not; and its lines."""
-    reader = csv.reader([line + "\n" for line in lines], delimiter=separator, strict=True)
+def split_rows(
+    lines: Sequence[tuple[int, str]], separator: str, width: int
+) -> Iterator[tuple[int, list[str], int]]:
+    """Yield the line of each row, its cells, and the next line; a quoted cell may span lines.
+
+    Args:
+        lines: Each with its number in the file; blank ones are skipped.
+        width: Number of cells of a row; 0 if it is that of the line below.
+    """
+    # Searching for the end of each unclosed quote, an ordinary character, would be too slow.
+    joins_left = _MAX_JOINS
+    start = 0
+    while start < len(lines):
+        row, text = lines[start]
+        cells: list[str] = []
+        stop = start + 1
+        if text.count('"') % 2 and joins_left:
+            cells, stop = _join_lines(lines, start, separator, width)
+            joins_left -= not cells
+        start = stop
+        if text.strip():
+            next_row = lines[stop][0] if stop < len(lines) else row + 1
+            yield row, cells or split_cells(text, separator), next_row
+
+
+def _join_lines(
+    lines: Sequence[tuple[int, str]], start: int, separator: str, width: int
+) -> tuple[list[str], int]:
+    """Return the cells of a row with line breaks between quotes, none if it has none, and the index of the next one."""
+    texts = [text for _, text in lines[start : start + _MAX_LINES]]
+    reader = csv.reader([text + "\n" for text in texts], delimiter=separator, strict=True)
     try:
-        return next(reader), reader.line_num
+        cells = next(reader)
     except csv.Error:
-        return [], 0
+        return [], start + 1
+    count = reader.line_num
+    width = width or len(split_cells(texts[min(count, len(texts) - 1)], separator))
+    inner = [text.split(separator) for text in texts[1:count]]
+    has_rows = any(
+        len(row) == width and ('"' not in separator.join(row) or parse_kinds(row[:1]) == "n")
+        for row in inner
+    )
+    return ([], start + 1) if has_rows or not 1 < len(cells) == width else (cells, start + count)
 
 
 def sniff_separator(lines: Sequence[str]) -> str:
@@ -264,7 +297,7 @@ def sniff_separator(lines: Sequence[str]) -> str:
 
 
 def _rank_separator(lines: Sequence[str], separator: str) -> _Rank:
-    return _find_table(list(_split_lines(list(enumerate(lines)), separator))).rank
+    return _find_table(_split_lines(list(enumerate(lines)), separator)).rank
 
 
 def _has_inner_commas(lines: Sequence[str]) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice, takewhile
 from typing import Any
@@ -29,9 +29,9 @@ from tuisim.logs.heading import (
     find_heading,
     has_numbers,
     is_words,
-    join_lines,
     parse_kinds,
     split_cells,
+    split_rows,
 )
 from tuisim.logs.typed_columns import TypedColumns
 from tuisim.logs.units import TEXT, TIMEDELTA
@@ -40,8 +40,6 @@ from tuisim.logs.warnings import Notes
 _BLANKS = re.compile(r'(?<!\S)("[^"\n]*")(?!\S)|[ \t]+')
 _MARGINS = re.compile(r"(?m)^[ \t]+|[ \t]+$")
 _COMMENTS = re.compile(r"(?m)^#.*")
-_MAX_LINES, _MAX_JOINS = 100, 100
-"""Maximum lines of a quoted row, and maximum failed attempts to join lines."""
 _MAY_BE_NAMES = re.compile(r"(?m)^[ \t]*[\"']?[^\W\d]")
 _LOOK_AHEAD = 10
 """Lines in which a heading and rows below it are looked for."""
@@ -69,7 +67,6 @@ class CsvReader:
         """Whether the table has ended, so that the rest of the file is another one's."""
         self._has_gaps = False
         """Whether there are blanks between quotes and separators."""
-        self._joins_left = _MAX_JOINS
         self._columns = TypedColumns(notes, choices.decimal)
 
     @property
@@ -225,7 +222,8 @@ class CsvReader:
         short = []
         long = []
         others = []
-        for row, cells in self._split_rows(block):
+        lines = list(enumerate(block.text.split("\n"), block.first_row))
+        for row, cells, _ in split_rows(lines, self._separator, width):
             if len(cells) < width:
                 if has_numbers(self._heading.kinds) and not has_numbers(parse_kinds(cells)):
                     others.append(row)
@@ -244,36 +242,6 @@ class CsvReader:
         return [
             pa.array([cells[index] for cells in rows], pa.string()) for index in range(width)
         ], numbers
-
-    def _split_rows(self, block: Block) -> Iterator[tuple[int, list[str]]]:
-        """Yield each non-blank row with its cells; a quoted cell may span lines."""
-        lines = block.text.split("\n")
-        next_index = 0
-        for index, line in enumerate(lines):
-            if index < next_index or not line.strip():
-                continue
-            cells, count = self._join(lines[index : index + _MAX_LINES])
-            next_index = index + count
-            yield block.first_row + index, cells or split_cells(line, self._separator)
-
-    def _join(self, lines: Sequence[str]) -> tuple[list[str], int]:
-        """Return the cells of a row with line breaks in quotes, none if it has none, and its number of lines."""
-        if lines[0].count('"') % 2 and self._joins_left:
-            cells, count = join_lines(lines, self._separator)
-            if len(cells) == len(self._heading.names) and not any(
-                map(self._is_row, lines[1:count])
-            ):
-                return cells, count
-            # An unclosed quote is an ordinary character; searching for its end from every line would be too slow.
-            self._joins_left -= 1
-        return [], 1
-
-    def _is_row(self, line: str) -> bool:
-        """Return whether a line seems to be a row of its own, not text between quotes."""
-        cells = line.split(self._separator)
-        if len(cells) != len(self._heading.names):
-            return False
-        return '"' not in line or parse_kinds(cells[:1]) == "n"
 
 
 def _are_both_numbers(kind: str, other: str) -> bool:
