@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -19,7 +18,6 @@ from tuisim.logs.columns import (
     ROW,
     UNITS_S,
     Layout,
-    Times,
     find_epoch_unit_s,
     find_texts,
     is_numeric,
@@ -37,15 +35,6 @@ _MAX_RUNS = 1000
 _JUDGED_TIMES = 1000
 _MIN_STEPS = {1e-9: 1e7, 1e-6: 1e4, 1e-3: 5.0}
 """Smallest usual step of whole numbers by the unit in seconds: a robot samples every 5 ms to 10 s."""
-
-
-class Ordered(NamedTuple):
-    """A table with its times; if they begin again, it has a column of runs."""
-
-    table: pa.Table
-    layout: Layout
-    seconds: FloatArray | None
-    """The times in seconds, shape (n,); None without a time column."""
 
 
 def join_times(table: pa.Table) -> pa.Table:
@@ -106,36 +95,39 @@ def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
     return next((unit_s for unit_s, min_step in _MIN_STEPS.items() if step >= min_step), None)
 
 
-def order_times(table: pa.Table, layout: Layout, notes: Notes) -> Ordered:
-    """Return a table, with a column of runs if its time begins again; `notes` receives the rows where it goes back."""
+def order_times(
+    table: pa.Table, layout: Layout, notes: Notes
+) -> tuple[pa.Table, Layout, FloatArray | None]:
+    """Return a table, with a column of runs if its time begins again, its layout, and its times in seconds, if any.
+
+    Args:
+        notes: Receives the rows where time goes back.
+    """
     if layout.time in (ROW, "row"):
-        return Ordered(table, layout, None)
-    times = read_times(table.column(layout.time), layout.unit_s, layout.since_first)
-    _tell_wraps(times, notes)
-    back = np.flatnonzero(times.seconds[1:] < times.seconds[:-1]) + 1
-    if not len(back) or layout.run or not _is_one_clock(table, layout, back):
-        return Ordered(table, layout, times.seconds)
-    restarts = _find_restarts(times.seconds, back)
-    others = np.setdiff1d(back, restarts)
-    if len(others):
-        notes.say(f"time goes back in {list_rows((others + 1).tolist())} of the table")
-    if not len(restarts) or len(restarts) > _MAX_RUNS:
-        return Ordered(table, layout, times.seconds)
-    notes.say(
-        f"time begins again in {list_rows((restarts + 1).tolist())} of the table:"
-        f" {counted(len(restarts) + 1, 'run')}"
+        return table, layout, None
+    seconds, wraps, period = read_times(
+        table.column(layout.time), layout.unit_s, layout.since_first
     )
-    begins = np.zeros(table.num_rows, np.int64)
-    begins[[0, *restarts]] = 1
-    name = make_names_unique([*table.column_names, "run"])[-1]
-    table = table.append_column(name, wrap_int64(np.cumsum(begins)))
-    return Ordered(table, replace(layout, run=name), times.seconds)
+    if len(wraps):
+        notes.say(f"the clock begins again at 0 in {_name_rows(wraps)}: {period} is added")
+    back = np.flatnonzero(seconds[1:] < seconds[:-1]) + 1
+    if len(back) and not layout.run and _is_one_clock(table, layout, back):
+        restarts = _find_restarts(seconds, back)
+        others = np.setdiff1d(back, restarts)
+        if len(others):
+            notes.say(f"time goes back in {_name_rows(others)}")
+        if 0 < len(restarts) <= _MAX_RUNS:
+            runs = counted(len(restarts) + 1, "run")
+            notes.say(f"time begins again in {_name_rows(restarts)}: {runs}")
+            name = make_names_unique([*table.column_names, "run"])[-1]
+            numbers = 1 + np.searchsorted(restarts, np.arange(table.num_rows), side="right")
+            table = table.append_column(name, wrap_int64(numbers))
+            layout = replace(layout, run=name)
+    return table, layout, seconds
 
 
-def _tell_wraps(times: Times, notes: Notes) -> None:
-    if len(times.wraps):
-        rows = list_rows((times.wraps + 1).tolist())
-        notes.say(f"the clock begins again at 0 in {rows} of the table: {times.period} is added")
+def _name_rows(rows: IntArray) -> str:
+    return f"{list_rows((rows + 1).tolist())} of the table"
 
 
 def _find_restarts(seconds: FloatArray, back: IntArray) -> IntArray:
