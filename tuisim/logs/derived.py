@@ -113,10 +113,10 @@ def _compute_series(log: Log, definition: Definition, names: Sequence[str], base
     }
     functions: Functions = {
         **FUNCTIONS,
-        "slope": (1, partial(_apply_to_signal, base, compute_derivative), SIGNALS["slope"]),
-        "integral": (1, partial(_apply_to_signal, base, compute_integral), SIGNALS["integral"]),
-        "average": (2, _average, SIGNALS["average"]),
-        "resample": (2, _refuse_resample, SIGNALS["resample"]),
+        "slope": (1, partial(_apply_to_signal, base, compute_derivative), ""),
+        "integral": (1, partial(_apply_to_signal, base, compute_integral), ""),
+        "average": (2, _average, ""),
+        "resample": (2, _refuse_resample, ""),
     }
     values = evaluate(definition.expression, columns, functions)
     if definition.period_s is None:

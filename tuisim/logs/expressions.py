@@ -50,6 +50,7 @@ _OPERATORS: Mapping[type[ast.AST], Operator] = {
     ast.Eq: Operator.EQUAL,
     ast.NotEq: Operator.NOT_EQUAL,
 }
+_QUOTED = re.compile("`([^`]*)`")
 _SINGLE_EQUAL = re.compile("(?<![<>=!:])=(?!=)")
 """Another spelling of `==`."""
 
@@ -129,18 +130,13 @@ def _read(text: str) -> tuple[ast.Expression, dict[str, str]]:
     if len(text) > MAX_CHARS:
         raise LogError(f"the expression has {len(text)} characters", f"at most {MAX_CHARS}")
     names: dict[str, str] = {}
-    return _parse(_replace_backticks(text, names), text), names
-
-
-def _replace_backticks(text: str, names: dict[str, str]) -> str:
-    parts = text.split("`")
-    if len(parts) % 2 == 0:
+    for name in _QUOTED.findall(text):
+        names[f"column_{len(names)}_"] = name
+    stand_ins = iter(names)
+    source = _QUOTED.sub(lambda _: next(stand_ins), text)
+    if "`" in source:
         raise LogError(f"a backtick is not closed in {text!r}")
-    for index in range(1, len(parts), 2):
-        stand_in = f"column_{index}_"
-        names[stand_in] = parts[index]
-        parts[index] = stand_in
-    return "".join(parts)
+    return _parse(source, text), names
 
 
 def _parse(source: str, text: str) -> ast.Expression:
