@@ -115,10 +115,11 @@ class Rows:
         """Return a cell as text."""
         return format_cell(self._log.table.column(column)[row])
 
-    def shown(self) -> LogTable:
-        """Return the rows and columns shown as a table."""
+    def shown(self, first: int = 0, last: int | None = None) -> LogTable:
+        """Return the rows and columns shown as a table; of the rows those from `first` to before `last`."""
         table = self._log.table.select(self.columns)
-        return table if self.view.order is None else table.take(self.view.order)
+        order = self.view.order
+        return table[first:last] if order is None else table.take(order[first:last])
 
     # Which rows, in which order
 
@@ -241,14 +242,8 @@ class Rows:
 
     def _find_places(self, text: str, first: int, last: int) -> IntArray:
         """Return the positions from `first` to before `last` whose rows contain a text."""
-        table = self._log.table.select(self.columns)
-        part = (
-            table.slice(first, last - first)
-            if self.view.order is None
-            else table.take(self.view.order[first:last])
-        )
         matches = np.zeros(last - first, bool)
-        for column in part.columns:
+        for column in self.shown(first, last).columns:
             matches |= match_text(column, text)
         return first + np.flatnonzero(matches)
 
