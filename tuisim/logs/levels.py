@@ -98,15 +98,11 @@ class Light(NamedTuple):
 
     def undo_response(self, percents: FloatArray) -> FloatArray:
         """Return the greys of the mat that give readings, both 0 to 100."""
-        if (self.black, self.white) == (0.0, 100.0):
-            return percents
-        return (percents - self.black) / (self.white - self.black) * 100.0
+        return (percents - self.black) / ((self.white - self.black) / 100.0)
 
     def seen(self, percents: FloatArray) -> FloatArray:
         """Return the readings that greys of the mat give."""
-        if (self.black, self.white) == (0.0, 100.0):
-            return percents
-        return self.black + percents * (self.white - self.black) / 100.0
+        return self.black + percents * ((self.white - self.black) / 100.0)
 
 
 PLAIN_LIGHT = Light()
