@@ -13,13 +13,13 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tuisim.base.atomic import replacing
 from tuisim.base.errors import ConfigError, ExportError
-from tuisim.engine.runs.arrays import FloatArray, IntArray
+from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
+from tuisim.logs.signals import sort_known
 from tuisim.logs.units import parse_unit
 
 SUFFIX = ".mcap"
@@ -128,7 +128,7 @@ def _write_messages(
 
 def _build_value_channel(log: Log, name: str) -> _Channel:
     series = log.series(name)
-    rows = _sort_rows(np.isfinite(series.values), series.time_s)
+    rows = sort_known(series.time_s, series.values)
     times_s = series.time_s[rows]
     pairs = zip(times_s.tolist(), series.values[rows].tolist(), strict=True)
     base = name.partition(" #")[0]
@@ -146,7 +146,7 @@ def _build_pose_channels(log: Log) -> Iterator[_Channel]:
     known = np.isfinite([runs, *numbers]).all(axis=0)
     ordinals = np.unique(runs[known]).tolist()
     for run in ordinals:
-        rows = _sort_rows(known & (runs == run), log.times_s)
+        rows = sort_known(log.times_s, np.where(known & (runs == run), 1.0, np.nan))
         topic = "/pose" if len(ordinals) == 1 else f"/pose #{run:.0f}"
         times_ns = _round_nanoseconds(log.times_s[rows])
         poses = map(_build_pose, times_ns, *numbers[:, rows].tolist())
@@ -163,12 +163,6 @@ def _build_pose(time_ns: int, x_mm: float, y_mm: float, heading_deg: float) -> d
         "frame_id": FRAME_ID,
         "pose": {"position": position, "orientation": turn},
     }
-
-
-def _sort_rows(chosen: NDArray[np.bool_], times_s: FloatArray) -> IntArray:
-    """Return the chosen rows in the order of their times."""
-    rows = np.flatnonzero(chosen)
-    return rows[np.argsort(times_s[rows], kind="stable")]
 
 
 def _round_nanoseconds(times_s: FloatArray) -> list[int]:
