@@ -269,10 +269,5 @@ class Log:
         table = (
             self.table.drop_columns([column]) if column in self.table.column_names else self.table
         )
-        cache = replace(
-            self._cache,
-            numbers={
-                name: numbers for name, numbers in self._cache.numbers.items() if name != column
-            },
-        )
+        cache = replace(self._cache, numbers={})
         return replace(self, table=table, derived=derived, _cache=cache)
