@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -16,7 +16,7 @@ from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import PER_S, convert_to_floats
 from tuisim.logs.choices import ReadChoices
-from tuisim.logs.dates import SPAN, is_moment, normalize_dates, order_is_guessed
+from tuisim.logs.dates import C_TIME, SPAN, is_moment, normalize_dates, order_is_guessed
 from tuisim.logs.units import SECONDS
 
 if TYPE_CHECKING:
@@ -105,23 +105,15 @@ def find_epoch_unit_s(column: pa.ChunkedArray, unit_s: float | None) -> float | 
     Args:
         unit_s: The unit, if it is known; None guesses it from the size of the numbers.
     """
-    first = _find_first(column)
+    numbers = convert_to_floats(column[:_JUDGED_TIMES])
+    first = next(iter(numbers[np.isfinite(numbers)]), 0.0)
     units: tuple[float, ...] = (1.0, 1e-3, 1e-6, 1e-9) if unit_s is None else (unit_s,)
     return next(
         (unit for unit in units if _SINCE_1970_S[0] <= first * unit <= _SINCE_1970_S[1]), None
     )
 
 
-def _find_first(column: pa.ChunkedArray) -> float:
-    chunk: Any
-    for chunk in column.chunks:
-        numbers = convert_to_floats(pa.chunked_array([chunk.slice(0, 1000)]))
-        known = numbers[np.isfinite(numbers)]
-        if len(known):
-            return float(known[0])
-    return 0.0
-
-
+_JUDGED_TIMES = 1000
 _DAY_S = 86400.0
 _COUNTER = 2.0**32
 """After as many milliseconds or microseconds the counter of a microcontroller begins again."""
@@ -194,7 +186,8 @@ def parse_times(column: pa.ChunkedArray) -> Times:
     texts = normalize_dates(column.cast(pa.string()))
     spans = texts.filter(pc.match_substring_regex(texts, SPAN)).to_pandas()
     if not len(spans):
-        dates = pd.to_datetime(texts.to_pandas(), format="ISO8601", utc=True, errors="coerce")
+        form = "mixed" if pc.any(pc.match_substring_regex(texts, C_TIME)).as_py() else "ISO8601"
+        dates = pd.to_datetime(texts.to_pandas(), format=form, utc=True, errors="coerce")
         return Times(_count_seconds(dates - dates.bfill().iloc[0]))
     cells = texts.to_pandas()
     seconds = _count_seconds(pd.to_timedelta(cells.where(cells.isin(spans)), errors="coerce"))

@@ -18,13 +18,13 @@ _GAP = r"(?:T| *[/,_] *| +(?:- +)?)"
 _PART = r"(?:[.,]\d+)"
 """Fraction of a second."""
 _ZONE = r"(?:Z| ?UTC| ?[+-]\d{2}:\d{2}|[+-]\d{4})"
-_C_TIME = (
+C_TIME = (
     rf"[A-Z][a-z]{{2}} (?:{'|'.join(_MONTHS)}) {{1,2}}\d{{1,2}} \d{{2}}:\d{{2}}:\d{{2}} \d{{4}}"
 )
 """A date and time as `time.ctime` writes it."""
 MOMENT = (
     rf"(?:{_DATE}(?:{_GAP}\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?{_ZONE}?)?"
-    rf"|\d{{8}}T\d{{4,6}}|\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?|{_C_TIME})"
+    rf"|\d{{8}}T\d{{4,6}}|\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?|{C_TIME})"
 )
 """Regular expression of a date, a time of day with seconds, or both."""
 _MOMENT_CELL = re.compile(rf"\s*[\[(<]?\s*{MOMENT}\s*[\])>]?\s*")
@@ -35,10 +35,6 @@ SPAN = r"^-?(?:\d+ days? )?\d+:\d{2}:\d{2}(?:\.\d+)?$"
 """A time span as pandas prints it, or hours, minutes and seconds."""
 _USUAL = rf"{SPAN}|^\d{{4}}-\d{{2}}-\d{{2}}(?:$|[T ]\d{{2}}:\d{{2}}(?:$|[^,U]*$))"
 """Texts that need no change."""
-_C_TIME_CHANGES = (
-    (r"^[A-Z][a-z]{2} ([A-Z][a-z]{2}) +(\d{1,2}) (\d{2}:\d{2}:\d{2}) (\d{4})$", r"\4-\1-\2 \3"),
-    *((rf"^(\d{{4}})-{name}-", rf"\1-{month:02}-") for month, name in enumerate(_MONTHS, 1)),
-)
 _REWRITTEN = (
     (r"^[\[(<] *| *[\])>]$", ""),
     (r" ?UTC$", "Z"),
@@ -80,8 +76,6 @@ def normalize_dates(texts: Any) -> Any:
     if not pc.any(pc.invert(pc.match_substring_regex(texts, _USUAL))).as_py():
         return texts
     texts = _replace_patterns(texts, _REWRITTEN)
-    if pc.any(pc.match_substring_regex(texts, _C_TIME)).as_py():
-        texts = _replace_patterns(texts, _C_TIME_CHANGES)
     first, second = _find_largest_parts(texts)
     order = r"\3-\1-\2" if first <= _LAST_MONTH < second else r"\3-\2-\1"
     return _replace_patterns(texts, ((_YEAR_AT_END, order), *_PADDED))
