@@ -126,10 +126,8 @@ class CsvReader:
 
     def _begin(self, block: Block) -> Block:
         # There may be many comments above a table: read all of them, and some lines of the table.
-        lines = list(takewhile(lambda line: line[1].startswith("#"), block.lines()))
-        lines += islice(
-            (line for line in block.lines() if not line[1].startswith("#")), SNIFFED_LINES
-        )
+        comments = sum(1 for _ in takewhile(lambda line: line[1].startswith("#"), block.lines()))
+        lines = list(islice(block.lines(), comments + SNIFFED_LINES))
         if not lines:
             return block
         self._heading = find_heading(lines, self._notes, self._choices.sign, self._choices.header)
