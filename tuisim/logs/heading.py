@@ -281,17 +281,14 @@ def _join_lines(
 def sniff_separator(lines: Sequence[str]) -> str:
     """Return the separator with which lines are most certainly rows of a table, one of `SEPARATORS` or `BLANKS`."""
     ranks = {sign: _rank_separator(lines, sign) for sign in (*SEPARATORS, BLANKS)}
-    best = max(SEPARATORS, key=ranks.__getitem__)
+    # Without any number, the separator is the one that the lines have equally often.
+    best = max(SEPARATORS, key=lambda sign: (ranks[sign].width > 1, ranks[sign]))
     signs = ranks[best]
     blanks = ranks[BLANKS]
     beats = best == "," and blanks > signs and _has_inner_commas(lines)
     if blanks.is_table and (beats or not signs.is_table) and 2 * blanks.length >= len(lines) - 1:
         return BLANKS
-    if signs.is_table:
-        return best
-    # Without any number, the separator is the one that the lines have equally often.
-    best = max(SEPARATORS, key=lambda sign: (ranks[sign].width > 1, ranks[sign]))
-    if ranks[best].width > 1:
+    if signs.width > 1:
         return best
     return BLANKS if blanks.width > 1 and blanks.length == len(lines) else ","
 
