@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -120,19 +121,16 @@ def find_form(cells: pa.Array, separator: str, decimal: str) -> NumberForm | Non
 def _find_unit_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm | None:
     """Return the form of numbers with a unit behind them, such as `12 cm`; None if most of the texts lack it."""
     parts: Any = pc.extract_regex(texts, _UNIT)
-    units = pc.value_counts(pc.struct_field(parts, "unit").drop_null())
-    if not len(units):
-        return None
-    usual = max(units.to_pylist(), key=lambda unit: unit["counts"])
-    unit = str(usual["values"])
+    units = Counter(pc.struct_field(parts, "unit").drop_null().to_pylist())
+    unit, count = next(iter(units.most_common(1)), ("", 0))
     inner = _choose_form(pc.struct_field(parts, "number").drop_null(), forms)
     # Spans of pandas are times, also if all of them are `0 days`.
-    if inner is None or unit == "days" or 2 * usual["counts"] <= len(texts):
+    if inner is None or unit == "days" or 2 * count <= len(texts):
         return None
     # Labels such as 1a and 2a are no numbers.
     if not is_unit(unit) and not all(pc.struct_field(parts, "gap").to_pylist()):
         return None
-    escaped = "".join(rf"\x{{{ord(sign):x}}}" for sign in unit)
+    escaped = re.escape(unit)
     body = inner.pattern.replace("$", rf"\s*(?:{escaped})?$")
     words = f"have the unit {unit}" + (f" and {inner.words}" if inner.words else "")
     return NumberForm(body, ((rf"\s*{escaped}$", ""), *inner.changes), words)
