@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,9 @@ import pytest
 
 from tests.cases import cases
 from tests.conftest import Command
+from tuisim.base.errors import ConfigError
+from tuisim.commands.resolve import NO_CONFIG, prepare_app
+from tuisim.settings.command_line import Arguments
 
 LAB = """\
 program = "sub/where.py"
@@ -164,3 +168,25 @@ def test_a_wrong_press_in_the_first_line_is_told_in_one_sentence(
             "",
             "tuisim: waits.py, line 1: --press: 'entre' cannot be pressed (did you mean enter?)\n",
         )
+
+
+@cases(
+    "word, is_new",
+    {
+        "a new file": ("mine.py", True),
+        "a file that is there": ("other.py", False),
+        "no such folder": ("no/mine.py", None),
+        "a name without a suffix": ("mine", None),
+    },
+)
+def test_a_python_file_that_does_not_exist_begins_a_program_in_the_app(
+    word: str, is_new: bool | None, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(folder)
+    arguments = Arguments(world=None, settings={})
+    with suppress(ConfigError):
+        program = prepare_app([word], arguments, NO_CONFIG, can_begin=True).program
+        assert program is not None
+        assert (program.name, program.text == "") == (word, is_new)
+        return
+    assert is_new is None

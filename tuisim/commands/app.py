@@ -57,8 +57,11 @@ class Opened:
     """Whether nothing was named: no program, no world, no mat."""
 
 
-def read_opened(arguments: Arguments) -> Opened | None:
+def read_opened(arguments: Arguments, *, can_begin: bool = False) -> Opened | None:
     """Return what the app is asked to open; None if the cells of a notebook have been listed instead.
+
+    Args:
+        can_begin: Whether a Python file that does not exist is a new program.
 
     Raises:
         ConfigError: a program, a world, a run or an option is wrong.
@@ -76,7 +79,7 @@ def read_opened(arguments: Arguments) -> Opened | None:
     if arguments.run is not None:
         replay, prepared = prepare_replay(arguments.run, arguments.words, arguments, config)
         return Opened(prepared, goals, replay)
-    prepared = prepare_app(_list_words(arguments, goals), arguments, config)
+    prepared = prepare_app(_list_words(arguments, goals), arguments, config, can_begin)
     is_empty = (
         not arguments.words
         and not arguments.world
@@ -98,8 +101,8 @@ def read_opened(arguments: Arguments) -> Opened | None:
     name="open",
     help="""Open the app.
 
-    A PROGRAM is a Python file, a notebook, one of its cells (FILE.ipynb#2), a world or goals file, or an example by
-    name. The words after -- are its arguments.
+    A PROGRAM is a Python file, which may be new, a notebook, one of its cells (FILE.ipynb#2), a world or goals file,
+    or an example by name. The words after -- are its arguments.
 
     A program from a real robot gets the robot that it describes, unless -r names one: see tuisim guide real-programs.
 
@@ -113,7 +116,7 @@ def open_app(**given: Any) -> int:
     Raises:
         ConfigError: a program, a world, a run or an option is wrong, or there is no terminal.
     """
-    opened = read_opened(Arguments(**given))
+    opened = read_opened(Arguments(**given), can_begin=sys.stdin.isatty() and sys.stdout.isatty())
     if opened is None:
         return 0
     if not has_terminal():

@@ -25,6 +25,7 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.programs.notebook_file import is_notebook, read_notebook_programs
 from tuisim.programs.program_file import (
     ProgramSource,
+    build_program,
     drop_wrong_mat,
     find_program,
     find_wrong_mat,
@@ -193,8 +194,13 @@ def _prepare_cell(
         ) from None
 
 
-def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) -> Prepared:
+def prepare_app(
+    words: Sequence[str], arguments: Arguments, config: UserConfig, can_begin: bool = False
+) -> Prepared:
     """Return what the app opens: nothing, a program, a world, or a program in a world, as the user named them.
+
+    Args:
+        can_begin: Whether a Python file that does not exist, in a folder that does, is a new, empty program.
 
     Raises:
         ConfigError: program, magic line, world or options are wrong, or there are two programs.
@@ -212,7 +218,11 @@ def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) 
         return _prepare_cell(find_programs(word)[0].source, world, arguments, config)
     if word is None:
         return _prepare_word(word, world, arguments, config)
-    source = read_program(find_program(word))
+    path = find_program(word)
+    is_new = (
+        can_begin and path.suffix == ".py" and not os.path.lexists(path) and path.parent.is_dir()
+    )
+    source = build_program("", path, path.name) if is_new else read_program(path)
     mats = merge_settings(_select_defaults(world, config), source.options, arguments.settings)[
         "mats"
     ]

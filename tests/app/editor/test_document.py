@@ -29,7 +29,7 @@ from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.text_file import find_draft, keep_draft
 from tuisim.app.panels.code import Code
 from tuisim.app.snapshot import RunPhase
-from tuisim.programs.program_file import list_programs, read_program
+from tuisim.programs.program_file import build_program, list_programs, read_program
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 
@@ -324,3 +324,18 @@ async def test_a_file_that_may_not_be_written_is_saved_elsewhere(tmp_path: Path)
             return
         await typed(pilot, code, "x", "ctrl+s")
         await until(pilot, lambda: isinstance(app.screen, ProgramDialog))
+
+
+@pytest.mark.parametrize("exists", [True, False], ids=["an empty file", "a new file"])
+async def test_a_program_begun_from_nothing_is_saved_without_a_question(
+    exists: bool, tmp_path: Path
+) -> None:
+    path = tmp_path / "mine.py"
+    if exists:
+        path.touch()
+    program = build_program("", path, path.name).program
+    spec = build_run_spec(Settings({"background": "Empty_Map"}))
+    async with open_code(AppSettings(spec=spec, program=program)) as (pilot, app, code):
+        await typed(pilot, code, "x", "ctrl+s")
+        await until(pilot, lambda: path.exists() and path.read_text() == "x")
+        assert not app.document.dirty

@@ -122,10 +122,9 @@ class Document:
             try:
                 text, form = read_text(Path(program.path))
             except ConfigError:
-                # The file is missing or invalid by now: show what was read of it.
-                text = ""
-                form = TextFormat()
-            if text and self._parse_text(text) == program.text:
+                # The file is new, or missing or invalid by now: show what was read of it.
+                text, form = "", TextFormat()
+            if self._parse_text(text) == program.text:
                 self._text = text
                 self._form = form
                 self._is_file = True
