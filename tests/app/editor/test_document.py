@@ -243,10 +243,17 @@ async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path)
 @pytest.mark.quick_cases("later")
 @pytest.mark.parametrize(
     "answer, shown, kept",
-    [("r", "draft = 1\n", True), ("d", TEXT, False), ("escape", TEXT, True)],
-    ids=["restore", "discard", "later"],
+    [
+        ("r", "draft = 1\n", True),
+        ("ctrl+d", TEXT, False),
+        ("escape", TEXT, True),
+        ("d", None, True),
+    ],
+    ids=["restore", "discard", "later", "a key of the app"],
 )
-async def test_a_draft_is_offered(answer: str, shown: str, kept: bool, tmp_path: Path) -> None:
+async def test_a_draft_is_offered(
+    answer: str, shown: str | None, kept: bool, tmp_path: Path
+) -> None:
     path = tmp_path / "prog.py"
     keep_draft(str(path), "draft = 1\n")
     async with open_code(own(path)) as (pilot, app, code):
@@ -254,7 +261,8 @@ async def test_a_draft_is_offered(answer: str, shown: str, kept: bool, tmp_path:
         assert "3 lines differ" in screen_text(app)
         await pilot.press(answer)
         await pilot.pause()
-        assert code.query_one(CodeArea).program_text == shown
+        assert isinstance(app.screen, Question) is (shown is None)
+        assert code.query_one(CodeArea).program_text == (shown or TEXT)
         assert app.document.dirty is (answer == "r")
     assert (find_draft(str(path)) is not None) is kept
 

@@ -92,3 +92,16 @@ def test_what_is_no_draft_is_none(content: bytes, home: Path) -> None:
     (file,) = (home / FOLDER).iterdir()
     file.write_bytes(content)
     assert find_draft("/a/p.py") is None
+
+
+def test_unsaved_text_is_not_offered_for_a_program_of_that_name_in_another_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    keep_draft("mine.py", "x = 1\n")
+    (tmp_path / "other").mkdir()
+    monkeypatch.chdir(tmp_path / "other")
+    assert find_draft("mine.py") is None
+    draft = find_draft("../mine.py")
+    assert draft is not None
+    assert draft.path == str(tmp_path / "mine.py")

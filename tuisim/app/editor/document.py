@@ -234,18 +234,19 @@ class Document:
         when = time.strftime("%d %b %H:%M", time.localtime(draft.written_s))
         lines = count_differing_lines(self._text, draft.text)
         text = f"{name} was edited on {when} and not saved: {counted(lines, 'line differs', 'lines differ')}."
-        answers = (("r", "Restore the edited text"), ("d", "Discard it"))
+        # No key of the app, which may be pressed before the question is seen.
+        answers = (("r", "Restore the edited text"), ("ctrl+d", "Discard it"))
         self._app.push_screen(
             Question("Unsaved work", text, answers),
             lambda answer: self._handle_offer(draft, answer),
         )
 
     def _handle_offer(self, draft: Draft, answer: str | None) -> None:
-        if answer == "d":
+        if answer == "ctrl+d":
             drop_draft(draft.path)
         elif answer == "r" and self._program is None:
             self.restore(draft)
-        elif answer == "r" and draft.path == self._path:
+        elif answer == "r" and draft == find_draft(self._path):
             self._text = draft.text
             self.show()
 

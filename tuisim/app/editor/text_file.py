@@ -142,6 +142,7 @@ def keep_draft(path: str, text: str) -> None:
     Raises:
         ConfigError: the draft cannot be written.
     """
+    path = _locate(path)
     file = find_program_data(FOLDER, path)
     try:
         write_json(file, asdict(Draft(path, text, time.time())))
@@ -154,6 +155,7 @@ def keep_draft(path: str, text: str) -> None:
 
 def find_draft(path: str) -> Draft | None:
     """Return the draft of a program, None if there is no readable one."""
+    path = _locate(path)
     draft = _read_draft(find_program_data(FOLDER, path))
     return draft if draft and draft.path == path else None
 
@@ -177,4 +179,9 @@ def drop_draft(path: str) -> None:
     """Delete the draft of a program; one that cannot be deleted is offered again."""
     # The folder may be read-only by now; the text itself is safe.
     with suppress(OSError):
-        find_program_data(FOLDER, path).unlink(missing_ok=True)
+        find_program_data(FOLDER, _locate(path)).unlink(missing_ok=True)
+
+
+def _locate(path: str) -> str:
+    """Return the absolute path of a program, which other folders' programs of that name do not have."""
+    return path and os.path.abspath(path)
