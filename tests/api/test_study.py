@@ -200,6 +200,22 @@ def test_what_is_chosen_has_a_column_also_with_one_value() -> None:
     assert frame["program"].tolist() == ["program", "program 2"]
 
 
+TURNS = """\
+from pybricks.hubs import PrimeHub
+from pybricks.parameters import Direction, Port
+from pybricks.pupdevices import Motor
+from pybricks.robotics import DriveBase
+TRACK = 112
+base = DriveBase(Motor(Port.A, Direction.COUNTERCLOCKWISE), Motor(Port.B), 56, TRACK)
+base.turn(90)
+"""
+
+
+def test_no_robot_is_built_to_fit_a_wrong_constant() -> None:
+    frame = tuisim.experiment(TURNS, constants={"TRACK": [56, 112, 168]}, jobs=1)
+    assert frame["heading_deg"].tolist() == pytest.approx([-45, -90, -135], abs=1)
+
+
 @pytest.mark.slow
 def test_a_mean_that_is_known_needs_no_further_seeds() -> None:
     how: dict[str, Any] = {"metrics": {"end_mm": lambda run: run.pose.x_mm}, "jobs": 2}

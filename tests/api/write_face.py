@@ -153,7 +153,7 @@ def experiment(
         program: As for `simulate`; or several.
         seeds: The seeds, such as `range(200)`; by default 0.
         constants: Values of the program's constants, what it assigns to a name outside its functions:
-            `{{"GAIN": [0.2, 0.4]}}`.
+            `{{"GAIN": [0.2, 0.4]}}`. A robot that is read from a program is that of the values that stand in it.
         parameters: Values by key of a world or robot file: `{{"robot.wheel_diameter_mm": [54, 56]}}`; a text is read as
             after `--set`, such as `"latin(54, 58, 20)"`.
         metrics: Further columns by name, as functions of a run: `{{"end_x_mm": lambda run: run.pose.x_mm}}`. What one

@@ -13,6 +13,7 @@ from tuisim.base.errors import ConfigError
 from tuisim.base.source import Program
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.store import RunStore
+from tuisim.programs.constants import set_constants
 from tuisim.programs.function import read_function
 from tuisim.programs.plugged_words import describe_plugged
 from tuisim.programs.program_file import ProgramSource, build_program, find_program, read_program
@@ -42,7 +43,10 @@ def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:
 
 
 def prepare_program(
-    source: ProgramSource, arguments: Sequence[str], *layers: Mapping[str, Any]
+    source: ProgramSource,
+    arguments: Sequence[str],
+    *layers: Mapping[str, Any],
+    constants: Mapping[str, object],
 ) -> tuple[Program, ProgramSettings]:
     """Return a program to start, and its settings.
 
@@ -50,12 +54,14 @@ def prepare_program(
         source: The program.
         arguments: Its `sys.argv[1:]`; empty for those in the settings.
         layers: Settings by path, the later ones take precedence.
+        constants: Other values of its constants. A robot that is read from the program is that of the values that
+            stand in it, so a wrong value is not made right by a robot that fits it.
 
     Raises:
-        ConfigError: its settings do not fit it.
+        ConfigError: its settings do not fit it, or it has no such constant.
     """
     settings = build_program_settings(source, *layers)
-    started = settings.apply(source.program)
+    started = settings.apply(set_constants(source, constants).program)
     own = read_texts(arguments, "arguments")
     return replace(started, arguments=own) if own else started, settings
 
@@ -96,7 +102,9 @@ def run_program(
     run_options = build_run_options(timeout_s, answers)
     chosen = read_options(options)
     in_world = read_world(world, chosen.get("mats"))
-    started, settings = prepare_program(read_source(program), arguments, in_world, chosen)
+    started, settings = prepare_program(
+        read_source(program), arguments, in_world, chosen, constants={}
+    )
     spec = build_run_spec(settings.settings)
     actions = press_actions(settings.settings["press"], spec.profile.tick_hz)
     handle = start_run(started, spec, replace(run_options, actions=actions), RunStore())

@@ -23,7 +23,6 @@ from tuisim.batch.table import RUN, RUN_ID
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import check_target
-from tuisim.programs.constants import set_constants
 from tuisim.programs.program_file import ProgramSource
 from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.task import MAX_JOBS, Keep, Value
@@ -217,8 +216,9 @@ class Study:
         in_world = read_world(world, chosen.get("mats"))
         if task := self._task:
             in_world = task.settings if world is None else {**in_world, **task.presses}
-        changed = set_constants(source, values)
-        started, settings = prepare_program(changed, self._arguments, in_world, chosen)
+        started, settings = prepare_program(
+            source, self._arguments, in_world, chosen, constants=values
+        )
         return Subject(started, settings.settings, frozenset(chosen), name)
 
     def add_variants(self, frame: pd.DataFrame) -> pd.DataFrame:
