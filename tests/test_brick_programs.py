@@ -36,7 +36,9 @@ WITH_FILE = [name for name in PROGRAMS if (FOLDER / name / "robot.toml").exists(
     [*((name, "") for name in PROGRAMS), *((name, "robot.toml") for name in WITH_FILE)],
     ids=[*PROGRAMS, *(f"{name} with its file" for name in WITH_FILE)],
 )
-def test_it_does_what_a_brick_does(name: str, robot: str, tmp_path: Path, here: Command) -> None:
+def test_a_brick_program_does_what_it_does_on_a_brick(
+    name: str, robot: str, tmp_path: Path, here: Command
+) -> None:
     place = ["-x", 157, "-y", 800] if name in FROM_THE_LEFT else []
     file = ["-r", FOLDER / name / robot] if robot else []
     check_typed(

@@ -158,7 +158,7 @@ EXITS = {
 
 
 @cases("text, words, code", EXITS)
-def test_exit_codes(
+def test_each_end_of_a_run_has_its_exit_code(
     text: str, words: list[object], code: int, tmp_path: Path, here: Command
 ) -> None:
     (tmp_path / "prog.py").write_text(text)
@@ -248,7 +248,7 @@ def test_stored_runs_are_listed_shown_exported_and_removed(
     assert [run["number"] for run in json.loads(here("runs", "--json").stdout)] == [2]
 
 
-def test_help_and_version(here: Command) -> None:
+def test_help_and_version_are_printed_to_stdout(here: Command) -> None:
     done = here("--help")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("Usage: tuisim")

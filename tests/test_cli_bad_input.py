@@ -153,7 +153,9 @@ def folder(tmp_path: Path) -> Path:
 
 
 @cases("words, said", BAD)
-def test_bad_input(words: str, said: str, folder: Path, home: Path, here: Command) -> None:
+def test_bad_input_is_refused_in_one_line_and_writes_nothing(
+    words: str, said: str, folder: Path, home: Path, here: Command
+) -> None:
     before = sorted(folder.rglob("*"))
     done = here(*words.split())
     (line,) = done.stderr.splitlines()

@@ -53,7 +53,7 @@ def test_every_example_is_in_the_table() -> None:
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_example_introduces_itself(name: str) -> None:
+def test_an_example_has_a_title_and_its_mat(name: str) -> None:
     path = ROOT / "programs" / name
     title = next(program.title for program in list_programs() if program.name == name)
     assert title.endswith(".")
@@ -65,7 +65,7 @@ def test_example_introduces_itself(name: str) -> None:
 
 @pytest.mark.quick_cases("*-robolab", "*-lego-micropython")
 @pytest.mark.parametrize("name, profile", RUNS)
-def test_example_finishes(name: str, profile: str, here: Command) -> None:
+def test_an_example_finishes_under_each_profile(name: str, profile: str, here: Command) -> None:
     done = here("run", name, "--json", "--profile", profile, "--timeout", 100)
     facts: dict[str, Any] = json.loads(done.stdout)
     assert (done.returncode, facts["state"], facts["profile"]) == (0, "finished", profile)

@@ -124,7 +124,9 @@ def test_every_program_is_in_the_table() -> None:
     "26_settings_file",
     "30_nxt_light_sensor",
 )
-def test_it_does_what_a_brick_does(name: str, tmp_path: Path, here: Command) -> None:
+def test_a_pybricks_program_does_what_it_does_on_a_brick(
+    name: str, tmp_path: Path, here: Command
+) -> None:
     case = CASES[name]
     done = run_typed(FOLDER / name, here, tmp_path, *shlex.split(case.given))
     check_typed(FOLDER / name, done, case.code)

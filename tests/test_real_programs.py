@@ -359,7 +359,7 @@ def test_the_robot_is_the_one_that_the_program_talks_about(name: str) -> None:
     "touch_at_the_top",
     "blind/floor_scan/scan",
 )
-def test_it_runs_as_it_is_and_with_its_robot_in_a_file_to_the_bit(
+def test_a_real_program_runs_the_same_with_its_robot_in_a_file(
     name: str, tmp_path: Path, here: Command
 ) -> None:
     program = tmp_path / "programs" / f"{name}.py"

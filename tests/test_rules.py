@@ -171,7 +171,7 @@ def large_functions(source: Source) -> Iterable[object]:
     ]
 
 
-def test_what_is_oversized_exists() -> None:
+def test_each_name_in_the_list_of_oversized_exists() -> None:
     names = {path.relative_to(ROOT).as_posix() for path in CODE}
     assert {
         name for kind in OVERSIZED.values() for name in kind if name.split(":")[0] not in names

@@ -38,7 +38,7 @@ def test_where_variables_cross_a_value(
 @pytest.mark.parametrize(
     "text, said", [("Colour", "'Colour' is not a threshold"), ("Color < 5", "no variable 'Color'")]
 )
-def test_what_is_no_threshold(text: str, said: str) -> None:
+def test_a_wrong_threshold_is_refused_with_its_reason(text: str, said: str) -> None:
     with pytest.raises(LogError, match=said):
         parse_events(text, long_log())
 

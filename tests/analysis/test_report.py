@@ -318,7 +318,7 @@ BAD = {
 
 
 @cases("words, expected", BAD)
-def test_bad_input(
+def test_a_report_that_cannot_be_made_is_refused_in_one_line(
     here: Command, home: Path, tmp_path: Path, words: tuple[str, ...], expected: str
 ) -> None:
     log = tmp_path / "log.csv"

@@ -106,7 +106,7 @@ def test_what_is_remembered_counts_without_choices_and_is_said(file: Path) -> No
         "commas in numbers": ("log.csv", 'time,light\n0,"1,000"\n20,"2,000"\n', True),
     },
 )
-def test_what_somebody_should_see_first(
+def test_a_file_read_by_guesses_is_shown_first_until_choices_are_kept(
     name: str, text: str, is_shown: bool, tmp_path: Path, home: Path
 ) -> None:
     file = tmp_path / name

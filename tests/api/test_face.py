@@ -127,7 +127,7 @@ Button().wait_for_pressed('enter')
         "in a world": ({"world": "hands.toml"}, 4),
     },
 )
-def test_a_hand_presses(
+def test_buttons_are_pressed_by_hand_in_runs_and_experiments(
     choices: dict[str, Any], time_s: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -261,7 +261,7 @@ NO_RUNS = {
 
 
 @cases("run, words", NO_RUNS)
-def test_what_names_no_run_is_refused(run: Any, words: str) -> None:
+def test_load_run_refuses_words_that_name_no_run(run: Any, words: str) -> None:
     tuisim.simulate("print('A: 1')\n")
     with pytest.raises(LogError, match=re.escape(words)):
         tuisim.load_run(run)
@@ -309,7 +309,7 @@ def test_nothing_else_is_public() -> None:
         "a name": ("tuisim.sim", ["simulate"]),
     },
 )
-def test_an_editor_completes(call: str, expected: list[str]) -> None:
+def test_an_editor_completes_names_and_options(call: str, expected: list[str]) -> None:
     import jedi
 
     completions = jedi.Script(f"import tuisim\n{call}").complete(2, len(call))
@@ -392,7 +392,7 @@ def test_a_robot_and_a_world_are_those_of_a_run() -> None:
     assert spec.world.noise.light == 20
 
 
-def test_options_vary() -> None:
+def test_an_experiment_varies_each_option_that_is_a_list() -> None:
     frame = tuisim.experiment(
         "import sys\nprint('A:', len(sys.argv))\n",
         seeds=[5, 3],

@@ -74,7 +74,7 @@ def test_the_time_of_the_last_tick_leads_to_the_last_pose() -> None:
     assert lab.pose == run.pose
 
 
-def test_sensors_see_what_the_pen_draws() -> None:
+def test_sensors_of_a_lab_see_what_the_pen_draws() -> None:
     pen = {"x_mm": -20, "y_mm": 30, "color": "black", "down": True}
     robot = tuisim.Robot(parts={"pen": pen})
     world = tuisim.World(pen_marks=True)
@@ -123,7 +123,7 @@ def test_no_motor_is_faster_than_it_can() -> None:
     assert lab.step(1e6, 0, period_s=3)["left_speed_dps"] == pytest.approx(lab.max_speed_dps)
 
 
-def test_a_seed_decides() -> None:
+def test_the_same_seed_gives_the_same_steps() -> None:
     def drive(lab: tuisim.Lab) -> list[float]:
         return [*lab.step(300, 200, period_s=1).values()]
 
@@ -156,7 +156,7 @@ def test_a_lab_is_one_line() -> None:
         "option of a world": ({"background": "Loop"}, r"tuisim\.World\(background=…\) has it"),
     },
 )
-def test_what_is_wrong_is_refused(given: dict[str, Any], words: str) -> None:
+def test_a_lab_with_wrong_arguments_is_refused(given: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         tuisim.Lab(**given)
 

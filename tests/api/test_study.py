@@ -184,7 +184,7 @@ def test_a_table_that_is_replaced_is_told(tmp_path: Path) -> None:
         tuisim.experiment(PROGRAM, seeds=[0, 1], **how)
 
 
-def test_worlds_vary(tmp_path: Path) -> None:
+def test_an_experiment_varies_worlds(tmp_path: Path) -> None:
     (file := tmp_path / "lab.toml").write_text('background = "Loop"\n')
     worlds: list[Path | tuisim.World] = [file, tuisim.World(x=300)]
     frame = tuisim.experiment("A = 1\n", world=worlds, jobs=1)

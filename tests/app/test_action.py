@@ -15,7 +15,7 @@ from tuisim.app.snapshot import RunPhase, Situation
 
 
 @pytest.mark.slow
-async def test_it_offers_every_key_those_that_work_now_first_and_finds_one_by_its_title() -> None:
+async def test_the_palette_offers_every_key_and_finds_one_by_its_title() -> None:
     async with open_lab() as (pilot, app):
         await pilot.press("ctrl+p")
         await until(pilot, lambda: isinstance(app.screen, Palette) and app.screen.is_ready)

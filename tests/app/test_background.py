@@ -56,7 +56,7 @@ def cancel(app: App[None]) -> None:
         "error-leaving": (fail, App.exit, []),
     },
 )
-async def test_work_passes_on(
+async def test_results_and_errors_of_work_reach_the_app_unless_it_has_ended(
     work: Callable[[Event], str], before_the_end: Callable[[App[None]], None], heard: list[str]
 ) -> None:
     may_end, ended, app = Event(), Event(), Worker()
@@ -126,7 +126,9 @@ def work_that_writes(
     thread.join()
 
 
-def test_what_is_nearly_written_is_finished(work_that_writes: tuple[Path, Event]) -> None:
+def test_a_file_that_is_nearly_written_is_finished_at_the_end(
+    work_that_writes: tuple[Path, Event],
+) -> None:
     path, may_end = work_that_writes
     may_end.set()
     assert background.leave(3) == 3

@@ -121,7 +121,7 @@ async def test_every_press_counts_though_a_step_is_on_its_way() -> None:
 
 
 @pytest.mark.slow
-async def test_one_line_back_and_on_again() -> None:
+async def test_stepping_back_a_line_shows_its_values_again() -> None:
     async with open_lab(COUNTS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 3, 4, 5, 6, 3, 4, 5, 6)
         assert values(app)["total"] == "1"

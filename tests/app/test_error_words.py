@@ -50,7 +50,9 @@ MAT = "line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
         "no room": ("boom", 0, ""),
     },
 )
-def test_what_matters_comes_first(words: str, width: int, told: str) -> None:
+def test_the_cause_of_an_error_comes_first_in_a_short_row(
+    words: str, width: int, told: str
+) -> None:
     assert fit_words(words, width) == told
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from tuisim.app.file_watch import FileWatch
 
 
-def test_what_changes_is_told_once(tmp_path: Path) -> None:
+def test_a_changed_file_is_reported_once(tmp_path: Path) -> None:
     path = tmp_path / "a.py"
     other = tmp_path / "b.py"
     path.write_text("1")

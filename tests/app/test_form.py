@@ -34,7 +34,7 @@ class Frame(App[None]):
     ],
     ids=["one", "not below 0", "ten", "not above the end", "ends"],
 )
-async def test_keys(keys: list[str], expected: list[int]) -> None:
+async def test_keys_move_the_slider(keys: list[str], expected: list[int]) -> None:
     async with Frame().run_test(size=(40, 3)) as pilot:
         app = pilot.app
         assert isinstance(app, Frame)
@@ -70,7 +70,7 @@ async def test_setting_it_tells_nobody_and_keeps_to_the_ends() -> None:
 
 @pytest.mark.parametrize("value", [0, 1, 64, 127, 128])
 @pytest.mark.parametrize("width", [6, 14, 40])
-async def test_it_fills_its_row(value: int, width: int) -> None:
+async def test_the_slider_fills_its_row(value: int, width: int) -> None:
     async with Frame().run_test(size=(width, 3)) as pilot:
         app = pilot.app
         assert isinstance(app, Frame)

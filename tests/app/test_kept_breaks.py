@@ -23,7 +23,7 @@ def test_breaks_follow_their_lines(before: str, now: str, expected: list[str]) -
     assert [one.text for one in follow_edit(breaks, before, now)] == [*expected, "time 3"]
 
 
-def test_what_is_kept_comes_back(home: object) -> None:
+def test_stored_breakpoints_are_loaded_for_their_program_only(home: object) -> None:
     kept = StoredBreaks(parse_breakpoints(("12 if x > 3", "# time 3.5")), ("len(x)",))
     keep("/some/where.py", kept)
     assert load_kept("/some/where.py") == kept

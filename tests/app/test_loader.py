@@ -185,7 +185,7 @@ async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Pa
 
 
 @pytest.mark.slow
-async def test_what_cannot_be_written_is_told(folder: Path) -> None:
+async def test_a_world_file_that_cannot_be_written_says_why(folder: Path) -> None:
     async with open_lab(LOGS) as (pilot, app):
         await pilot.press("ctrl+s")
         for typed, said in (

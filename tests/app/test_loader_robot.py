@@ -40,7 +40,9 @@ def extra_ports(app: LabApp) -> list[str]:
 
 
 @pytest.mark.slow
-async def test_it_is_told_and_the_dialog_lists_its_ports(claw: Path) -> None:
+async def test_a_robot_built_for_a_program_is_announced_and_listed_with_its_ports(
+    claw: Path,
+) -> None:
     async with open_lab(opened(claw)) as (pilot, app):
         await until(
             pilot,
@@ -77,7 +79,7 @@ async def test_another_robot_is_chosen_and_the_program_s_again(claw: Path) -> No
 
 
 @pytest.mark.slow
-async def test_it_follows_the_text_of_the_program(claw: Path) -> None:
+async def test_a_robot_built_for_a_program_follows_its_text(claw: Path) -> None:
     async with open_lab(opened(claw)) as (pilot, app):
         claw.write_text(CLAW.replace("outA", "outD"))
         app.check_files()

@@ -42,7 +42,7 @@ async def ask(pilot: Pilot[None], app: LabApp, words: str) -> None:
 
 
 @pytest.mark.slow
-async def test_it_goes_to_each_reason_and_back_to_the_end() -> None:
+async def test_the_key_goes_to_each_reason_and_back_to_the_end() -> None:
     text = "tank_drive.on_for_seconds(20, int(input()), 1)\nprint(colour)\n"
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
         await run_from_start(pilot, app, STRAIGHT)

@@ -55,19 +55,19 @@ def heard(voice: Voice, folder: Path, name: str) -> bytes:
     return (folder / f"{name}.heard").read_bytes()
 
 
-def test_texts_are_spoken(players: Path) -> None:
+def test_spoken_text_reaches_the_synthesizer(players: Path) -> None:
     voice = Voice(environment={})
     voice.play(Spoke("I see -v red", 0))
     assert heard(voice, players, "espeak-ng") == b"I see -v red"
 
 
-def test_tones_are_played(players: Path) -> None:
+def test_tones_reach_the_loudspeaker(players: Path) -> None:
     voice = Voice(environment={})
     voice.play(Spoke("[tone 440 Hz]", 0, json.dumps([[440, 50, 0]])))
     assert len(samples(heard(voice, players, "paplay"))) == RATE_HZ // 20
 
 
-def test_files_are_played(players: Path, tmp_path: Path) -> None:
+def test_sound_files_reach_the_loudspeaker(players: Path, tmp_path: Path) -> None:
     (tmp_path / "own.wav").write_bytes(b"RIFF and so on")
     voice = Voice(environment={})
     voice.play(Spoke("[plays own.wav]", 0, "[[0, 10, 0]]", str(tmp_path / "own.wav")))
@@ -79,7 +79,9 @@ def test_files_are_played(players: Path, tmp_path: Path) -> None:
     [(True, {}), (False, {"SSH_TTY": "/dev/pts/1"})],
     ids=["quiet", "remote"],
 )
-def test_nothing_is_heard(players: Path, quiet: bool, environment: dict[str, str]) -> None:
+def test_a_quiet_app_and_one_without_players_make_no_sound(
+    players: Path, quiet: bool, environment: dict[str, str]
+) -> None:
     voice = Voice(quiet, environment)
     for sound in (
         Spoke("hello", 0),

@@ -40,7 +40,7 @@ def test_every_mat_has_one_picture_and_one_entry() -> None:
 
 
 @pytest.mark.parametrize("name", MATS)
-def test_picture_is_small(name: str) -> None:
+def test_the_picture_of_a_mat_is_a_small_file(name: str) -> None:
     # Noise is what no picture format makes small.
     limit = 1_000_000 if name == "Noisy_Lollipop" else 200_000
     assert (FOLDER / f"{name}.png").stat().st_size < limit

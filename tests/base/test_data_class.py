@@ -141,7 +141,7 @@ def test_classes_look_like_those_of_python(frozen: bool, slots: bool) -> None:
     assert [told(kind) for kind in ours.values()] == [told(kind) for kind in theirs.values()]
 
 
-def test_without_options() -> None:
+def test_a_data_class_without_options_counts_and_compares() -> None:
     @data_class.dataclass
     class Counter:
         """A counter."""
@@ -151,7 +151,10 @@ def test_without_options() -> None:
     counter = Counter()
     counter.count += 1
     assert counter == Counter(1)
-    assert repr(counter) == "test_without_options.<locals>.Counter(count=1)"
+    assert (
+        repr(counter)
+        == "test_a_data_class_without_options_counts_and_compares.<locals>.Counter(count=1)"
+    )
 
 
 def test_objects_may_be_equal_to_themselves_only() -> None:
@@ -194,7 +197,7 @@ def test_frozen_objects_can_be_copied() -> None:
     assert replace(point, x=3) == Point(3, [2])
 
 
-def test_data_become_objects() -> None:
+def test_msgspec_converts_data_to_a_data_class() -> None:
     assert msgspec.convert({"x": 1}, Point) == Point(1)
 
 

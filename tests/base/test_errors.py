@@ -36,7 +36,7 @@ CALLS = {
 
 
 @cases("words", CALLS)
-def test_names_are_shown(
+def test_control_characters_in_names_do_not_reach_the_terminal(
     log: str,
     words: tuple[str, ...],
     capsys: pytest.CaptureFixture[str],
@@ -61,7 +61,7 @@ def test_rows_for_a_program_are_as_they_are(log: str, capsys: pytest.CaptureFixt
     [("Größe 😀", "Größe 😀"), ("a\tb\nc", "a b c"), ("\ud800\u202e", "\ufffd\ufffd")],
     ids=["letters", "white space", "no letters"],
 )
-def test_printable(text: str, shown: str) -> None:
+def test_control_characters_are_escaped(text: str, shown: str) -> None:
     assert printable(text) == shown
 
 

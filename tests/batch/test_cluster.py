@@ -221,7 +221,7 @@ def test_a_cluster_that_breaks_is_told(
             pass
 
 
-def test_what_is_no_scheduler_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_address_without_a_scheduler_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tuisim.batch.cluster.CONNECT_S", 0.5)
     with socket.create_server(("127.0.0.1", 0)) as listens:
         address = f"tcp://127.0.0.1:{listens.getsockname()[1]}"

@@ -39,7 +39,7 @@ from tuisim.engine.core.values import MAX_SEED
         ),
     },
 )
-def test_values_are_read(text: str, expected: object) -> None:
+def test_values_of_a_parameter_are_parsed(text: str, expected: object) -> None:
     assert repr(parse_values(text, "x")) == repr(expected)
 
 
@@ -80,7 +80,7 @@ def test_a_setting_has_a_name_and_values(text: str) -> None:
         (str(MAX_SEED), (MAX_SEED,)),
     ],
 )
-def test_seeds_are_read(text: str, expected: tuple[int, ...]) -> None:
+def test_lists_and_ranges_of_seeds_are_parsed(text: str, expected: tuple[int, ...]) -> None:
     assert parse_seeds(text) == expected
 
 

@@ -84,11 +84,11 @@ def test_a_margin_is_that_of_students_t(count: int, quantile: float) -> None:
         "misspelt": ("x_m ± 1", "did you mean x_mm"),
     },
 )
-def test_what_is_no_precision_is_refused(text: str, words: str) -> None:
+def test_a_wrong_precision_is_refused(text: str, words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         parse_precision(text, "until", PLAN, [])
 
 
-def test_one_seed_is_refused() -> None:
+def test_a_precision_with_one_seed_is_refused() -> None:
     with pytest.raises(ConfigError, match="needs the seeds"):
         parse_precision("x_mm ± 1", "until", plan({"noise.motor": (0, 4)}), [])

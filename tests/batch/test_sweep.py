@@ -14,7 +14,7 @@ from tuisim.batch.sweep import PartialTable, Sweep, Workers, find_partial
 from tuisim.batch.table import RUN, Row
 
 
-def test_what_is_not_done_is_executed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_missing_runs_are_executed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sweep, "run_many", run_backwards)
     out = tmp_path / "out.csv"
     several = plan({"seed": (5, 6)}, subject("a.py"), subject("b.py"))

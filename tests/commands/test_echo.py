@@ -71,7 +71,7 @@ def test_a_long_line_is_broken_between_words_in_a_terminal(
     assert terminal.getvalue().splitlines() == ["a file is written", "over by another"]
 
 
-def test_work_is_told_with_its_part(show: Show) -> None:
+def test_a_progress_bar_shows_the_share_that_is_done(show: Show) -> None:
     terminal = show()
     with Progress("packing\x1b]0;evil\x07"):
         seen = terminal.until("packing")

@@ -67,12 +67,14 @@ def _terminal_of_80(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("heads, rows", TABLES.values(), ids=list(TABLES))
-def test_a_table_fits(heads: tuple[str, ...], rows: list[tuple[object, ...]]) -> None:
+def test_a_table_is_at_most_80_columns_wide(
+    heads: tuple[str, ...], rows: list[tuple[object, ...]]
+) -> None:
     assert max(map(len, draw_table(heads, rows).split("\n"))) <= 80
 
 
 @pytest.mark.parametrize("name", [name for name in TABLES if name != "long name"])
-def test_words_stay_whole(name: str) -> None:
+def test_no_word_of_a_narrow_table_is_broken(name: str) -> None:
     heads, rows = TABLES[name]
     shown = draw_table(heads, rows).split()
     words = [word for row in [heads, *rows] for cell in row for word in str(cell).split()]

@@ -48,7 +48,7 @@ def record(*, mm: float = 200, text: str = "done") -> Run:
     return run
 
 
-def test_all_met(task: Path, here: Command) -> None:
+def test_met_goals_are_listed_with_exit_code_0(task: Path, here: Command) -> None:
     record().end()
     done = here("goals", "check", task)
     assert (done.returncode, done.stderr) == (0, "")
@@ -62,7 +62,7 @@ def test_all_met(task: Path, here: Command) -> None:
     ]
 
 
-def test_one_missed(task: Path, here: Command) -> None:
+def test_a_missed_goal_is_listed_with_exit_code_1(task: Path, here: Command) -> None:
     record(mm=100).end()
     done = here("goals", "check", task)
     assert done.returncode == 1
@@ -85,7 +85,7 @@ def test_open_while_it_runs(task: Path, here: Command) -> None:
     ]
 
 
-def test_json(task: Path, here: Command) -> None:
+def test_json_has_points_and_states_of_goals(task: Path, here: Command) -> None:
     record(mm=100).end()
     (found,) = json.loads(here("goals", "check", task, "--json").stdout)
     assert (found["run"], found["points"], found["of"]) == (1, 1, 3)
@@ -113,7 +113,7 @@ RUNS = {
 
 
 @cases("words, code, numbers", RUNS)
-def test_runs_by_name(
+def test_goals_are_checked_on_the_named_runs(
     words: tuple[str, ...], code: int, numbers: list[int], task: Path, here: Command
 ) -> None:
     for mm in (200, 100, 200):
@@ -133,7 +133,9 @@ BAD = {
 
 
 @cases("words, message", BAD)
-def test_bad_input(words: tuple[str, ...], message: str, task: Path, here: Command) -> None:
+def test_wrong_words_for_goals_are_refused_in_one_line(
+    words: tuple[str, ...], message: str, task: Path, here: Command
+) -> None:
     record().end()
     done = here("goals", "check", *(word.format(task=task) for word in words))
     assert (done.returncode, done.stdout) == (2, "")
@@ -200,7 +202,7 @@ def test_truncated_and_damaged_telemetry(task: Path, here: Command) -> None:
 
 
 @pytest.mark.parametrize("lines", [0, 40], ids=["nothing printed", "printed"])
-def test_run_without_telemetry(lines: int, task: Path, here: Command) -> None:
+def test_a_run_without_telemetry_is_not_judged(lines: int, task: Path, here: Command) -> None:
     run = record()
     for _ in range(lines):
         run.recorder.print("more", 6)

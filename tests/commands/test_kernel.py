@@ -90,7 +90,7 @@ def foreign(prefix: Path) -> None:
         "json": ("install --json", "no such option: --json"),
     },
 )
-def test_what_is_wrong_is_told(
+def test_a_kernel_that_cannot_be_installed_or_removed_says_why(
     words: str, told: str, here: Command, tmp_path: Path, prefix: Path
 ) -> None:
     (tmp_path / "file").touch()

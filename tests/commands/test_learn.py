@@ -118,7 +118,7 @@ def test_new_lesson_is_in_order(here: Command, home: Path) -> None:
 
 
 @cases("change, fault", FAULTY)
-def test_author_is_told_what_is_wrong(
+def test_a_faulty_lesson_is_reported_to_its_author(
     change: tuple[str, str], fault: str, here: Command, tmp_path: Path
 ) -> None:
     assert change[0] in SKELETON
@@ -214,7 +214,9 @@ BAD = {
 
 
 @cases("words, message", BAD)
-def test_bad_words(words: tuple[str, ...], message: str, here: Command, tmp_path: Path) -> None:
+def test_wrong_words_for_learn_are_refused_in_one_line(
+    words: tuple[str, ...], message: str, here: Command, tmp_path: Path
+) -> None:
     (tmp_path / "none").unlink(missing_ok=True)
     if "new" in words:
         (tmp_path / "there.md").write_text("x")
@@ -246,7 +248,7 @@ def test_program_of_a_telling_runs_by_the_rules_of_its_library(
     assert (opened.spec.profile.name, opened.spec.world.start.x_mm) == ("lego-micropython", 1219)
 
 
-def test_missing_wrong_way_is_a_warning(here: Command, tmp_path: Path) -> None:
+def test_a_lesson_without_a_wrong_way_is_a_warning(here: Command, tmp_path: Path) -> None:
     (tmp_path / "mine.md").write_text(
         "\n".join(line for line in SKELETON.split("\n") if not line.startswith("excludes"))
     )
@@ -270,7 +272,7 @@ def test_check_without_a_file_is_of_the_lessons_of_tuisim(here: Command) -> None
     )
 
 
-def test_damaged_progress(here: Command, home: Path) -> None:
+def test_damaged_progress_is_reported_with_its_file(here: Command, home: Path) -> None:
     (home / "lessons").mkdir(parents=True)
     (home / "lessons" / "progress.json").write_text("[1]")
     done = here("learn", "status")

@@ -20,7 +20,9 @@ from tests.conftest import Command
         ("profiles", "robolab"),
     ],
 )
-def test_lists(command: str, name: str, here: Command) -> None:
+def test_each_list_names_its_entries_as_text_and_json(
+    command: str, name: str, here: Command
+) -> None:
     assert name in here(command).stdout
     assert name in [entry["name"] for entry in json.loads(here(command, "--json").stdout)]
 

@@ -38,7 +38,7 @@ def test_bands_of_the_greys(here: Command, profile: str) -> None:
     )
 
 
-def test_bands_under_noise(here: Command) -> None:
+def test_bands_under_noise_keep_their_names_and_order(here: Command) -> None:
     here("run", "log_greys", "-N", "20")
     found = json.loads(here("log", "bands", "last", "--json").stdout)
     assert tuple(band["grey"] for band in found) == ORDER
@@ -108,13 +108,13 @@ SIGNALS: dict[str, tuple[tuple[str, ...], Callable[[pd.DataFrame], bool]]] = {
 
 
 @pytest.mark.parametrize("action, how", SIGNALS.items(), ids=SIGNALS)
-def test_signals(
+def test_integrals_resamples_and_crossings_are_printed(
     here: Command, log: Path, action: str, how: tuple[tuple[str, ...], Callable[..., bool]]
 ) -> None:
     assert how[1](frame_of(here("log", action, str(log), *how[0]).stdout))
 
 
-def test_events(here: Command, log: Path) -> None:
+def test_crossings_are_listed_with_their_times(here: Command, log: Path) -> None:
     found = json.loads(here("log", "events", str(log), "--at", "4.5", "--json").stdout)
     assert [(event["variable"], event["time_s"], event["crossing"]) for event in found] == [
         ("left", 2.25, "rises"),
@@ -149,7 +149,9 @@ BAD = {
 
 
 @cases("words, expected", BAD)
-def test_bad_input(here: Command, log: Path, words: tuple[str, ...], expected: str) -> None:
+def test_wrong_words_for_log_are_refused_in_one_line(
+    here: Command, log: Path, words: tuple[str, ...], expected: str
+) -> None:
     text = log.with_name("words.csv")
     text.write_text("time,said\n0,a\n1,b\n")
     done = here("log", *(word.format(log=log, words=text) for word in words))

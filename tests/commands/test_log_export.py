@@ -82,7 +82,7 @@ each_format = pytest.mark.parametrize("suffix", EXPORTERS)
 
 @each_table
 @each_format
-def test_runs_come_back(kept: dict[str, Kept], table: str, suffix: str) -> None:
+def test_exports_read_back_to_the_last_bit(kept: dict[str, Kept], table: str, suffix: str) -> None:
     one = kept[table]
     one.check(one.files / f"log{suffix}")
     assert one.metadata["table"] == table
@@ -132,7 +132,9 @@ def test_what_other_programs_call_index_or_line_stays(here: Command, tmp_path: P
     assert frame["line"][0] == 0.5 and np.isnan(frame["line"][1])
 
 
-def test_only_some_variables(here: Command, tmp_path: Path, kept: dict[str, Kept]) -> None:
+def test_an_export_holds_only_the_named_variables(
+    here: Command, tmp_path: Path, kept: dict[str, Kept]
+) -> None:
     one = kept["samples"]
     here(
         "log",

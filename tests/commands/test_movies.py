@@ -177,7 +177,9 @@ def test_a_small_movie_of_a_long_run_is_faster() -> None:
 @pytest.mark.parametrize(
     "speed_dps, most", [(0, SMALL_BYTES), (100, 1000)], ids=["stands still", "too large"]
 )
-def test_no_small_movie(monkeypatch: pytest.MonkeyPatch, speed_dps: float, most: int) -> None:
+def test_a_movie_beyond_the_size_limit_is_left_out(
+    monkeypatch: pytest.MonkeyPatch, speed_dps: float, most: int
+) -> None:
     monkeypatch.setattr("tuisim.pictures.movies.files.SMALL_BYTES", most)
     assert make_small_movie(ClipRun(record(speed_dps))) is None
 
@@ -219,7 +221,9 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_bad_input(here: Command, tmp_path: Path, name: str) -> None:
+def test_a_movie_that_cannot_be_made_is_refused_in_one_line(
+    here: Command, tmp_path: Path, name: str
+) -> None:
     words, says = BAD[name]
     (tmp_path / "folder.gif").mkdir()
     before = set(tmp_path.iterdir())

@@ -74,7 +74,7 @@ def _action(chance: random.Random) -> Message:
 
 @pytest.mark.quick_cases("1", "2", "3")
 @pytest.mark.parametrize("number", range(10))
-def test_runs_again(number: int, start: Start, tmp_path: Path) -> None:
+def test_a_rerun_gives_the_same_bits(number: int, start: Start, tmp_path: Path) -> None:
     chance = random.Random(number)
     way = WAYS[number % len(WAYS)]
     text = PROGRAMS[number % len(PROGRAMS)].format(

@@ -97,7 +97,9 @@ def test_a_program_that_needs_no_other_robot_gets_the_usual_one(
     ],
     ids=["no program", "a robot, too", "only a file", "a text file", "no folder"],
 )
-def test_wrong_words(words: list[str], message: str, folder: Path, here: Command) -> None:
+def test_wrong_words_for_robots_are_refused(
+    words: list[str], message: str, folder: Path, here: Command
+) -> None:
     done = here("robots", *words)
     assert (done.returncode, message in done.stderr) == (2, True), done.stderr
 

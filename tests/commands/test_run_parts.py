@@ -168,7 +168,7 @@ def test_wheels_of_medium_motors(
     assert error.startswith(f"LargeMotor(ev3-ports:outB) is not connected. {there} ")
 
 
-def test_several_infrared_sensors(here: Command, tmp_path: Path) -> None:
+def test_several_infrared_sensors_read_what_is_before_each(here: Command, tmp_path: Path) -> None:
     (tmp_path / "robot.toml").write_text(
         "ultrasonic = false\ngyro = false\n[infrared]\nport = 'in1'\n"
         "[infrareds.back]\nport = 'in4'\nangle_deg = 180\ny_mm = -60\n"

@@ -48,7 +48,7 @@ def make(home: Path) -> Make:
     return record
 
 
-def test_list_shows_sizes(make: Make, here: Command) -> None:
+def test_the_list_of_runs_shows_their_sizes(make: Make, here: Command) -> None:
     run = make("a: 1")
     assert re.search(r"\d+\.\d kB", here("runs").stdout.splitlines()[1])
     (listed,) = json.loads(here("runs", "--json").stdout)
@@ -74,7 +74,7 @@ def test_list_has_the_end_that_the_app_shows(make: Make, here: Command) -> None:
     "count, shown",
     [(0, "0.0 kB"), (1234, "1.2 kB"), (29_400_000, "29.4 MB"), (5e15, "5000.0 TB")],
 )
-def test_size(count: int, shown: str) -> None:
+def test_sizes_are_rounded_to_their_unit(count: int, shown: str) -> None:
     assert size(count) == shown
 
 
@@ -110,7 +110,9 @@ BAD_AGES = {
 
 
 @cases("words, said", BAD_AGES)
-def test_bad_age(make: Make, here: Command, words: tuple[str, ...], said: str) -> None:
+def test_a_wrong_age_removes_no_run(
+    make: Make, here: Command, words: tuple[str, ...], said: str
+) -> None:
     make()
     done = here("runs", *words)
     assert done.returncode == 2

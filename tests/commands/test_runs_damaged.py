@@ -200,7 +200,7 @@ WORDS = (
 
 @pytest.mark.slow
 @cases("damage", DAMAGES)
-def test_damage_is_told_in_a_line(home: Path, here: Command, damage: Damage) -> None:
+def test_a_damaged_run_is_reported_in_one_line(home: Path, here: Command, damage: Damage) -> None:
     folder = record()
     record()
     damage(folder)

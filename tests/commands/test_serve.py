@@ -55,7 +55,7 @@ OPENED = {
 
 @cases("words, opened", OPENED)
 @pytest.mark.usefixtures("program")
-def test_what_to_open_is_passed_on(
+def test_each_visitors_app_opens_the_named_program(
     words: str, opened: str, served: list[tuple[list[str], ServerLimits, str, int]], here: Command
 ) -> None:
     assert here("serve", *words.split()).returncode == 0
@@ -136,7 +136,7 @@ REFUSED = {
 
 
 @cases("words, told", REFUSED)
-def test_what_cannot_be_served_is_refused(words: str, told: str, here: Command) -> None:
+def test_a_server_that_cannot_start_is_refused(words: str, told: str, here: Command) -> None:
     with a_port_in_use() as port:
         done = here("serve", *words.replace("PORT", port).split())
         assert (done.returncode, done.stdout) == (2, "")

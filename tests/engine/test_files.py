@@ -373,7 +373,9 @@ def test_eyes_that_a_file_places_stay_on_a_mat_with_places_of_its_own(
     ],
     ids=["toml", "toml, none", "json", "json, none"],
 )
-def test_obstacle_files(name: str, text: str, found: tuple[Obstacle, ...], write: Write) -> None:
+def test_an_obstacle_file_gives_its_boxes(
+    name: str, text: str, found: tuple[Obstacle, ...], write: Write
+) -> None:
     assert load_obstacles(write(name, text)) == found
 
 

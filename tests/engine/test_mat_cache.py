@@ -307,7 +307,7 @@ def test_a_copied_field_outlives_what_is_cut_off_its_files(home: Path, tmp_path:
 
 
 @pytest.mark.parametrize("diameter", [0, -5, 129])
-def test_impossible_diameters(diameter: int, home: Path, tmp_path: Path) -> None:
+def test_a_diameter_beyond_the_limits_is_refused(diameter: int, home: Path, tmp_path: Path) -> None:
     with pytest.raises(BackgroundError, match="from 1 to 128"):
         mat_cache.prepare(picture(tmp_path), [diameter])
 

@@ -195,7 +195,7 @@ def test_a_file_too_large_to_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("fit", ["", "Stretch", "tile"])
-def test_an_unknown_fit(fit: str, tmp_path: Path) -> None:
+def test_an_unknown_fit_is_refused_with_those_that_exist(fit: str, tmp_path: Path) -> None:
     (tmp_path / "mat.png").write_bytes(WHOLE)
     with pytest.raises(BackgroundError, match="no such fit") as caught:
         mat_cache.prepare(tmp_path / "mat.png", [20], fit)

@@ -76,7 +76,7 @@ def test_mats_have_their_start_poses() -> None:
         assert found.title and "\n" not in found.title, name
 
 
-def test_only_one_mat_brings_obstacles() -> None:
+def test_only_the_obstacles_test_mat_brings_boxes() -> None:
     boxes = {name: mat.obstacles for name, mat in mats.catalogue().items() if mat.obstacles}
     corners = ((46, 388), (479, 704), (852, 388), (1374, 388), (1758, 900), (2126, 388))
     assert boxes == {"Obstacles_Test": tuple(Obstacle(x, y, 150, 150) for x, y in corners)}
@@ -202,7 +202,7 @@ def test_an_image_that_is_not_there(word: str, message: str, here: Path) -> None
         mats.background(word)
 
 
-def test_programs_have_titles(root: Path) -> None:
+def test_the_title_of_an_example_is_the_first_line_of_its_docstring(root: Path) -> None:
     found = program_file.list_programs()
     assert [each.path for each in found] == sorted((root / "programs").glob("*.py"))
     for name, path, title in found:
@@ -222,7 +222,9 @@ def test_programs_have_titles(root: Path) -> None:
         "empty": ("", ""),
     },
 )
-def test_program_title(text: str, title: str, given: Path) -> None:
+def test_a_programs_title_is_the_first_line_of_its_docstring(
+    text: str, title: str, given: Path
+) -> None:
     (given / "programs" / "turn.py").write_text(text, encoding="utf-8")
     assert program_file.list_programs() == [("turn.py", given / "programs" / "turn.py", title)]
 

@@ -165,7 +165,7 @@ def test_the_switch_works_in_a_magic_line_from_the_programs_folder(
         "no picture": ("-b text --mats pics", "text.png: is not a readable image"),
     },
 )
-def test_what_is_not_there_is_told(
+def test_a_missing_mat_or_picture_is_named(
     words: str, expected: str, here: Command, own: Path, tmp_path: Path
 ) -> None:
     paint(tmp_path / "pics" / "maze.png")

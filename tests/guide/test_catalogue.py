@@ -119,7 +119,7 @@ def test_the_shell_lists_the_contents_and_searches(here: Command) -> None:
         "nothing found": (["--search", "xyzzy"], 1, "No page has these words: xyzzy"),
     },
 )
-def test_what_cannot_be_shown_is_told(
+def test_a_page_that_cannot_be_shown_says_why(
     words: list[str], code: int, said: str, tmp_path: Path, here: Command
 ) -> None:
     (tmp_path / "a_file").write_text("")

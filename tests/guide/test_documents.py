@@ -76,7 +76,7 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     "README", "experiments", "marking", "measuring-bands", "motion-and-drift", "python"
 )
 @pytest.mark.parametrize("name", WITH_BLOCKS)
-def test_each_block_runs(
+def test_each_block_of_code_runs_and_prints_what_it_says(
     name: str, tmp_path: Path, here: Command, home: Path, opened: list[Any]
 ) -> None:
     if prepare := PREPARED.get(name):

@@ -20,7 +20,7 @@ MAX_LINES = 160
 START = "python3 -m venv .venv && .venv/bin/pip install -q -e"
 
 
-def test_readme_is_short() -> None:
+def test_readme_has_at_most_its_limit_of_lines() -> None:
     assert DOCUMENTS["README"].count("\n") <= MAX_LINES
 
 

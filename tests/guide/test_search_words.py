@@ -7,7 +7,7 @@ import pytest
 from tuisim.guide.search import find_stems, split_words
 
 
-def test_what_is_denied_is_another_question() -> None:
+def test_a_negated_question_keeps_its_not() -> None:
     assert [*split_words("why doesn't it move")] == ["not", "move"]
     assert [*split_words("it doesnt move and I dont know")] == ["not", "move", "know"]
     assert [*split_words("different current")] == ["different", "current"]

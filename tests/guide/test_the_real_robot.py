@@ -73,7 +73,7 @@ STEPS = rows_of("A free large motor at a fixed duty")
 
 
 @pytest.mark.parametrize("row", STEPS, ids=[row[0].partition("]")[0] + row[1] for row in STEPS])
-def test_steps(row: Cells) -> None:
+def test_the_guides_row_of_a_step_response_is_what_comes_out(row: Cells) -> None:
     points = []
     constants_ms = []
     for duty in range(20, 101, 10):
@@ -90,7 +90,7 @@ def test_steps(row: Cells) -> None:
 
 
 @pytest.mark.parametrize("speed_dps", [100, 200, 300, 500])
-def test_a_start(speed_dps: int) -> None:
+def test_the_guides_row_of_a_start_is_what_comes_out(speed_dps: int) -> None:
     motor = build_motor(8.0)
     give(motor, 0, Command.RUN_FOREVER, speed_dps=speed_dps)
     angles_deg = [0.0, *watch(motor, 0, 2)]
@@ -122,7 +122,7 @@ TIMED = rows_of("Moves by time")
 
 
 @pytest.mark.parametrize("row", TIMED, ids=[row[0] for row in TIMED])
-def test_moves_by_time(row: Cells) -> None:
+def test_the_guides_row_of_a_move_by_time_is_what_comes_out(row: Cells) -> None:
     least, most = turn_timed(8.0, int(row[0]), int(row[1]))
     assert row[3] == f"{least}–{most}"
 
@@ -196,7 +196,7 @@ OTHERS: dict[str, Callable[[], str]] = {
 
 
 @pytest.mark.parametrize("what", OTHERS)
-def test_other_measurements(what: str) -> None:
+def test_the_guides_rows_of_other_measurements_are_what_comes_out(what: str) -> None:
     named = {row[0]: row for row in rows_of("Other measurements")}
     assert set(named) == set(OTHERS)
     assert named[what][3] == OTHERS[what]()
@@ -219,7 +219,7 @@ STOPS = rows_of("Where a robot stops")
 
 
 @pytest.mark.parametrize("row", STOPS, ids=[row[0] for row in STOPS])
-def test_stops(row: Cells) -> None:
+def test_the_guides_row_of_a_stop_is_what_comes_out(row: Cells) -> None:
     speed_dps = int(row[0])
     held_deg = stop_wheel(speed_dps, StopAction.HOLD, 1.5)
     farthest_deg = max(held_deg)

@@ -102,36 +102,40 @@ def spin(sign: int, robot: RobotSpec, drift: DriftSpec) -> Simulation:
 
 
 @pytest.mark.parametrize(("name", "x_mm"), [("white", 150), ("black", 1525)])
-def test_light(tell: Callable[..., str], name: str, x_mm: int) -> None:
+def test_the_guides_row_of_reflected_light_is_what_comes_out(
+    tell: Callable[..., str], name: str, x_mm: int
+) -> None:
     percent = tell(LIGHT, "-b", "Grey_bands", "-x", x_mm, "-y", 500)
     assert is_in_table(f"reflected light of {name} paper", f"{percent} %")
 
 
-def test_changes_of_modes(tell: Callable[..., str]) -> None:
+def test_the_guides_row_of_a_change_of_mode_is_what_comes_out(tell: Callable[..., str]) -> None:
     shown = tell(SWITCH, "-b", "Grey_bands", "-x", 150, "-y", 500)
     assert is_in_table("first values of a colour sensor after a change of mode", shown)
     assert is_in_table("angle of an older gyro after its rate was read", f"{tell(GYRO)}°")
 
 
-def test_infrared(tell: Callable[..., str], tmp_path: Path) -> None:
+def test_the_guides_row_of_infrared_is_what_comes_out(
+    tell: Callable[..., str], tmp_path: Path
+) -> None:
     (tmp_path / "eye.toml").write_text('gyro = false\n\n[infrared]\nport = "in4"\n')
     shown = tell(INFRARED, "-r", "eye.toml")
     assert is_in_table("change of mode of the infrared sensor", shown)
 
 
 @pytest.mark.parametrize(("name", "sign"), [("clockwise", 1), ("counter-clockwise", -1)])
-def test_turns(name: str, sign: int) -> None:
+def test_the_guides_row_of_a_whole_turn_is_what_comes_out(name: str, sign: int) -> None:
     sim = spin(sign, RobotSpec(), DriftSpec(gyro_scale_pc=TYPICAL.gyro_scale_pc))
     counted_deg = 360 * sim.build_instant().gyro_deg / abs(sim.pose.heading_deg)
     assert is_in_table(f"a whole turn {name}", f"{abs(counted_deg):.0f}°, with typical drift")
 
 
-def test_fastest_turn() -> None:
+def test_the_guides_row_of_the_fastest_turn_is_what_comes_out() -> None:
     instant = spin(1, RobotSpec(wheel_spacing_mm=60.0), DriftSpec()).build_instant()
     assert is_in_table("highest rate of turn", f"{instant.gyro_rate_dps}°/s")
 
 
-def test_distances() -> None:
+def test_the_guides_row_of_distances_is_what_comes_out() -> None:
     errors = [draw_echo_bias_mm("in1", TYPICAL, seed) for seed in range(300)]
     shown = f"{min(errors)} to {max(errors)} mm, with typical drift"
     assert is_in_table("error of an ultrasonic sensor", shown)

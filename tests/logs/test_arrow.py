@@ -122,7 +122,7 @@ def test_a_cell_as_text(cell: pa.Scalar, text: str) -> None:
     assert format_cell(cell) == text
 
 
-def test_columns_of_one_name_get_numbers() -> None:
+def test_columns_of_the_same_name_get_numbers() -> None:
     assert make_names_unique(["a", "a", "", "a", "a (2)"]) == [
         "a",
         "a (2)",

@@ -115,7 +115,9 @@ CLEAN = {
 
 
 @cases("values, expected", CLEAN)
-def test_plateaus(values: list[float], expected: list[tuple[int, int, float]]) -> None:
+def test_plateaus_are_found_with_their_limits_and_levels(
+    values: list[float], expected: list[tuple[int, int, float]]
+) -> None:
     found = find_plateaus(np.array(values, np.float64))
     assert [(plateau.start, plateau.stop, plateau.level) for plateau in found] == expected
 
@@ -150,7 +152,7 @@ def test_level_of_equal_samples_is_exact() -> None:
     ]
 
 
-def test_what_rounding_leaves_is_no_step() -> None:
+def test_a_difference_of_rounding_is_no_step() -> None:
     level = 38.98
     (found,) = find_plateaus(np.repeat([level, np.nextafter(level, 99.0), level], 9))
     assert (found.start, found.stop) == (0, 27)

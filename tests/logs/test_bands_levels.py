@@ -34,14 +34,14 @@ from tuisim.logs.log import Log
 
 
 @for_each(value=[0, 3, 10, 128, 240, 250, 255], noise=[5, 20, 128])
-def test_clamping_is_undone(value: int, noise: int) -> None:
+def test_the_level_before_clamped_noise_is_found(value: int, noise: int) -> None:
     mean_percent = np.array([(value + compute_clamping(noise).shift[value]) / 2.55])
     assert undo_clamping(mean_percent, noise) == pytest.approx(
         value / 2.55, abs=0.8 if noise < 128 else 4.0
     )
 
 
-def test_greys_have_names() -> None:
+def test_each_grey_of_the_mats_has_its_name() -> None:
     assert {
         grey.name for value, grey in list_greys().items() if value in (0, 128, 211, 220, 255)
     } == {
@@ -67,11 +67,13 @@ def test_greys_have_names() -> None:
     ],
     ids=["percent", "bytes", "distance", "angle", "nothing"],
 )
-def test_scale_of_light(values: list[float], expected: float) -> None:
+def test_the_scale_of_light_is_guessed_from_the_largest_value(
+    values: list[float], expected: float
+) -> None:
     assert find_light_scale(np.array(values)) == expected
 
 
-def test_places_and_widths() -> None:
+def test_bands_have_the_places_and_widths_that_the_robot_drove_over() -> None:
     light = [100.0] * 5 + [60.0] + [50.0] * 10 + [100.0] * 5
     table = pa.table(
         {

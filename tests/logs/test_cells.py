@@ -56,12 +56,14 @@ CASES: dict[str, Case] = {
 
 
 @cases("name, content, expected", CASES)
-def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) -> None:
+def test_numbers_in_cells_are_read_as_they_are_written(
+    tmp_path: Path, name: str, content: bytes, expected: Read | str
+) -> None:
     check_input(tmp_path / name, content, expected)
 
 
 @cases("sign, number", {"a point": (".", 1000.0), "a comma": (",", 1.0)})
-def test_a_decimal_sign(tmp_path: Path, sign: str, number: float) -> None:
+def test_a_chosen_decimal_sign_decides(tmp_path: Path, sign: str, number: float) -> None:
     path = tmp_path / "a.csv"
     path.write_text('x,red\na,"1,000"\nb,"2,000"\n')
     assert values(open_log(path, ReadChoices(decimal=sign)))[0] == number
@@ -85,7 +87,9 @@ def test_numbers_are_right_in_whatever_encoding_is_guessed(tmp_path: Path, encod
         "Japanese": ("shift_jis", "光", ""),
     },
 )
-def test_an_encoding(tmp_path: Path, encoding: str, sign: str, note: str) -> None:
+def test_a_guessed_encoding_is_noted_and_a_chosen_one_not(
+    tmp_path: Path, encoding: str, sign: str, note: str
+) -> None:
     path = tmp_path / "a.csv"
     path.write_bytes(f"time,{sign}\n0,5\n1,6\n".encode(encoding))
     log = open_log(path, ReadChoices(encoding="" if note else encoding))

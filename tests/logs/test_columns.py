@@ -138,7 +138,7 @@ CASES: dict[str, Case] = {
 
 
 @cases("name, content, expected", CASES)
-def test_input(
+def test_the_time_column_of_another_programs_log_is_found(
     tmp_path: Path, name: str, content: bytes | Callable[[], bytes], expected: Read | str
 ) -> None:
     check_input(tmp_path / name, content, expected)

@@ -27,7 +27,7 @@ TEXTS: dict[str, tuple[list[str | None], list[float]]] = {
 
 
 @cases("texts, expected", TEXTS)
-def test_texts(texts: list[str | None], expected: list[float]) -> None:
+def test_texts_of_moments_are_seconds(texts: list[str | None], expected: list[float]) -> None:
     assert_allclose(
         read_times(
             pa.chunked_array([pa.array(texts, pa.string())]), 1.0, since_first=False
@@ -50,7 +50,7 @@ KINDS: dict[str, tuple[pa.Array, list[float]]] = {
 
 
 @cases("column, expected", KINDS)
-def test_kinds(column: pa.Array, expected: list[float]) -> None:
+def test_typed_moments_are_seconds(column: pa.Array, expected: list[float]) -> None:
     assert_allclose(
         read_times(pa.chunked_array([column]), 1.0, since_first=False).seconds, expected, rtol=1e-12
     )

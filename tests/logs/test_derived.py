@@ -44,7 +44,7 @@ DEFINED = {
 
 
 @cases("text, values", DEFINED)
-def test_what_is_reckoned(text: str, values: np.ndarray) -> None:
+def test_a_derived_variable_has_the_values_of_its_expression(text: str, values: np.ndarray) -> None:
     model = model_of(long_log())
     model.derive(text)
     assert model.log.series("v").values.tolist() == pytest.approx(values.tolist())
@@ -75,7 +75,7 @@ def test_wheels_without_numbers_cannot_be_reckoned() -> None:
 
 
 @cases("text, said", REFUSED)
-def test_what_cannot_be_reckoned_changes_nothing(text: str, said: str) -> None:
+def test_a_faulty_expression_changes_nothing(text: str, said: str) -> None:
     model = model_of(long_log())
     before = model.log
     with pytest.raises(LogError, match=said):
@@ -103,7 +103,7 @@ def test_each_run_has_its_own() -> None:
     ]
 
 
-def test_it_is_a_variable_like_any_other() -> None:
+def test_a_derived_variable_is_in_every_pane() -> None:
     model = model_of(long_log())
     model.derive("v = slope(Colour)")
     assert [row[0] for row in PANES["statistics"].rows(model)] == ["Colour", "Left", "v"]
@@ -114,7 +114,7 @@ def test_it_is_a_variable_like_any_other() -> None:
     assert [band.level for band in model.bands()] == [-10.0]
 
 
-def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
+def test_a_derived_variable_is_replaced_removed_and_kept_when_the_log_grows() -> None:
     model = model_of(wide_log(100))
     model.derive("v = wave + 1")
     model.derive("v = wave + 2")
@@ -142,7 +142,7 @@ def test_columns_that_mean_something_else_have_nothing_derived() -> None:
 
 
 class TestReckoning:
-    def test_straight_and_turn(self) -> None:
+    def test_dead_reckoning_drives_straight_and_turns(self) -> None:
         robot = RobotSpec()
         per_degree = math.pi * robot.wheel_diameter_mm / 360
         quarter = math.pi / 2 * robot.wheel_spacing_mm / 2 / per_degree
@@ -173,7 +173,7 @@ class TestReckoning:
         got = compute_dead_reckoning(column(0, inner), column(0, outer), Pose(0, 0, 0), robot)
         assert_allclose([got.x_mm[1], got.y_mm[1], got.heading_deg[1]], [radius, radius, 90])
 
-    def test_error_and_distance(self) -> None:
+    def test_dead_reckoning_has_error_and_distance(self) -> None:
         got = compute_dead_reckoning(column(0, 0), column(0, 0), Pose(0, 0, 0), RobotSpec())
         assert_allclose(got.compute_error_mm(column(0, 3), column(0, 4)), [0, 5])
         assert_allclose(distance_mm(column(0, 3, 3), column(0, 4, 6)), [0, 5, 7])

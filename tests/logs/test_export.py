@@ -181,7 +181,7 @@ def test_identical_runs_give_identical_files(
 
 
 @each_format
-def test_what_travels_with_a_log(logged: StoredRun, tmp_path: Path, suffix: str) -> None:
+def test_an_export_holds_what_its_runs_were(logged: StoredRun, tmp_path: Path, suffix: str) -> None:
     export_samples([logged], tmp_path / f"x{suffix}")
     found = open_log(tmp_path / f"x{suffix}").metadata
     (run,) = found["runs"]
@@ -199,7 +199,7 @@ def test_what_travels_with_a_log(logged: StoredRun, tmp_path: Path, suffix: str)
 
 
 @each_format
-def test_failure_leaves_what_was_there(
+def test_a_failed_export_leaves_the_old_file(
     tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     target = tmp_path / f"x{suffix}"
@@ -236,7 +236,7 @@ def test_damaged_file_is_named(tmp_path: Path, suffix: str) -> None:
 # One format each
 
 
-def test_csv_is_plain(logged: StoredRun, tmp_path: Path) -> None:
+def test_a_csv_export_has_one_heading_and_plain_rows(logged: StoredRun, tmp_path: Path) -> None:
     export_samples([logged], tmp_path / "x.csv")
     lines = (tmp_path / "x.csv").read_text().split("\n")
     assert lines[0] == "index,variable,value,time,run,x_mm,y_mm,heading_deg,line"
@@ -325,7 +325,7 @@ def test_lines_are_whole_numbers_where_all_are(lines: list[float], kind: str) ->
         "logs.export",
     ],
 )
-def test_importing_is_light(module: str) -> None:
+def test_importing_a_module_of_logs_loads_no_pandas(module: str) -> None:
     code = (
         f"import sys, tuisim.{module}\n"
         "heavy = {'numpy', 'pandas', 'pyarrow', 'PIL', 'platformdirs', 'msgspec'} & sys.modules.keys()\n"

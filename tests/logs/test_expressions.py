@@ -41,7 +41,7 @@ VALUES = {
 
 
 @pytest.mark.parametrize("text, expected", VALUES.items(), ids=VALUES)
-def test_expression(text: str, expected: list[float]) -> None:
+def test_an_expression_computes_its_values(text: str, expected: list[float]) -> None:
     assert_allclose(evaluate(text, COLUMNS), expected)
 
 
@@ -81,6 +81,6 @@ def test_an_expression_may_be_as_long_as_is_said() -> None:
 
 
 @cases("text", REFUSED)
-def test_expression_is_refused(text: str) -> None:
+def test_a_wrong_expression_is_refused(text: str) -> None:
     with pytest.raises(LogError):
         evaluate(text, COLUMNS)

@@ -99,7 +99,9 @@ CASES: dict[str, Case] = {
 
 
 @cases("name, content, expected", CASES)
-def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) -> None:
+def test_the_table_below_a_preamble_is_found(
+    tmp_path: Path, name: str, content: bytes, expected: Read | str
+) -> None:
     check_input(tmp_path / name, content, expected)
 
 
@@ -114,7 +116,7 @@ TWO = "a note\ntime,red\n0.0,5\n0.1,6\n\ntime,gyro,rate\n0.0,1,2.5\n0.1,3,4.5\n0
         "a row for the heading": (ReadChoices(header=3), ("0.0", "5"), 0.1),
     },
 )
-def test_choices(
+def test_chosen_header_and_columns_decide(
     tmp_path: Path, choices: ReadChoices, names: tuple[str, ...], first: float
 ) -> None:
     path = tmp_path / "a.csv"
@@ -150,7 +152,7 @@ def test_the_line_of_the_heading_is_known(text: str, row: int, tmp_path: Path) -
     assert open_log(path).form.header == row
 
 
-def test_a_second_table(tmp_path: Path) -> None:
+def test_the_second_table_of_a_file_is_read_when_chosen(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_bytes(b"time,red\n" + ROWS + b"\ntime,gyro\n0.0,1\n0.1,3\n")
     assert values(open_log(path, ReadChoices(table=2)), "gyro") == [1, 3]

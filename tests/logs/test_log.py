@@ -60,7 +60,7 @@ ROWS = {
 
 
 @cases("log, expected", ROWS)
-def test_rows(log: Log, expected: dict[str, list[int]]) -> None:
+def test_each_series_has_its_rows(log: Log, expected: dict[str, list[int]]) -> None:
     assert {name: list(log.series(name).rows) for name in log.names} == expected
     assert list(log.names) == list(expected)
 

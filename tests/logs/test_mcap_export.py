@@ -63,7 +63,7 @@ def check_values(log: Log, path: Path, names: set[str]) -> None:
         assert schemas[f"/{name}"]["name"] == f"tuisim.{name}"
 
 
-def test_telemetry_comes_back(
+def test_telemetry_reads_back_from_mcap(
     record: Callable[..., Recorder], noisy_spec: RunSpec, tmp_path: Path
 ) -> None:
     recorder = record(noisy_spec)
@@ -120,7 +120,7 @@ def test_missing_and_infinite_values_have_no_message(tmp_path: Path) -> None:
     check_values(log, tmp_path / "a.mcap", {"red", "blue"})
 
 
-def test_command(tmp_path: Path, here: Command) -> None:
+def test_the_export_command_writes_mcap(tmp_path: Path, here: Command) -> None:
     (tmp_path / "a.csv").write_text("time,red,blue\n0,1,5\n1,inf,6\n")
     done = here("log", "export", "a.csv", "--variable", "red", "--out", "a.MCAP")
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
@@ -136,7 +136,7 @@ def test_times_before_0_are_refused(tmp_path: Path) -> None:
     assert (tmp_path / "a.mcap").read_text() == "old"
 
 
-def test_failure_leaves_what_was_there(tmp_path: Path) -> None:
+def test_a_failed_mcap_export_leaves_the_old_file(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("time,red\n0,1\n1,2\n")
     (tmp_path / "a.mcap").write_text("old")
 

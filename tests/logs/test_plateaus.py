@@ -34,7 +34,7 @@ def test_ends_when_nobody_waits_for_it() -> None:
         find_plateaus_in_subprocess(values, lambda: True)
 
 
-def test_it_imports_the_package_of_this_process() -> None:
+def test_the_search_process_imports_the_package_of_this_process() -> None:
     assert plateaus_module.__file__ == str(
         plateaus_module._PACKAGE_FOLDER / "tuisim" / "logs" / "plateaus.py"
     )

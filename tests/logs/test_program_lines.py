@@ -208,5 +208,7 @@ CASES: dict[str, Case] = {
 
 
 @cases("name, content, expected", CASES)
-def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) -> None:
+def test_every_printed_sample_is_read(
+    tmp_path: Path, name: str, content: bytes, expected: Read | str
+) -> None:
     check_input(tmp_path / name, content, expected)

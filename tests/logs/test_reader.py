@@ -347,7 +347,7 @@ CASES: dict[str, Case] = {
 
 @pytest.mark.slow_cases("a line of 100 MB", "nothing but a line of 100 MB")
 @cases("name, content, expected", CASES)
-def test_input(
+def test_a_damaged_or_odd_log_is_read_or_refused(
     tmp_path: Path, name: str, content: bytes | Callable[[], bytes], expected: Read | str
 ) -> None:
     check_input(tmp_path / name, content, expected)
@@ -358,7 +358,9 @@ def test_input(
     [(lambda path: None, "no such file"), (lambda path: path.mkdir(), "folder")],
     ids=["no file", "a folder"],
 )
-def test_no_log(tmp_path: Path, make: Callable[[Path], None], expected: str) -> None:
+def test_a_file_that_is_no_log_is_refused(
+    tmp_path: Path, make: Callable[[Path], None], expected: str
+) -> None:
     make(tmp_path / "a.csv")
     with pytest.raises(LogError, match=expected):
         open_log(tmp_path / "a.csv")
@@ -399,7 +401,7 @@ def test_columns_that_are_not_there(
         open_log(path, ReadChoices(time=time, value=columns))
 
 
-def test_named_columns(tmp_path: Path) -> None:
+def test_chosen_columns_are_time_and_values(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("n,clock_ms,red,blue\n0,100,1,5\n1,200,2,6\n")
     log = open_log(path, ReadChoices(time="clock_ms", value=("blue",)))

@@ -29,7 +29,7 @@ def column(*values: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
 
 
 class TestSummary:
-    def test_figures(self) -> None:
+    def test_a_summary_leaves_out_missing_values(self) -> None:
         got = compute_summary(column(1, 2, 3, 4, NAN))
         assert (got.count, got.left_out, got.min, got.mean, got.max) == (4, 1, 1.0, 2.5, 4.0)
         assert got.std == pytest.approx(math.sqrt(5 / 3))
@@ -39,7 +39,7 @@ class TestSummary:
         got = compute_summary(np.full(1001, 86.27450980392157))
         assert (got.mean, got.std) == (86.27450980392157, 0.0)
 
-    def test_nothing(self) -> None:
+    def test_a_summary_of_no_finite_values_is_nan(self) -> None:
         got = compute_summary(column(NAN, math.inf))
         assert (got.count, got.left_out) == (0, 2)
         assert math.isnan(got.mean)
@@ -64,7 +64,9 @@ class TestSignals:
         [(Between.LINEAR, [0, 1.5, 6.5]), (Between.HOLD, [0, 1, 5])],
         ids=["linear", "hold"],
     )
-    def test_integral(self, between: Between, expected: list[float]) -> None:
+    def test_integrals_hold_or_interpolate_between_samples(
+        self, between: Between, expected: list[float]
+    ) -> None:
         assert_allclose(compute_integral(column(0, 1, 3), column(1, 2, 3), between), expected)
 
     def test_moving_average_shrinks_at_the_ends(self) -> None:
@@ -95,7 +97,7 @@ class TestSignals:
         with pytest.raises(LogError, match="odd"):
             compute_moving_average(column(1, 2), width)
 
-    def test_resample_holds(self) -> None:
+    def test_resampling_holds_the_last_value(self) -> None:
         time, values = resample(column(0, 0.25, 1), column(5, 6, 7), 0.5)
         assert_allclose(time, [0, 0.5, 1])
         assert_allclose(values, [5, 6, 7])
@@ -109,7 +111,7 @@ class TestSignals:
         assert_allclose(got, [NAN, 6, 7])
 
     @pytest.mark.parametrize("period", [0.0, -1.0, NAN, math.inf, 1e-9])
-    def test_resample_refuses(self, period: float) -> None:
+    def test_resampling_refuses_a_wrong_period(self, period: float) -> None:
         with pytest.raises(LogError, match="period"):
             resample(column(0, 100), column(1, 2), period)
 
@@ -137,7 +139,7 @@ class TestOrder:
         assert_allclose(resample(*BACK, 1)[1], [0, 1, 4, 9])
         assert [(one.sample, one.time_s) for one in find_crossings(*BACK, 2.5)] == [(1, 1.5)]
 
-    def test_very_large_values(self) -> None:
+    def test_very_large_values_do_not_overflow(self) -> None:
         found = find_crossings(column(0, 1), column(-1e308, 1e308), 0)
         assert [one.time_s for one in found] == [0.5]
         assert_allclose(compute_integral(column(0, 1), column(1e308, 1e308)), [0, 1e308])
@@ -145,7 +147,7 @@ class TestOrder:
 
 
 class TestCrossings:
-    def test_up_and_down(self) -> None:
+    def test_crossings_are_found_in_both_directions(self) -> None:
         found = find_crossings(column(0, 1, 2, 3), column(0, 10, 10, 0), 5)
         assert [(c.sample, c.time_s, c.rising) for c in found] == [(1, 0.5, True), (3, 2.5, False)]
 

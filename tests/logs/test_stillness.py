@@ -31,7 +31,7 @@ UNLEVEL = {
 
 
 @cases("values", UNLEVEL)
-def test_what_moves_has_no_level(values: list[float]) -> None:
+def test_a_moving_signal_has_no_level(values: list[float]) -> None:
     rng = np.random.default_rng(1)
     assert find_plateaus(np.array(values)) == []
     assert find_plateaus(np.array(values) + rng.normal(0.0, 0.3, len(values))) == []

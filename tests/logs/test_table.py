@@ -109,7 +109,7 @@ def test_columns_are_hidden_and_kept_at_the_left() -> None:
     assert rows.columns[:3] == ["variable", "value", "time"]
 
 
-def test_search_goes_round() -> None:
+def test_a_search_goes_on_from_the_other_end() -> None:
     rows = model_of(long_log()).rows
     assert rows.find("left", 0, 1) == 1
     assert rows.find("left", 19, 1) == 1

@@ -96,5 +96,7 @@ CASES: dict[str, Case] = {
 
 
 @cases("name, content, expected", CASES)
-def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) -> None:
+def test_time_that_goes_back_is_put_in_order(
+    tmp_path: Path, name: str, content: bytes, expected: Read | str
+) -> None:
     check_input(tmp_path / name, content, expected)

@@ -42,7 +42,7 @@ def test_an_axis_of_spans_is_in_seconds(draw: Callable[[], Any]) -> None:
     plt.close("all")
 
 
-def test_numbers_stay_numbers() -> None:
+def test_an_axis_of_numbers_gets_no_seconds() -> None:
     use_seconds()
     _, axes = plt.subplots()
     axes.plot([0, 1, 2], [0, 1, 2])

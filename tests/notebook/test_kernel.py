@@ -38,7 +38,7 @@ def test_the_modules_of_the_course_mean_tuisim(course_kernel: str) -> None:
 
 
 @pytest.mark.slow
-def test_magics_are_there_without_being_loaded(course_kernel: str) -> None:
+def test_magics_of_the_course_kernel_need_no_load_ext(course_kernel: str) -> None:
     done = execute({"run": "%%sim_magic_preloaded -RWH\nprint('Colour: 1')"}, course_kernel)
     assert stream(done["run"]) == "Colour: 1\n"
 

@@ -50,7 +50,7 @@ def levels(cell: NotebookNode) -> list[float]:
     return [float(line.removeprefix("Colour: ")) for line in lines]
 
 
-def test_nothing_goes_wrong(done: Done) -> None:
+def test_no_cell_of_the_lesson_prints_an_error(done: Done) -> None:
     assert [stream(cell, "stderr") for cell in done.values()] == [""] * len(CELLS)
     assert [name for name in ("load", "clear", "clear again") if done[name].outputs] == []
 

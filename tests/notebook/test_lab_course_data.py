@@ -93,7 +93,7 @@ def value(cell: NotebookNode) -> Any:
     return eval(result(cell), {})
 
 
-def test_no_cell_complains(done: Mapping[str, NotebookNode]) -> None:
+def test_no_data_cell_of_the_course_prints_an_error(done: Mapping[str, NotebookNode]) -> None:
     assert {
         name: stream(cell, "stderr") for name, cell in done.items() if stream(cell, "stderr")
     } == {}
@@ -138,5 +138,5 @@ def test_pictures_are_of_the_sensors_disc(done: Mapping[str, NotebookNode], tmp_
     assert np.ptp(middle) <= 8
 
 
-def test_ours_stay_reachable(done: Mapping[str, NotebookNode]) -> None:
+def test_our_own_names_stay_beside_those_of_the_course(done: Mapping[str, NotebookNode]) -> None:
     assert value(done["ours"]) == (["side", "vals", "clock", "run"], "int", "nbev3devsim")

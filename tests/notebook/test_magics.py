@@ -54,7 +54,9 @@ def test_the_log_has_the_plateaus_and_adds_up_until_it_is_cleared(cell: Cell) ->
         ),
     ],
 )
-def test_what_is_hidden_is_not_there(words: str, pictures: int, status: bool, cell: Cell) -> None:
+def test_a_switch_hides_pictures_and_status(
+    words: str, pictures: int, status: bool, cell: Cell
+) -> None:
     shown = cell(program(words))
     assert (shown.out, shown.pictures, "finished · " in shown.plain) == ("ran\n", pictures, status)
 
@@ -223,7 +225,7 @@ def test_a_program_is_shown_as_it_is_also_where_a_browser_shows_it(cell: Cell) -
     assert "<b>" not in code["text/html"]
 
 
-def test_one_sample_is_told_as_one(cell: Cell) -> None:
+def test_one_sample_is_counted_in_the_singular(cell: Cell) -> None:
     assert cell(program("-RW", "print('Colour: 1')")).plain == "finished · 0.000 s · 1 sample"
 
 

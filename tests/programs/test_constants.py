@@ -49,6 +49,6 @@ def test_constants_are_set_and_lines_keep_their_numbers() -> None:
         "no Python": ("x = = 1\n", "x", "is not Python"),
     },
 )
-def test_what_is_no_constant_is_refused(text: str, name: str, words: str) -> None:
+def test_a_name_that_is_no_constant_cannot_be_set(text: str, name: str, words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         set_constants(parse_program(text, "program"), {name: 1})

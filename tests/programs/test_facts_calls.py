@@ -77,5 +77,5 @@ CALLS = {
 
 
 @cases("text, call, lines", CALLS)
-def test_lines_of_calls(text: str, call: str, lines: list[int]) -> None:
+def test_calls_are_found_under_any_name(text: str, call: str, lines: list[int]) -> None:
     assert read_facts(Program("p.py", text, "preloaded")).find_calls(call) == lines

@@ -63,7 +63,7 @@ def shown(text: str, state: Inspected) -> dict[int, list[str]]:
     ],
     ids=["loop", "constant of before", "not yet", "at the end"],
 )
-def test_globals_beside_lines(
+def test_globals_stand_beside_the_lines_that_use_them(
     line: int, variables: dict[str, str], beside: dict[int, list[str]]
 ) -> None:
     assert shown(TEXT, inspected([(MODULE, line)], variables)) == beside

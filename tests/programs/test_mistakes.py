@@ -42,7 +42,7 @@ def test_a_program_that_does_not_compile_has_a_fault(
     ],
     ids=["good", "magic", "syntax", "outside", "wrong magic", "warning", "deep"],
 )
-def test_what_is_wrong_with_a_program(text: str, line: int | None, words: str) -> None:
+def test_a_faulty_program_is_explained_at_its_line(text: str, line: int | None, words: str) -> None:
     found = find_mistake(text, "p.py")
     if line is None:
         assert found is None

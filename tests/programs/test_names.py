@@ -58,7 +58,9 @@ def found(text: str) -> list[tuple[int, int, int, str]] | None:
         "unfinished head",
     ],
 )
-def test_unknown_names(text: str, unknown: list[tuple[int, int, int, str]]) -> None:
+def test_names_that_nobody_defined_are_found(
+    text: str, unknown: list[tuple[int, int, int, str]]
+) -> None:
     assert found(text) == unknown
 
 

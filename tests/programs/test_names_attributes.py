@@ -44,7 +44,9 @@ from tuisim.programs.names import AttributeCheck
         "unfinished line",
     ],
 )
-def test_unknown_attributes(home: Path, text: str, messages: list[str]) -> None:
+def test_attributes_that_an_object_lacks_are_found(
+    home: Path, text: str, messages: list[str]
+) -> None:
     found = AttributeCheck(find_members).find_unknown_attributes(text, "prog.py")
     assert [one.message for one in found] == messages
     lines = text.split("\n")

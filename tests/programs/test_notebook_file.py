@@ -178,7 +178,7 @@ def test_json_stands_alone_on_stdout_also_for_all_cells(here: Command, tmp_path:
         ),
     },
 )
-def test_what_is_wrong_is_told(
+def test_a_notebook_that_cannot_be_run_says_why(
     content: str | list[tuple[str, str]] | None, cell: str, told: str, here: Command, tmp_path: Path
 ) -> None:
     path = tmp_path / "bad.ipynb"

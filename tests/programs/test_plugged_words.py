@@ -35,7 +35,7 @@ MOTORS = tuple(PluggedPart(one.port, "LargeMotor", 50, 3) for one in WHEELS)
         ((TOO_LATE,), "large motor on outD, no wheel's since the robot had driven (line 14)"),
     ],
 )
-def test_parts_in_words(parts: tuple[PluggedPart, ...], words: str) -> None:
+def test_plugged_in_parts_are_listed_in_words(parts: tuple[PluggedPart, ...], words: str) -> None:
     assert list_parts(parts) == words
 
 

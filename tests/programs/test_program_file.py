@@ -48,7 +48,7 @@ def test_an_example_is_found_by_its_name_unless_a_file_has_it(
         ("large.py", b"#" * (MAX_PROGRAM_BYTES + 1), "is larger than 4 MiB"),
     ],
 )
-def test_what_is_no_program_is_told(
+def test_a_file_that_is_no_program_says_why(
     name: str, data: bytes | None, said: str, tmp_path: Path
 ) -> None:
     path = tmp_path / name
@@ -164,7 +164,7 @@ def test_magic_line_is_found(text: str, line: int, prelude: str, comment: bool) 
     ],
     ids=["none", "too late", "in the docstring", "in a sentence", "empty"],
 )
-def test_no_magic_line(text: str) -> None:
+def test_a_line_that_is_no_magic_is_not_taken_for_one(text: str) -> None:
     assert find_magic(text, "a.py") is None
 
 
@@ -220,7 +220,7 @@ def test_raw_magic_line_becomes_a_comment_so_that_it_is_seen_and_lines_keep_thei
         "switch in the magic",
     ],
 )
-def test_prelude(text: str, prelude: str) -> None:
+def test_imports_decide_which_names_are_predefined(text: str, prelude: str) -> None:
     assert parse_program(text, "a.py").program.prelude == prelude
 
 

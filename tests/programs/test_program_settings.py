@@ -197,7 +197,7 @@ CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float, floa
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_what_is_decided(case: str) -> None:
+def test_a_program_decides_profile_robot_and_place(case: str) -> None:
     text, given, (profile, robot, place) = CASES[case]
     above = [given["above"]] if "above" in given else []
     rest = {key: value for key, value in given.items() if key != "above"}

@@ -69,7 +69,7 @@ def ask(text: str) -> Question:
 
 
 @cases("text", WAITS)
-def test_what_decides_something_is_waited_for(text: str) -> None:
+def test_a_reading_that_decides_something_is_waited_for(text: str) -> None:
     assert ask(text).decides
 
 

@@ -55,7 +55,7 @@ def test_default_robot_is_the_default_of_the_specification() -> None:
     ],
     ids=["none", "post", "posts", "wall"],
 )
-def test_obstacles(name: str, boxes: set[Obstacle]) -> None:
+def test_each_set_of_obstacles_has_its_boxes(name: str, boxes: set[Obstacle]) -> None:
     assert set(OBSTACLES[name]) == boxes
 
 

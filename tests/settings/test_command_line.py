@@ -68,7 +68,7 @@ def offered(shell: str, said: str) -> list[str]:
 @pytest.mark.quick_cases("*-bash", "a value-*")
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 @cases("typed, words", ASKED)
-def test_words_are_offered(
+def test_each_shell_completes_the_words_of_a_command(
     shell: str,
     typed: str,
     words: list[str],

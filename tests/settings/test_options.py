@@ -60,7 +60,7 @@ from tuisim.settings.shared_options import parse_words
     ],
     ids=lambda value: value or "nothing" if isinstance(value, str) else "",
 )
-def test_options(words: str, fields: dict[str, Any]) -> None:
+def test_words_of_options_give_their_values(words: str, fields: dict[str, Any]) -> None:
     assert parse_words(words.split()) == fields
 
 

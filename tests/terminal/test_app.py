@@ -35,7 +35,7 @@ class Plain(BufferedApp):
         self.view.set_lines([[(text, STYLE)]])
 
 
-async def test_only_what_differs_is_sent() -> None:
+async def test_the_app_sends_only_changed_cells() -> None:
     app = Plain()
     async with on_wire(app) as pilot:
         app.show("left 1 right")

@@ -168,7 +168,7 @@ async def test_kitty_keeps_no_images_of_pictures_that_have_gone() -> None:
         assert not seen_on(pilot).images
 
 
-async def test_what_has_passed_leaves_nothing_behind() -> None:
+async def test_a_robot_that_has_passed_leaves_no_trace_on_an_edge() -> None:
     """A pale edge looks the same after the robot has been on it."""
     view = PixelView()
     async with PanelApp(view).run_test(size=(4, 2)) as pilot:

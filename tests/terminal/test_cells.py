@@ -99,7 +99,9 @@ def test_fine_points_can_be_drawn_as_half_blocks(cells: CellSet) -> None:
         "rows are apart": ([9, 10], [(0, 9, 1), (1, 0, 1)]),
     },
 )
-def test_changed_runs(changed: list[int], runs: list[tuple[int, int, int]]) -> None:
+def test_changed_cells_are_joined_to_runs(
+    changed: list[int], runs: list[tuple[int, int, int]]
+) -> None:
     old = np.zeros((3, 10), np.int64)
     new = old.copy()
     new.flat[changed] = 1

@@ -75,7 +75,7 @@ def test_marker_and_body_differ_in_grey() -> None:
         "white of 16": (0xFFFFFF, PALETTE_16, 15),
     },
 )
-def test_palette_numbers(rgb: int, depth: int, index: int) -> None:
+def test_a_colour_becomes_the_nearest_of_the_palette(rgb: int, depth: int, index: int) -> None:
     assert find_sgr_index(rgb, depth) == index
 
 

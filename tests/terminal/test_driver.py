@@ -11,7 +11,7 @@ import pytest
 from tuisim.terminal.driver import run_in_foreground
 
 
-def test_it_is_waited_for_and_an_interrupt_is_the_programs_alone(tmp_path: Path) -> None:
+def test_the_app_waits_for_another_program_and_ignores_its_interrupt(tmp_path: Path) -> None:
     before = signal.getsignal(signal.SIGINT)
     program = "import os, signal, sys; os.kill(os.getppid(), signal.SIGINT); open(sys.argv[1], 'w').close()"
     # Also where it starts so late that this process already ignores the signal.

@@ -11,7 +11,7 @@ from tuisim.terminal.glyphs import build_glyph_set
 from tuisim.terminal.picture_options import CellSet
 
 
-def test_cells_of_one_color_are_flat() -> None:
+def test_cells_of_one_colour_need_no_glyph() -> None:
     glyphs = build_glyph_set(CellSet.OCTANT)
     picture = np.concatenate(
         [picture_of(CellSet.OCTANT, pattern) for pattern in (0x00, 0x0F, 0xFF)], axis=1

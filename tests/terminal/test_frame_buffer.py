@@ -82,7 +82,7 @@ def shown(screen: pyte.Screen) -> list[list[tuple[object, ...]]]:
         "narrow to wide": ("ab文", "中文", "\x1b[1;1H中"),
     },
 )
-def test_only_what_differs_is_sent(before: str, after: str, codes: str) -> None:
+def test_the_frame_buffer_sends_only_changed_text(before: str, after: str, codes: str) -> None:
     frame_buffer = FrameBuffer()
     sent(frame_buffer, rows([text(before)]))
 

@@ -42,7 +42,7 @@ def test_an_arc_ends_where_lines_of_the_next_cells_begin() -> None:
 
 
 @pytest.mark.parametrize("char, count", [("┄", 3), ("┈", 4), ("╌", 2)])
-def test_dashes_have_gaps(char: str, count: int) -> None:
+def test_dashed_lines_have_their_number_of_dashes(char: str, count: int) -> None:
     columns = sorted({x for x, _ in painted(draw_character(char, 24, 24))})
     gaps = sum(after - before > 1 for before, after in pairwise(columns))
     assert gaps + 1 == count

@@ -79,7 +79,9 @@ class Line:
         "16 kbit/s": (2_000, 0.150, 1, 2),
     },
 )
-def test_frames_a_second(bytes_s: float, round_trip_s: float, least: int, most: int) -> None:
+def test_each_link_gets_as_many_frames_a_second_as_it_carries(
+    bytes_s: float, round_trip_s: float, least: int, most: int
+) -> None:
     line = Line(bytes_s, round_trip_s)
     line.drive(5.0)
 

@@ -58,7 +58,7 @@ def test_fine_glyphs_are_for_terminals_that_draw_them(
         "no locale, as in a container": ({"TERM": "xterm"}, None),
     },
 )
-def test_what_the_environment_decides(
+def test_the_environment_decides_which_glyphs_are_used(
     environment: Mapping[str, str], cells: CellSet | None
 ) -> None:
     assert read_cells(environment) is cells

@@ -202,7 +202,9 @@ VISITS = {
 
 
 @cases("path, kind", VISITS)
-async def test_a_visitor_gets(path: str, kind: str, visited: Visited) -> None:
+async def test_each_page_of_the_server_has_its_type_and_policy(
+    path: str, kind: str, visited: Visited
+) -> None:
     visitor = await visited()
     async with visitor.client.get(visitor.top + path) as answer:
         assert answer.status == 200

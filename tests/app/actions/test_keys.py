@@ -32,7 +32,7 @@ async def test_a_key_that_does_nothing_says_why() -> None:
 
 
 @pytest.mark.slow
-async def test_nudge() -> None:
+async def test_arrow_keys_move_and_turn_the_robot() -> None:
     async with open_lab(LOGS) as (pilot, app):
         for key, pose in (
             ("left", Pose(140, 500, 0)),
@@ -110,7 +110,7 @@ def test_each_group_is_in_one_file_that_names_it(table: Mapping[str, Action[Any,
     assert [pair for pair in pairs if pair[0] not in (sys.modules[pair[1]].__doc__ or "")] == []
 
 
-def test_keys_differ() -> None:
+def test_no_key_has_two_actions() -> None:
     keys = [key for action in ACTIONS.values() for key in action.key.split(",")]
     assert sorted(keys) == sorted(set(keys))
 

@@ -186,7 +186,7 @@ async def test_the_source_shows_a_magic_line_that_is_no_comment() -> None:
 
 
 @pytest.mark.slow
-async def test_one_cursor_moves_all(run: StoredRun) -> None:
+async def test_the_cursor_moves_every_pane(run: StoredRun) -> None:
     async with open_analyser(runs=(run.id,)) as (pilot, _, model):
         await until(pilot, lambda: "print('Colour" in text_of(pilot))
         before = text_of(pilot)
@@ -251,7 +251,7 @@ STEPS: list[tuple[list[str], Callable[[Analyser, AnalysisModel], bool]]] = [
 
 
 @pytest.mark.slow
-async def test_what_the_keys_do(run: StoredRun) -> None:
+async def test_each_key_of_the_analyser_does_its_action(run: StoredRun) -> None:
     async with open_analyser(runs=(run.id,)) as (pilot, screen, model):
         for keys, so in STEPS:
             await typed(pilot, *keys)
@@ -355,6 +355,6 @@ async def test_the_rows_as_shown_are_exported(run: StoredRun, tmp_path: Path) ->
         assert frame["value"].max() < 60
 
 
-def test_keys_are_told_apart() -> None:
+def test_no_key_of_the_analyser_has_two_actions() -> None:
     keys = [key for action in ACTIONS.values() for key in action.key.split(",")]
     assert len(keys) == len(set(keys))

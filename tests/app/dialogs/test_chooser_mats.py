@@ -92,7 +92,9 @@ async def enter_path(pilot: Pilot[None], path: Path) -> None:
 
 @pytest.mark.quick_cases("missing")
 @pytest.mark.parametrize("content", [None, "no picture"], ids=["missing", "text"])
-async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: Path) -> None:
+async def test_a_file_that_is_no_image_leaves_the_mat_as_it_is(
+    content: str | None, tmp_path: Path
+) -> None:
     path = tmp_path / "none.png"
     if content:
         path.write_text(content)

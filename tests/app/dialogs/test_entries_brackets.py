@@ -50,7 +50,9 @@ DIALOGS: dict[str, tuple[Callable[[], Screen[Any]], tuple[str, ...]]] = {
 
 
 @cases("make, shown", DIALOGS)
-async def test_brackets_are_shown(make: Callable[[], Screen[Any]], shown: tuple[str, ...]) -> None:
+async def test_brackets_in_names_are_not_taken_for_markup(
+    make: Callable[[], Screen[Any]], shown: tuple[str, ...]
+) -> None:
     app: App[None] = App()
     async with app.run_test(size=(100, 40)) as pilot:
         app.push_screen(make())

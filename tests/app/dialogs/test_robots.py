@@ -43,7 +43,7 @@ def test_a_robot_is_whole_in_its_picture(robot: str, size: tuple[int, int]) -> N
 
 
 @pytest.mark.slow
-async def test_what_names_no_robot_shows_none() -> None:
+async def test_a_search_without_a_match_shows_no_robot() -> None:
     async with open_lab() as (pilot, app):
         await pilot.press("r")
         await until(pilot, lambda: isinstance(app.screen, RobotPicker))

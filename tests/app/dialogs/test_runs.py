@@ -201,7 +201,7 @@ async def test_a_damaged_run_is_a_notice(damage: Callable[[Path], str]) -> None:
     ],
     ids=["no such run", "a program too", "a mat too", "a world too"],
 )
-def test_the_command_refuses(tuisim: Command, words: list[str], said: str) -> None:
+def test_open_refuses_wrong_words_in_one_line(tuisim: Command, words: list[str], said: str) -> None:
     done = tuisim("open", *words)
     assert done.returncode == 2
     assert said in done.stderr

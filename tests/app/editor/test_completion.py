@@ -121,7 +121,7 @@ def test_names_that_may_follow(home: Path, text: str, found: list[str]) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "    ", "'tank_drive.o", "# tank_drive.o", "3.", "x ="])
-def test_nothing_may_follow(text: str) -> None:
+def test_no_names_are_offered_where_none_may_follow(text: str) -> None:
     assert names(text) == []
 
 
@@ -149,7 +149,7 @@ def test_a_candidate_has_a_signature_and_help(home: Path) -> None:
 
 
 @pytest.mark.slow
-def test_constants_come_last(home: Path) -> None:
+def test_constants_are_offered_last(home: Path) -> None:
     found = names(EV3DEV2 + "m.")
     assert found.index("COMMAND_STOP") > found.index("wait_until")
     assert found[-1].isupper()
@@ -233,5 +233,5 @@ def test_whether_a_place_is_in_a_call(lines: Sequence[str], is_in: bool) -> None
         ("", ""),
     ],
 )
-def test_the_first_sentence(documentation: str, first: str) -> None:
+def test_the_first_sentence_of_a_docstring_is_found(documentation: str, first: str) -> None:
     assert extract_sentence(documentation) == first

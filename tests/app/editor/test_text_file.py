@@ -87,7 +87,7 @@ def test_a_draft_is_found_until_it_is_dropped(home: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"", b"{", b"[]", b'{"path": 3}', b"\xff"])
-def test_what_is_no_draft_is_none(content: bytes, home: Path) -> None:
+def test_a_damaged_draft_is_ignored(content: bytes, home: Path) -> None:
     keep_draft("/a/p.py", "x")
     (file,) = (home / FOLDER).iterdir()
     file.write_bytes(content)

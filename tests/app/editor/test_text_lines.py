@@ -33,7 +33,9 @@ from tuisim.app.editor.text_lines import MAX_COMPARED, LineMap
         "all new",
     ],
 )
-def test_lines_in_common(run: str, shown: str, to_shown: list[int]) -> None:
+def test_lines_of_the_run_are_found_in_the_edited_text(
+    run: str, shown: str, to_shown: list[int]
+) -> None:
     lines = LineMap(run, shown)
     assert [lines.find_shown_line(line) for line in range(1, len(run) + 1)] == to_shown
     assert all(
@@ -87,7 +89,7 @@ def test_the_indentation_after_a_line(line: str, indent: str) -> None:
     ],
     ids=["in", "out", "comment", "code", "mixed", "empty"],
 )
-def test_lines_are_changed(
+def test_lines_are_indented_and_commented_as_asked(
     change: Callable[[list[str]], list[str]], before: list[str], after: list[str]
 ) -> None:
     assert change(before) == after

@@ -55,7 +55,7 @@ def test_any_panels_fill_the_screen(width: int, height: int) -> None:
     ],
     ids=["80x24", "100x30", "120x40", "200x60"],
 )
-def test_what_is_shown_unless_asked_otherwise(size: tuple[int, int], expected: set[str]) -> None:
+def test_each_size_shows_its_panels_at_first(size: tuple[int, int], expected: set[str]) -> None:
     width, height = size[0], size[1] - 1
     placed = arrange(choose_panels(Preset.STANDARD, {}, width, height)[0], width, height)
     assert set(placed.boxes) == expected
@@ -168,7 +168,7 @@ def test_the_editor_stands_beside_the_world() -> None:
         assert layout.boxes["code"].width >= 68 and layout.boxes["world"].width >= 42
 
 
-def test_panel_keys_differ() -> None:
+def test_no_key_shows_two_panels() -> None:
     assert len({panel.key for panel in PANELS.values()}) == len(PANELS)
 
 

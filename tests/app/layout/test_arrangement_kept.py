@@ -24,7 +24,7 @@ async def test_the_next_start_finds_the_arrangement_only_if_it_was_kept_for_its_
         assert app.panel_area.preset == "standard"
 
 
-def test_what_is_known_stays() -> None:
+def test_a_saved_layout_is_loaded_again() -> None:
     save_layout(TerminalSize.SMALL, KeptLayout(Preset.DRIVE, {"output": False}))
     assert load_layout(TerminalSize.SMALL) == KeptLayout(Preset.DRIVE, {"output": False})
 

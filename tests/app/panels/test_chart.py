@@ -45,7 +45,7 @@ async def opened(app: PanelApp[Chart], pilot: Pilot[None]) -> None:
 
 
 @pytest.mark.parametrize("size", [(20, 6), (80, 16), (180, 30)], ids=str)
-async def test_it_draws_what_was_logged(size: tuple[int, int]) -> None:
+async def test_the_chart_draws_logged_samples(size: tuple[int, int]) -> None:
     async with open_chart(size=size) as (pilot, app):
         app.panel.show(moment())
         await pilot.pause()
@@ -66,7 +66,7 @@ async def test_data_from_before_it_was_shown_is_kept() -> None:
         assert "[x] Colour" in rows(app)[0]
 
 
-async def test_keys_tick_traces() -> None:
+async def test_keys_show_and_hide_traces() -> None:
     async with open_chart() as (pilot, app):
         await opened(app, pilot)
         seen = []
@@ -185,7 +185,9 @@ async def test_clearing_keeps_the_ticks() -> None:
         assert rows(app)[0].startswith("[x] Colour  [x] gyro_deg")
 
 
-async def test_it_is_not_drawn_more_often_than_can_be_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_chart_is_not_drawn_more_often_than_can_be_seen(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     app = PanelApp(Chart())
     async with app.run_test(size=(80, 16)) as pilot:
         await until(pilot, lambda: app.panel._picture is not None)

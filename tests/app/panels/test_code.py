@@ -16,7 +16,7 @@ from tuisim.engine.protocol import FrameState, Inspected, Paused, Variable
 Keys = list[str]
 
 
-async def test_it_says_that_there_is_no_program_only_when_it_knows() -> None:
+async def test_code_says_no_program_only_once_that_is_known() -> None:
     app = CodeApp()
     async with app.run_test(size=(60, 12)) as pilot:
         await pilot.pause()

@@ -110,7 +110,7 @@ def test_a_narrow_panel_names_the_pen() -> None:
 @pytest.mark.parametrize(
     "now", [moment(), BARE, FURTHER, HELD], ids=["usual", "no sensors", "further parts", "drivers"]
 )
-def test_it_fits(now: Snapshot) -> None:
+def test_rows_fit_every_width_and_height(now: Snapshot) -> None:
     for width, height in product((18, 20, 24, 26, 32, 40, 44, 80), (4, 6, 8, 9, 11, 13, 14, 30)):
         rows = text(now, width, height)
 
@@ -118,7 +118,7 @@ def test_it_fits(now: Snapshot) -> None:
         assert max(map(len, rows)) <= width, (width, height)
 
 
-def test_extreme_values_fit() -> None:
+def test_extreme_values_fit_every_width() -> None:
     for width, height in product((32, 40, 44), (6, 11, 20)):
         assert max(map(len, text(EXTREME, width, height))) <= width, (width, height)
 
@@ -134,7 +134,7 @@ def test_a_word_and_its_value_have_a_space_between_them() -> None:
 
 
 @pytest.mark.parametrize("width, height", [(26, 6), (24, 11), (40, 13)], ids=str)
-def test_names_are_whole(width: int, height: int) -> None:
+def test_names_of_parts_are_not_cut(width: int, height: int) -> None:
     rows = "\n".join(text(moment(), width, height))
 
     for name in ("LeftMotor", "RightMotor", "Sensor1", "Sensor2", "Ultrasonic"):
@@ -185,7 +185,7 @@ def test_a_hub_shows_the_light_of_all_channels_which_its_program_reads_before_th
     assert words[1].startswith("Sensor1 mean 33 %")
 
 
-def test_values() -> None:
+def test_values_stand_beside_their_names() -> None:
     rows = [" ".join(row.split()) for row in text(moment(), 40, 11)]
 
     assert rows == [
@@ -275,7 +275,7 @@ async def test_what_is_left_of_last_time_is_wiped() -> None:
         ]
 
 
-def test_further_parts() -> None:
+def test_further_motors_and_sensors_have_rows() -> None:
     rows = [" ".join(row.split()) for row in text(FURTHER, 40, 20)]
     assert [row for row in rows if row.startswith(("Motor", "Bumper", "Infrared", "Back"))] == [
         "Motor A tacho -2517 -312 °/s",

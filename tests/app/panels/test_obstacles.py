@@ -201,7 +201,7 @@ def test_which_box_is_under_the_mouse(point: tuple[float, float], index: int | N
     ],
     ids=["up", "down", "only on the field", "too thin"],
 )
-def test_what_a_drag_draws(
+def test_a_drag_draws_a_box_unless_it_is_too_small(
     start: tuple[float, float], end: tuple[float, float], drawn: Obstacle | None
 ) -> None:
     made = BoxGrip((), None, *start).drag_boxes(*end)

@@ -56,7 +56,7 @@ async def enter(pilot: Pilot[Any], field: str, text: str) -> None:
 @pytest.mark.parametrize(
     "size", [(80, 24), (120, 40), (200, 60)], ids=["80x24", "120x40", "200x60"]
 )
-async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
+async def test_the_form_opens_with_the_robots_values(size: tuple[int, int]) -> None:
     async with open_settings(size=size) as (pilot, app):
         assert "‹ Default_Robot ›" in screen_text(app)
         assert row(app, "wheel_spacing_mm").entry.value == "180"

@@ -55,7 +55,7 @@ def colours(world: World) -> int:
 
 
 @pytest.mark.parametrize("size", [(20, 6), (76, 27), (190, 50)], ids=str)
-async def test_it_shows_mat_and_robot(size: tuple[int, int]) -> None:
+async def test_the_world_shows_mat_and_robot(size: tuple[int, int]) -> None:
     async with open_world(size=size) as (_, app):
         assert view(app.panel)._cells.shape == (size[1] - TIME_BAR_ROWS, size[0])
         assert colours(app.panel) > 5
@@ -91,7 +91,7 @@ def test_the_frame_says_what_the_other_robots_are(
     assert build_legend(moment(now_pose=now_pose, earlier_pose=earlier_pose), width) == words
 
 
-async def test_it_is_blank_until_the_mat_is_there() -> None:
+async def test_the_world_is_blank_until_the_mat_is_there() -> None:
     app = PanelApp(World())
     async with app.run_test(size=(40, 12)) as pilot:
         app.panel.show(moment())

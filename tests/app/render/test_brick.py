@@ -65,7 +65,7 @@ def test_a_small_display_keeps_every_thin_line(width: int, height: int) -> None:
     assert all(dots(everything, slice(column, column + 1)) for column in range(DISPLAY_WIDTH))
 
 
-def test_shrinking_averages() -> None:
+def test_a_smaller_screen_shows_the_mean_of_its_pixels() -> None:
     ink = np.zeros((4, 4), np.uint8)
     ink[:2, :2] = 1
     ink[3, 3] = 1
@@ -116,7 +116,7 @@ def test_a_pressed_button_stands_out() -> None:
         (25, 255, "yellow"),
     ],
 )
-def test_lamps_have_names(red: int, green: int, name: str) -> None:
+def test_lamps_are_named_by_their_colour(red: int, green: int, name: str) -> None:
     assert name_led(red, green) == name
     leds = {"left red": red, "left green": green, "right red": 0, "right green": 0}
     assert any(name in line for line in text_of(BrickState(leds=leds), 60, 20))

@@ -17,7 +17,7 @@ def kinds() -> list[tuple[Kind, str]]:
     return [(one.kind, one.name) for one in list_recent("new.py")]
 
 
-def test_nothing_at_first() -> None:
+def test_a_new_home_has_nothing_to_go_on_with() -> None:
     assert kinds() == []
 
 

@@ -100,7 +100,7 @@ def test_a_path_is_drawn_to_one_scale(here: Command, tmp_path: Path) -> None:
     assert "y_mm against x_mm" in said
 
 
-def test_what_is_not_drawn_is_told(here: Command, log: Path) -> None:
+def test_a_plot_names_the_variables_that_it_leaves_out(here: Command, log: Path) -> None:
     log.write_text("time,a,b,c,d,e\n0,1,2,3,4,5\n1,2,3,4,5,6\n")
     assert "not drawn: e; --variable NAME" in here("log", "plot", str(log)).stderr
     assert told(here("log", "plot", str(log), "--variable", "e")) == []
@@ -122,7 +122,7 @@ BAD = {
 
 
 @cases("words, expected", BAD)
-def test_bad_input(
+def test_a_plot_that_cannot_be_made_is_refused_in_one_line(
     here: Command, log: Path, tmp_path: Path, words: tuple[str, ...], expected: str
 ) -> None:
     done = here("log", "plot", str(log), *words)

@@ -20,7 +20,7 @@ from tuisim.logs.choices import ReadChoices
 
 
 @pytest.mark.slow
-def test_a_pipe(tmp_path: Path) -> None:
+def test_a_log_is_read_from_a_pipe(tmp_path: Path) -> None:
     command = f"{sys.executable} -m tuisim run log_greys | {sys.executable} -m tuisim log summary - --json"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(

@@ -19,13 +19,13 @@ def log(tmp_path: Path) -> Path:
     return path
 
 
-def test_summary(here: Command, log: Path) -> None:
+def test_a_summary_has_count_mean_and_limits(here: Command, log: Path) -> None:
     left, right = json.loads(here("log", "summary", str(log), "--json").stdout)
     assert (left["variable"], left["count"], left["mean"], left["max"]) == ("left", 10, 4.5, 9.0)
     assert (right["min"], right["first_s"], right["last_s"]) == (1.0, 0.0, 4.5)
 
 
-def test_events_are_what_the_program_asked(here: Command, log: Path) -> None:
+def test_events_list_the_commands_to_a_motor(here: Command, log: Path) -> None:
     here("run", "square")
     rows = json.loads(here("log", "events", "last", "--when", "command left", "--json").stdout)
     assert rows and {row["part"] for row in rows} == {"left motor B"}

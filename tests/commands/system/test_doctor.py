@@ -113,7 +113,7 @@ ASKED = {
 
 @pytest.mark.slow
 @cases("environment, expected", ASKED)
-def test_asks_the_terminal(
+def test_doctor_says_what_the_terminal_answers(
     environment: dict[str, str], expected: tuple[str, ...], home: Path
 ) -> None:
     where = {"TERM": "xterm-256color", "COLORTERM": "truecolor", **environment}

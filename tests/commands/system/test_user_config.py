@@ -68,7 +68,7 @@ def test_the_file_is_written_once(config: Path, here: Command) -> None:
         ),
     },
 )
-def test_what_is_wrong_ends_the_command(
+def test_a_wrong_config_file_ends_the_command_in_one_line(
     text: str, problem: str, config: Path, here: Command
 ) -> None:
     config.write_text(text)
@@ -88,7 +88,7 @@ def test_what_is_wrong_ends_the_command(
         "not in a world": (["--world", "w.toml", "p.py"], 0),
     },
 )
-def test_run_tells_what_the_settings_change(
+def test_a_run_says_which_settings_of_the_user_it_takes(
     words: list[str], noise: int, config: Path, tmp_path: Path, here: Command
 ) -> None:
     config.write_text("[simulation]\nmotornoise = 7\n[app]\nspeed = 0.01\n")

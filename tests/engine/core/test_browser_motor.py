@@ -49,7 +49,9 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Course]:
 
 @pytest.mark.slow_cases("on_spin", "pairs_made_anew")
 @pytest.mark.parametrize("name", RECORDS)
-def test_a_recorded_program(name: str, lab: Mapping[str, Course]) -> None:
+def test_a_program_runs_as_the_old_simulator_recorded_it(
+    name: str, lab: Mapping[str, Course]
+) -> None:
     record = RECORDS[name]
     done = lab[name]
     assert done.rows == [row[2:] for row in record["rows"]]

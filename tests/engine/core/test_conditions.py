@@ -202,7 +202,7 @@ def test_what_is_no_comparison_is_answered_with_what_is_allowed(
 
 
 @pytest.mark.parametrize("place", [place for place in PLACES if place != "expression"])
-def test_what_is_no_number_is_named(place: str) -> None:
+def test_a_condition_names_what_is_no_number(place: str) -> None:
     with pytest.raises((ConfigError, LogError), match="'ten' is not a number"):
         PLACES[place]("Colour < ten")
 

@@ -43,7 +43,7 @@ def test_a_motor_stops_at_its_end(profile: str, dps: float, end_deg: float, flag
     assert (arm.mode != STOPPED, sim.build_instant().press_flags) == (True, flag)
 
 
-def test_it_is_stalled_after_a_tenth_of_a_second() -> None:
+def test_an_arm_at_its_end_stop_is_stalled_after_100_ms() -> None:
     sim = arm_of()
     arm = sim.others[1]
     commanded(arm).run(-200.0)

@@ -19,7 +19,7 @@ MM_PER_DEG = math.pi * 56 / 360
 
 @pytest.mark.parametrize("ticks", [1, 400, 1777])
 @pytest.mark.parametrize("left_dps, right_dps", [(500, 300), (-200, 640), (0, 300), (1050, -1050)])
-def test_arc(left_dps: float, right_dps: float, ticks: int) -> None:
+def test_two_steady_speeds_drive_a_circle(left_dps: float, right_dps: float, ticks: int) -> None:
     world = WorldSpec(background="Empty_Map", start=START)
     sim = Simulation(RunSpec(RobotSpec(weight=0.0), world, PROFILES["robolab"]), MemorySink())
     commanded(sim.left).run(left_dps)

@@ -88,6 +88,6 @@ def test_a_part_is_stored_and_found_again() -> None:
         ("outA", "LargeMotor", "up"),
     ],
 )
-def test_what_is_no_part(port: str, part: str, role: str) -> None:
+def test_an_unknown_part_cannot_be_plugged_in(port: str, part: str, role: str) -> None:
     with pytest.raises(ValueError, match="no part"):
         PluggedPart(port, part, 0, 0, role)

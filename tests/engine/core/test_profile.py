@@ -61,7 +61,9 @@ MOVES = {
 
 
 @cases("text, end", MOVES)
-def test_move(run: Run, text: str, end: tuple[float, float, float]) -> None:
+def test_a_move_ends_where_the_profile_says(
+    run: Run, text: str, end: tuple[float, float, float]
+) -> None:
     done = run(text, profile=TRUE, pose=(1000.0, 500.0, 0.0), background="Empty_Map")
     assert done.ended.end == "finished"
     last = done.run.telemetry.last()
@@ -117,7 +119,9 @@ STANDS = {
 
 
 @cases("text, ends", STANDS)
-def test_stopping(run: Run, text: str, ends: tuple[int, int]) -> None:
+def test_a_stopping_robot_rolls_on_as_far_as_the_profile_says(
+    run: Run, text: str, ends: tuple[int, int]
+) -> None:
     low, high = ends
     assert low <= float(run(text, profile=TRUE, background="Empty_Map").lines[0]) <= high
 

@@ -140,7 +140,7 @@ def test_a_program_reads_it_in_every_mode(kind: SensorKind) -> None:
 
 
 @each_kind
-def test_it_is_in_the_telemetry_as_measured(kind: SensorKind) -> None:
+def test_each_kind_of_sensor_is_in_the_telemetry_as_measured(kind: SensorKind) -> None:
     run = read_out(kind)
     (sensor,) = run.spec.robot.sensors
     names = kind.names(sensor)

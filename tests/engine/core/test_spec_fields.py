@@ -51,7 +51,7 @@ def test_values_are_given_in_order_or_by_name() -> None:
         ({"size_mm": 2, "colour": 1}, "Wheel has no colour"),
     ],
 )
-def test_names_are_checked(values: dict[str, Any], said: str) -> None:
+def test_a_spec_refuses_unknown_names(values: dict[str, Any], said: str) -> None:
     with pytest.raises(TypeError, match=said):
         Wheel(**values)
 
@@ -88,7 +88,7 @@ def test_a_spec_cannot_be_changed() -> None:
         del wheel.size_mm
 
 
-def test_it_is_a_data_class_that_can_be_copied_and_sent() -> None:
+def test_a_spec_can_be_copied_and_pickled() -> None:
     cart = Cart(more=(Wheel(2),))
     assert asdict(cart)["more"] == ({"size_mm": 2, "worn": False},)
     assert pickle.loads(pickle.dumps(cart)) == copy.deepcopy(cart) == cart

@@ -44,7 +44,7 @@ def test_a_value_has_a_path(path: str, value: object) -> None:
 
 
 @pytest.mark.parametrize("path", ["world.fog", "robot.color_sensors.middle.x_mm", "seed.x"])
-def test_there_is_nothing_at_other_paths(path: str) -> None:
+def test_a_wrong_path_into_a_run_raises(path: str) -> None:
     with pytest.raises(LookupError):
         tree.get_value(RUN, path)
 

@@ -112,7 +112,7 @@ def write_commands(run: StoredRun, *commands: tuple[int, int, int, tuple[float, 
     writer.close()
 
 
-def test_repetitions_are_one_event_across_pieces(
+def test_a_repeated_command_is_one_event_across_pieces(
     stored: StoredRun, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(command_events, "_PIECE", 7)
@@ -209,7 +209,9 @@ def test_a_motor_counts_with_the_polarity_of_its_program_until_it_is_reset(
     assert index.find_scales(round(end_s * hz) + 1) == {"outC": 1.0}
 
 
-def test_events_are_bounded(stored: StoredRun, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_events_beyond_the_limit_are_left_out(
+    stored: StoredRun, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(command_events, "_MAX_EVENTS", 3)
     write_commands(stored, *((number * 1000 * MS, 0, Call.RUN, (1.0,)) for number in range(9)))
     index = CommandIndex(stored)

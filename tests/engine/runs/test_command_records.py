@@ -66,7 +66,7 @@ def test_a_damaged_record_is_named(tmp_path: Path) -> None:
         read_commands(tmp_path)
 
 
-def test_what_a_program_does_is_recorded(run: Run) -> None:
+def test_commands_of_a_program_are_recorded_in_order(run: Run) -> None:
     done = run(TURN, prelude="none")
     read = read_commands(done.run.folder)
     commands = [*read.unpack()]

@@ -56,13 +56,13 @@ def test_the_file_has_a_record_for_each_tick_and_is_the_same_again(
     assert path.read_bytes() == (second.run.folder / MOTORS_FILE).read_bytes()
 
 
-def test_without_drivers_there_is_no_file(run: Run) -> None:
+def test_a_profile_without_drivers_writes_no_file_of_motors(run: Run) -> None:
     done = run("x = 1\n", profile="robolab")
     assert not (done.run.folder / MOTORS_FILE).exists()
     assert read_motor_values(done.run.folder, done.run.spec, 0) == ()
 
 
-def test_what_is_lost_is_unknown(hold: Callable[..., Done]) -> None:
+def test_values_of_lost_records_are_unknown(hold: Callable[..., Done]) -> None:
     done = hold()
     os.truncate(done.run.folder / MOTORS_FILE, HEADER_BYTES + 16 * 5 + 3)
     mat = done.run.field.open_field()

@@ -55,7 +55,7 @@ SAID: dict[str, tuple[RunSpec, Speeds, str]] = {
 
 
 @cases("spec, speeds, said", SAID)
-def test_what_is_said_of_a_turn(
+def test_a_pushed_turn_is_described_and_a_free_one_is_not(
     record: Callable[..., Recorder], spec: RunSpec, speeds: Speeds, said: str
 ) -> None:
     recorder = record(spec)

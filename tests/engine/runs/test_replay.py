@@ -150,7 +150,7 @@ def test_what_takes_too_long_to_work_out_again_ends() -> None:
         replay(spec, command(), (), 100_000, limit_s=0.2)
 
 
-def test_commands_cost_time() -> None:
+def test_more_commands_than_their_time_allows_are_refused() -> None:
     stop = 0, Call.STOP, ()
     with pytest.raises(LogError, match=r"at 0\.10 s there is a command that the time is too short"):
         _replay(*[(100_000_000, *stop)] * 10_001)

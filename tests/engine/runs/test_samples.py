@@ -68,7 +68,7 @@ def test_line_is_only_text(text: str) -> None:
     assert parse_sample(text) is None
 
 
-def test_only_what_was_printed_is_logged() -> None:
+def test_only_printed_rows_are_samples() -> None:
     rows = [
         OutputRow("a: 1", 5, 50_000_000, 3, stream)
         for stream in (Stream.STDOUT, Stream.STDERR, Stream.SPEECH, Stream.INPUT)
@@ -76,7 +76,7 @@ def test_only_what_was_printed_is_logged() -> None:
     assert list(list_samples(rows)) == [Sample("a", 1.0, 0.05, 50_000_000, 5, 3)]
 
 
-def test_printed_time_counts() -> None:
+def test_a_sample_has_the_time_that_it_prints() -> None:
     (sample,) = list_samples([OutputRow("a: 1 7.5", 5, 50_000_000, 3, Stream.STDOUT)])
     assert (sample.time_s, sample.time_ns) == (7.5, 50_000_000)
 

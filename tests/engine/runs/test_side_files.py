@@ -56,7 +56,7 @@ def test_a_large_file_is_not_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "path", ["/", os.devnull, "a\0b", "x" * 5000], ids=["folder", "device", "null", "long"]
 )
-def test_other_things_have_no_state(path: str) -> None:
+def test_folders_and_devices_have_no_file_state(path: str) -> None:
     assert read_state(path) is None
 
 
@@ -75,11 +75,11 @@ def test_state_of_no_file(tmp_path: Path) -> None:
         (FileRead("a", True, 3, 10, -1), FileRead("a", True, 3, 20, -1), False),
     ],
 )
-def test_same_as(one: FileRead, other: FileRead, same: bool) -> None:
+def test_files_with_the_same_state_are_the_same(one: FileRead, other: FileRead, same: bool) -> None:
     assert (one.is_same(other), other.is_same(one)) == (same, same)
 
 
-def test_what_is_noted_is_read(tmp_path: Path) -> None:
+def test_noted_files_are_listed_once(tmp_path: Path) -> None:
     files = (FileRead("/tmp/b\udcff\x1b", True, 3, 10, 7), MISSING)
     for file in (*files, files[0]):
         note_read(tmp_path, file)

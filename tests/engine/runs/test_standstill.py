@@ -105,7 +105,9 @@ SAID: dict[str, tuple[RunSpec, Moves, str]] = {
 
 
 @cases("spec, moves, said", SAID)
-def test_what_is_said_of_a_run(record: Record, spec: RunSpec, moves: Moves, said: str) -> None:
+def test_a_robot_that_stood_at_the_wall_is_described(
+    record: Record, spec: RunSpec, moves: Moves, said: str
+) -> None:
     assert words(record, spec, moves) == said
 
 

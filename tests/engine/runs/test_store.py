@@ -92,7 +92,7 @@ def test_run_file_is_what_others_may_read(logged: StoredRun) -> None:
 @pytest.mark.parametrize(
     "how", ["id", "start of the id", "number", "last", "folder", "folder as text"]
 )
-def test_run_is_found(logged: StoredRun, store: RunStore, how: str) -> None:
+def test_a_run_is_found_by_each_of_its_names(logged: StoredRun, store: RunStore, how: str) -> None:
     names: dict[str, str | Path] = {
         "id": logged.id,
         "start of the id": logged.id[:-2],
@@ -124,7 +124,7 @@ def test_start_of_several_ids_is_an_error(store: RunStore, spec: RunSpec) -> Non
         store.find(ids[0][:4])
 
 
-def test_store_without_runs(store: RunStore) -> None:
+def test_an_empty_store_says_that_no_runs_are_stored(store: RunStore) -> None:
     assert store.runs() == []
     assert not store.home.exists()
     with pytest.raises(LogError, match="no runs are stored"):

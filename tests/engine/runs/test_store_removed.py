@@ -38,7 +38,7 @@ def remove_before_reading(folder: Path) -> dict[str, Any]:
 @pytest.mark.parametrize(
     "is_made_again", [False, True], ids=["a list", "a list that is made again"]
 )
-def test_it_is_not_listed(
+def test_a_removed_run_is_not_listed(
     home: Path, run: NewRun, monkeypatch: pytest.MonkeyPatch, is_made_again: bool
 ) -> None:
     if is_made_again:
@@ -47,7 +47,7 @@ def test_it_is_not_listed(
     assert RunStore().runs() == []
 
 
-def test_it_does_not_exist_for_who_has_just_found_it(
+def test_loading_a_run_that_was_just_removed_says_so(
     run: NewRun, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def find(store: RunStore, _: str) -> RunInfo:
@@ -59,14 +59,14 @@ def test_it_does_not_exist_for_who_has_just_found_it(
         RunStore().load_run("1")
 
 
-def test_it_does_not_exist_for_who_removes_it(run: NewRun, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_removing_a_removed_run_says_so(run: NewRun, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.rmtree(run.folder)
     monkeypatch.setattr(os.path, "isdir", lambda _: True)
     with pytest.raises(LogError, match="no run '"):
         RunStore().remove(run.id)
 
 
-def test_it_does_not_exist_for_who_runs_it_again(run: NewRun) -> None:
+def test_rerunning_a_removed_run_says_so(run: NewRun) -> None:
     stored = RunStore().load_run("1")
     shutil.rmtree(run.folder)
     with pytest.raises(LogError, match="no run '1': it has been removed"):

@@ -141,7 +141,7 @@ def test_last_record_written_anew_is_read_anew(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("index", [-1, 2, 5000])
-def test_no_such_record(tmp_path: Path, index: int) -> None:
+def test_a_record_beyond_the_end_raises(tmp_path: Path, index: int) -> None:
     writer = TelemetryWriter(tmp_path)
     put(writer, 2)
     writer.close()

@@ -120,5 +120,5 @@ NO_ADDRESSES = (
 
 
 @pytest.mark.parametrize("text", NO_ADDRESSES)
-def test_other_numbers_stay(text: str) -> None:
+def test_numbers_that_are_no_addresses_are_printed_as_they_are(text: str) -> None:
     assert Addresses(dict).stabilize(text) == (text,)

@@ -159,7 +159,7 @@ def test_stall_in_a_c_call_is_killed_and_names_the_line(run: Run) -> None:
     assert done.lines == ["A: 1"]
 
 
-def test_answers_to_input(run: Run) -> None:
+def test_input_returns_the_answers_and_ends_after_the_last(run: Run) -> None:
     done = run("name = input('Name? ')\nprint('hello ' + name)\ninput()", answers=("Ada",))
     assert done.lines == ["hello Ada"]
     assert "EOFError" in done.errors[-1]
@@ -169,7 +169,7 @@ def test_answers_to_input(run: Run) -> None:
     ]
 
 
-def test_speech_is_shown(run: Run) -> None:
+def test_spoken_text_is_a_row_and_takes_its_time(run: Run) -> None:
     done = run('say("it\'s black", wait=True)\nprint(get_clock() > 0.5)')
     assert done.lines == ["it's black", "True"]
     assert [row.text for row in done.run.output.read_all_rows() if row.stream == 3] == [

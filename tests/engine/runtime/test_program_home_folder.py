@@ -56,7 +56,7 @@ READS = {
 
 
 @pytest.mark.parametrize("case", READS)
-def test_what_is_there_is_found(folder: Path, case: str) -> None:
+def test_files_of_the_bricks_home_are_those_beside_the_program(folder: Path, case: str) -> None:
     text, expected = READS[case]
     done = _run(folder, text)
     assert (done.lines, done.errors) == ([expected], [])

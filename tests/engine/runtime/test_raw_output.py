@@ -55,7 +55,7 @@ def test_an_endless_command_of_c_comes_to_an_end(run: Run) -> None:
 
 
 @pytest.mark.slow
-def test_it_counts_for_the_limit_of_output(run: Run) -> None:
+def test_raw_output_counts_for_the_limit_of_output(run: Run) -> None:
     done = run(
         "import os\nx = b'y' * (1 << 24) + b'\\n'\nwhile True: os.write(1, x)", prelude="none"
     )

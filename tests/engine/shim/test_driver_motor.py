@@ -75,7 +75,9 @@ LINES = {
 
 
 @cases("text, lines", LINES)
-def test_what_a_program_sees(run_on: RunOn, text: str, lines: list[str]) -> None:
+def test_a_motor_reads_and_waits_as_its_driver_does(
+    run_on: RunOn, text: str, lines: list[str]
+) -> None:
     done = run_on(HEAD + text, profile="ev3")
     assert done.lines == lines, done.errors
 

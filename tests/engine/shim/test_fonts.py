@@ -38,7 +38,7 @@ def test_every_letter_of_a_font_leaves_ink(name: str) -> None:
         ("term14", 8),
     ],
 )
-def test_letters_of_one_width(name: str, width: int) -> None:
+def test_a_fixed_font_has_letters_of_one_width(name: str, width: int) -> None:
     font = drawn(FACES[name])
     assert {font.getlength(letter) for letter in "iW.@ü "} == {width}
 
@@ -102,5 +102,7 @@ TABLES: Tables = {
 
 
 @cases(TABLES)
-def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+def test_each_font_loads_and_draws_as_the_table_says(
+    run_on: RunOn, table: Table, robot: str, world: str
+) -> None:
     check(run_on, table, robot, world)

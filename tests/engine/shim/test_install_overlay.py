@@ -153,7 +153,9 @@ EXERCISED = {
         *(("nbev3devsim", robot) for robot in ("default", "eyes")),
     ],
 )
-def test_each_row(run_on: RunOn, profile: str, robot: str) -> None:
+def test_each_mended_call_does_what_the_guides_row_says(
+    run_on: RunOn, profile: str, robot: str
+) -> None:
     checks = []
     for row in ROWS.values():
         if row.robot == robot:

@@ -30,7 +30,7 @@ def test_each_sound_in_words_and_tones() -> None:
     assert [(folder[:1], name) for folder, _, name in files] == [("/", "bark.wav")]
 
 
-def test_sounds_overlap(run_on: RunOn) -> None:
+def test_a_sound_in_the_background_overlaps_the_next(run_on: RunOn) -> None:
     done = run_on(
         "from ev3dev2.sound import Sound\nimport time\ns = Sound()\n"
         "p = s.tone(440, 2000, play_type=1)\ns.tone(880, 500)\nprint(p.poll(), p.wait(), round(time.time() % 60, 2))"
@@ -94,5 +94,7 @@ TABLES: Tables = {
 
 
 @cases(TABLES)
-def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+def test_sounds_are_heard_as_the_table_says(
+    run_on: RunOn, table: Table, robot: str, world: str
+) -> None:
     check(run_on, table, robot, world)

@@ -23,7 +23,9 @@ from tuisim.pictures.charts.traces import reduce_points
         "millimetres": (0.0, 2550.0, (0.0, 3000.0)),
     },
 )
-def test_value_limits(low: float, high: float, limits: tuple[float, float]) -> None:
+def test_limits_of_values_are_round_numbers(
+    low: float, high: float, limits: tuple[float, float]
+) -> None:
     assert axes.choose_limits(low, high) == pytest.approx(limits)
 
 
@@ -50,7 +52,7 @@ def test_one_value_of_any_size_has_limits_around_it(value: float) -> None:
 @pytest.mark.parametrize(
     "end_s, upper_s", [(0, 5), (5, 5), (5.1, 10), (45, 60), (61, 120), (600, 600), (700, 720)]
 )
-def test_time_limits(end_s: float, upper_s: float) -> None:
+def test_limits_of_time_grow_in_steps(end_s: float, upper_s: float) -> None:
     assert time_bar.time_limits(end_s) == (0, upper_s)
 
 
@@ -85,7 +87,7 @@ def test_columns_and_times_agree(columns: int) -> None:
         (5e8 + 0.1, (5e8 + 0.1) - 5e8, "500000000.1"),
     ],
 )
-def test_labels(value: float, step: float, text: str) -> None:
+def test_a_label_has_the_digits_of_its_step(value: float, step: float, text: str) -> None:
     assert axes.label(value, step) == text
 
 
@@ -98,7 +100,9 @@ def test_labels(value: float, step: float, text: str) -> None:
         "fractions": ((-1.0, 1.0), 4, {0: "1.0", 3: "-1.0"}),
     },
 )
-def test_row_labels(limits: tuple[float, float], rows: int, labels: dict[int, str]) -> None:
+def test_labels_of_rows_are_evenly_spaced(
+    limits: tuple[float, float], rows: int, labels: dict[int, str]
+) -> None:
     assert axes.label_rows(limits, rows) == labels
 
 
@@ -157,7 +161,7 @@ def test_reduction_leaves_few_points_alone_and_keeps_neighbours_of_the_window() 
     assert when.tolist() == [3.0, 4.0, 5.0, 6.0, 7.0]
 
 
-def test_reduction_of_nothing() -> None:
+def test_no_points_are_reduced_to_no_points() -> None:
     when, values = reduce_points(np.empty(0), np.empty(0), (0.0, 1.0), 10)
 
     assert len(when) == len(values) == 0

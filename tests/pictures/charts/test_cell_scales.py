@@ -25,7 +25,7 @@ def text(picture: ChartPicture) -> list[str]:
     return ["".join(part for part, _ in line) for line in picture.lines]
 
 
-def test_two_scales() -> None:
+def test_a_second_scale_stands_at_the_right() -> None:
     made = traces({"Colour": [0.0, 100.0], "Ultrasonic": [2000.0, 0.0]})
 
     rows = text(ChartPainter().paint(made, ChartState(), 80, 16))

@@ -40,7 +40,9 @@ SIZES = [(20, 6), (38, 8), (72, 16), (160, 20)]
 @pytest.mark.parametrize("width, height", SIZES, ids=str)
 @pytest.mark.parametrize("cursor_s", [None, 1.5], ids=["no cursor", "cursor"])
 @pytest.mark.parametrize("grey", [False, True], ids=["colours", "grey"])
-def test_it_fits(width: int, height: int, cursor_s: float | None, grey: bool) -> None:
+def test_a_chart_fits_its_width_and_height(
+    width: int, height: int, cursor_s: float | None, grey: bool
+) -> None:
     made = traces(
         "Colour",
         "Light_left",
@@ -193,7 +195,7 @@ def test_the_selected_box_is_in_sight() -> None:
 
 
 @pytest.mark.parametrize("ticked", [("a_long_name_0", "a_long_name_3"), ("a_long_name_3",)])
-def test_what_is_drawn_is_named(ticked: tuple[str, ...]) -> None:
+def test_each_drawn_trace_has_its_name(ticked: tuple[str, ...]) -> None:
     made = traces(*(f"a_long_name_{number}" for number in range(9)))
     for trace in made:
         trace.on = trace.name in ticked

@@ -23,7 +23,7 @@ SHOTS = {
 
 
 @pytest.mark.parametrize("name", SHOTS)
-def test_shots(name: str) -> None:
+def test_frames_of_a_movie_are_evenly_spaced_in_time(name: str) -> None:
     (start_s, stop_s, speed, fps), times_s, durations_ms = SHOTS[name]
     shots = plan_shots(start_s, stop_s, speed, fps)
     assert [shot.time_s for shot in shots] == pytest.approx(times_s)

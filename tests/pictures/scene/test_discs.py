@@ -53,7 +53,7 @@ def test_the_rim_of_a_disc_reaches_the_edges(diameter: int) -> None:
     assert all(1 <= edge.sum() < 60 for edge in (is_seen[1], is_seen[-2], *is_seen.T[[1, -2]]))
 
 
-def test_there_may_be_hardly_any_room() -> None:
+def test_a_disc_of_one_pixel_is_drawn() -> None:
     assert draw_disc(bytes([255]) * 1200, 1, 1, GROUND, RIM_RGB).shape == (1, 1, 3)
 
 
@@ -124,7 +124,7 @@ def test_the_value_is_what_the_program_gets(read: LightRead, most: int, words: s
     assert replace(FACE, read=read, reflected_max=most).value_words == words
 
 
-def test_thresholds_say_what_they_give_now() -> None:
+def test_thresholds_say_whether_they_hold_now() -> None:
     thresholds = (
         ProgramThreshold(LightRead.PERCENT, ">", 90, 15),
         ProgramThreshold(LightRead.COLOR, "==", 6, 16),

@@ -115,7 +115,7 @@ def test_a_view_finer_than_the_mat_repeats_pixels() -> None:
     assert (picture[..., 0] == 0).sum() == 4
 
 
-def test_pictures_are_remembered() -> None:
+def test_a_view_of_the_mat_is_reduced_once() -> None:
     pictures = MatPictures(mat(), OUTSIDE)
     view = fit_field(40, 20)
 

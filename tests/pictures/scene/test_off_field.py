@@ -18,7 +18,7 @@ from tuisim.pictures.scene.view import fit_field
         (Pose(2400.0, -30.0, 0.0), "robot off the mat: 38 mm to the right, 30 mm below"),
     ],
 )
-def test_words(pose: Pose, words: str) -> None:
+def test_words_say_on_which_side_the_robot_left_the_field(pose: Pose, words: str) -> None:
     assert describe_off_field(pose) == words
 
 

@@ -49,7 +49,7 @@ def test_rays_end_at_their_length_and_at_the_field() -> None:
 
 
 @pytest.mark.parametrize("width_mm", [200.0, 1.0], ids=["a box", "thinner than a pixel"])
-def test_obstacles_are_drawn(width_mm: float) -> None:
+def test_thin_obstacles_are_drawn(width_mm: float) -> None:
     scene = SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=(Obstacle(300, 200, width_mm, 300),))
 
     assert at(painter().paint(VIEW, scene), 301, 350) != (255, 255, 255)

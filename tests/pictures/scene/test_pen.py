@@ -70,7 +70,7 @@ def test_each_stretch_keeps_its_pen_and_a_wiped_trace_is_gone() -> None:
     "name, rgb",
     [("orange", (255, 165, 0)), ("#0a0b0c", (10, 11, 12)), ("#zzzzzz", (255, 0, 0))],
 )
-def test_pen_colours(name: str, rgb: tuple[int, int, int]) -> None:
+def test_names_of_pen_colours_have_their_colour(name: str, rgb: tuple[int, int, int]) -> None:
     assert parse_pen_color(name) == rgb
 
 

@@ -60,7 +60,7 @@ TRACE = Piece.from_points(np.array([700.0, 900.0]), np.array([900.0, 700.0]), SP
 
 
 @pytest.mark.slow
-def test_it_is_what_a_screen_shows_in_a_frame() -> None:
+def test_a_picture_for_a_file_is_what_the_screen_shows() -> None:
     view = build_world_view(SPEC.robot)
     trace = PenTrace()
     trace.add(TRACE)

@@ -108,6 +108,6 @@ PORTS: Mapping[str, tuple[str, str]] = {
 
 
 @pytest.mark.parametrize("case", PORTS)
-def test_ports(case: str) -> None:
+def test_ports_are_found_however_they_are_written(case: str) -> None:
     text, expected = PORTS[case]
     assert changed(text) == expected

@@ -32,6 +32,6 @@ SENSORS: Mapping[str, tuple[str, str]] = {
 
 
 @pytest.mark.parametrize("case", SENSORS)
-def test_sensors(case: str) -> None:
+def test_sensors_of_a_pybricks_program_are_on_the_robot(case: str) -> None:
     text, expected = SENSORS[case]
     assert changed(text, PYBRICKS_HEAD) == expected

@@ -38,7 +38,7 @@ def test_a_sensor_looks_where_its_name_says_on_every_port(
     assert (robot.ultrasonic.port, robot.ultrasonic.angle_deg) == (port, angle_deg)
 
 
-def test_one_looks_ahead_and_one_aside() -> None:
+def test_names_say_which_sensor_looks_ahead_and_which_aside() -> None:
     found = built("us_left, us_front = UltrasonicSensor('in1'), UltrasonicSensor('in4')")
     assert found is not None
     looks = {one.port: one for one in found.choice.spec.sensors if isinstance(one, UltrasonicSpec)}

@@ -82,7 +82,7 @@ def test_of_ports_in_a_class() -> None:
     assert found(text) == {"right": ["reflected_light_intensity < 30 8"]}
 
 
-def test_of_pybricks() -> None:
+def test_thresholds_of_a_pybricks_program_are_found() -> None:
     text = (
         PYBRICKS
         + "eye = ColorSensor(Port.S2)\nwhile eye.color() != Color.BLACK and eye.reflection() > 9:\n    pass\n"
@@ -99,7 +99,7 @@ def test_of_pybricks() -> None:
         ("print(1)", LightRead.PERCENT),
     ],
 )
-def test_what_a_program_reads(text: str, read: LightRead) -> None:
+def test_the_kind_of_light_that_a_program_reads_is_found(text: str, read: LightRead) -> None:
     assert find_light_read(text) is read
 
 

@@ -70,7 +70,7 @@ WHEELS: Mapping[str, tuple[str, str]] = {
 
 
 @pytest.mark.parametrize("case", WHEELS)
-def test_wheels(case: str) -> None:
+def test_the_motors_of_the_wheels_are_found(case: str) -> None:
     text, expected = WHEELS[case]
     assert changed(text) == expected
 

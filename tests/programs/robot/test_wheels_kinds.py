@@ -41,7 +41,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
 
 
 @pytest.mark.parametrize("case", KINDS)
-def test_kinds(case: str) -> None:
+def test_the_kind_of_each_pybricks_motor_is_found(case: str) -> None:
     text, expected = KINDS[case]
     assert changed(text, PYBRICKS_HEAD) == expected
 

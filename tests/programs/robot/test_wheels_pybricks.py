@@ -107,7 +107,7 @@ def robot_of(text: str) -> RobotSpec:
 
 
 @pytest.mark.parametrize("case", DRIVE_BASES)
-def test_wheels(case: str) -> None:
+def test_a_drive_base_gives_motors_and_sizes_of_the_wheels(case: str) -> None:
     text, expected = DRIVE_BASES[case]
     robot = robot_of(text)
     assert (

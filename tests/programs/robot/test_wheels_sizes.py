@@ -63,7 +63,7 @@ SAID_SIZES: Mapping[str, tuple[str, tuple[float, float]]] = {
 
 
 @pytest.mark.parametrize("case", SAID_SIZES)
-def test_what_constants_say_about_wheels(case: str) -> None:
+def test_constants_give_the_sizes_of_the_wheels(case: str) -> None:
     text, expected = SAID_SIZES[case]
     found = built(f"MoveTank(OUTPUT_A, OUTPUT_D)\n{text}")
     assert found is not None

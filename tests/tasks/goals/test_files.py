@@ -368,7 +368,9 @@ BAD = {
 
 
 @cases("text, message", BAD)
-def test_bad_file(text: str, message: str, tmp_path: Path) -> None:
+def test_a_faulty_goal_file_is_refused_with_its_line(
+    text: str, message: str, tmp_path: Path
+) -> None:
     Image.new("L", (20, 10), 255).save(tmp_path / "white.png")
     path = tmp_path / "it.toml"
     path.write_text(text)
@@ -378,7 +380,7 @@ def test_bad_file(text: str, message: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["missing.toml", "goals.json", "goals"])
-def test_no_file(name: str, here: Command) -> None:
+def test_a_missing_goal_file_is_named(name: str, here: Command) -> None:
     done = here("goals", "check", name)
     assert done.returncode == 2
     assert done.stderr.startswith(f"tuisim: {name}: ")
@@ -400,7 +402,7 @@ LINES = {
 
 
 @cases("text, key, line", LINES)
-def test_line_of_key(text: str, key: str, line: int) -> None:
+def test_an_error_names_the_line_of_its_key(text: str, key: str, line: int) -> None:
     assert find_key_line(text, key) == line
 
 
@@ -457,7 +459,7 @@ def test_goals_of_another_file_are_added_to_and_replaced(tmp_path: Path) -> None
     ]
 
 
-def test_short_forms(tmp_path: Path) -> None:
+def test_short_forms_of_conditions_are_read(tmp_path: Path) -> None:
     (tmp_path / "goals.toml").write_text(
         goal("print = 'x'", "all = 'a'", "dialogue = [{ answer = '5' }]")
     )

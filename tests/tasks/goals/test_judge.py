@@ -141,7 +141,7 @@ def judged(run: Run, folder: Path, text: str) -> dict[str, Judgement]:
 
 
 @cases("condition, state, time_s, reason", CASES)
-def test_combination(
+def test_combined_goals_are_met_as_their_parts_are(
     condition: str, state: str, time_s: float, reason: str, home: Path, tmp_path: Path
 ) -> None:
     found = judged(finished(home), tmp_path, f"{GOALS}[[goal]]\nname = 'it'\n{condition}\n")["it"]

@@ -694,7 +694,9 @@ CASES = PLACES | OUTPUT | READINGS
 
 
 @cases("case", CASES)
-def test_condition(case: Case, home: Path, tmp_path: Path) -> None:
+def test_each_condition_is_met_missed_or_open_with_its_reason(
+    case: Case, home: Path, tmp_path: Path
+) -> None:
     goals = goals_of(tmp_path, f"[[goal]]\nname = 'it'\n{case.condition}\n{case.more}")
     run = Run(RunStore(), case.world, case.text)
     run.do(case.steps)

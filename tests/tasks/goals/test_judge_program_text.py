@@ -49,7 +49,9 @@ STRUCTURE = {
 
 
 @cases("comparison, reason", STRUCTURE)
-def test_structure(comparison: str, reason: str, tmp_path: Path, home: Path) -> None:
+def test_a_structure_is_met_or_missed_with_its_reason(
+    comparison: str, reason: str, tmp_path: Path, home: Path
+) -> None:
     goals = goals_of(tmp_path, f"[[goal]]\nname = 'a'\nstructure = '{comparison}'\n")
     (found,) = judge(goals, Run(RunStore(), world(), PROGRAM).end())
     assert (found.state, found.reason) == ("missed" if reason else "met", reason)

@@ -47,7 +47,7 @@ def test_what_would_take_years_elsewhere_is_found_at_once() -> None:
     assert [search(text) for text in ("aaa", ENDLESS)] == [True, False]
 
 
-def test_one_limit_is_for_all_texts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_time_limit_of_a_pattern_covers_all_texts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(patterns, "LIMIT_S", 0.02)
     search = build_search(CARELESS)
     assert search("aaa")

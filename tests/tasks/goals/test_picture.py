@@ -67,7 +67,9 @@ FOLLOWED = {
 
 
 @cases("keys, state, reason", FOLLOWED)
-def test_follow(keys: str, state: str, reason: str, home: Path, tmp_path: Path) -> None:
+def test_a_followed_line_is_met_or_missed_with_its_reason(
+    keys: str, state: str, reason: str, home: Path, tmp_path: Path
+) -> None:
     (goal,) = goals_of(tmp_path, f"[[goal]]\nname = 'it'\nfollow = {{ {keys} }}\n")
     run = Run(RunStore(), BANDS, "")
     run.do(TO_BLACK)
@@ -117,7 +119,7 @@ DRAWN: dict[str, tuple[str, tuple[Step, ...], str, str]] = {
 
 @pytest.mark.slow_cases("image*")
 @cases("keys, steps, state, reason", DRAWN)
-def test_draw(
+def test_a_drawing_is_compared_with_its_picture(
     keys: str, steps: tuple[Step, ...], state: str, reason: str, home: Path, tmp_path: Path
 ) -> None:
     for name, corners in (("square", (500, 443, 700, 643)), ("part", (500, 443, 600, 643))):

@@ -139,7 +139,9 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
 
 
 @cases("check, events, passes", CASES)
-def test_check(check: Check, events: Sequence[Event], passes: bool) -> None:
+def test_a_step_passes_by_what_it_checks_only(
+    check: Check, events: Sequence[Event], passes: bool
+) -> None:
     assert is_met(check, events) is passes
 
 
@@ -169,7 +171,9 @@ UNREADY = {
 
 
 @cases("question, typed, words", UNREADY)
-def test_what_a_question_needs_first(question: QuestionCheck, typed: Typed, words: str) -> None:
+def test_a_question_says_what_to_look_at_first(
+    question: QuestionCheck, typed: Typed, words: str
+) -> None:
     found = explain_unready(question, typed)
     assert found.startswith(words)
     assert bool(found) is bool(words)

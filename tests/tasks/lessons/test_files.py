@@ -196,7 +196,9 @@ BAD = {
 
 
 @cases("text, message", BAD)
-def test_bad_lesson(text: str, message: str, tmp_path: Path) -> None:
+def test_a_faulty_lesson_is_refused_with_its_file_and_key(
+    text: str, message: str, tmp_path: Path
+) -> None:
     path = tmp_path / "it.md"
     path.write_text(text)
     with pytest.raises(ConfigError) as raised:
@@ -213,7 +215,7 @@ NO_FILE = {
 
 
 @cases("name, message", NO_FILE)
-def test_no_lesson(name: str, message: str, tmp_path: Path) -> None:
+def test_a_missing_or_unreadable_lesson_is_refused(name: str, message: str, tmp_path: Path) -> None:
     (tmp_path / "bytes.md").write_bytes(b"+++\n\xff\n")
     with pytest.raises(ConfigError, match=message):
         load_lesson(tmp_path / name)
@@ -223,7 +225,7 @@ NAMES = {"01-first-run.md": "first-run", "02_b.md": "b", "plain.md": "plain", "7
 
 
 @pytest.mark.parametrize("file, name", NAMES.items(), ids=NAMES)
-def test_name_of_file(file: str, name: str) -> None:
+def test_a_lesson_is_named_by_its_file_without_the_number(file: str, name: str) -> None:
     assert get_lesson_name(Path(file)) == name
 
 

@@ -59,7 +59,7 @@ BAD = {
 
 
 @cases("front, message", BAD)
-def test_bad_telling(front: str, message: str, tmp_path: Path) -> None:
+def test_a_faulty_version_of_a_lesson_is_refused(front: str, message: str, tmp_path: Path) -> None:
     with pytest.raises(ConfigError) as raised:
         told(tmp_path, front)
     assert message in str(raised.value)

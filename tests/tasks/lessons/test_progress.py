@@ -37,7 +37,7 @@ def after(lesson: Lesson, *states: StepState) -> LessonProgress:
     return progress
 
 
-def test_progress_in_words(lesson: Lesson) -> None:
+def test_progress_counts_done_and_skipped_steps(lesson: Lesson) -> None:
     count = len(lesson.steps)
     done = StepState.DONE
     skipped = StepState.SKIPPED

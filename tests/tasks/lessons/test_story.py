@@ -49,7 +49,7 @@ SAID: dict[str, tuple[Condition, str]] = {
 
 
 @cases("condition, words", SAID)
-def test_story(condition: Condition, words: str) -> None:
+def test_the_story_of_a_run_says_how_its_goal_was_met(condition: Condition, words: str) -> None:
     met = Judgement(
         Goal("a", condition), (Change(542, 5.42, GoalState.MET, 1152.9, 500.0),), line=3
     )

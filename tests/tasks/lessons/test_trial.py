@@ -28,7 +28,7 @@ def test_model_answers_pass_and_wrong_answers_do_not(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", LESSONS)
-def test_lesson_is_complete(name: str) -> None:
+def test_each_lesson_has_texts_hints_and_wrong_ways(name: str) -> None:
     lesson = LESSONS[name]
     assert lesson.path.name.isascii()
     assert 20 < len(lesson.why) <= 300
@@ -98,7 +98,7 @@ def _rows(lesson: Lesson) -> float:
 
 
 @pytest.mark.parametrize("name", MEASURED)
-def test_answer_is_what_a_student_measures(name: str) -> None:
+def test_the_answer_of_a_step_is_what_a_student_measures(name: str) -> None:
     lesson, _, step_name = name.partition(" ")
     (step,) = [step for step in LESSONS[lesson].steps if step.name == step_name]
     assert isinstance(step.check, QuestionCheck)

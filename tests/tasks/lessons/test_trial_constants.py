@@ -46,7 +46,7 @@ def _misses(lesson: Lesson, check: RunCheck, other: TrialWorld | None, text: str
     )
 
 
-def test_there_are_such_steps() -> None:
+def test_eleven_steps_check_printed_constants() -> None:
     assert len(STEPS) == 11
 
 

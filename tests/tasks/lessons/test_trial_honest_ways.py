@@ -502,7 +502,7 @@ tank_drive.on_for_rotations(S, S, 2.27)
 
 @pytest.mark.quick_cases("poll-or-block poll while-true", "places-colours all wanted")
 @pytest.mark.parametrize("way", WAYS)
-def test_honest_way_passes(way: str) -> None:
+def test_an_honest_program_passes_its_step(way: str) -> None:
     name, step_name, _ = way.split()
     lesson = LESSONS[name]
     (check,) = [step.check for step in lesson.steps if step.name == step_name]

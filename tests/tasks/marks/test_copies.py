@@ -60,7 +60,7 @@ def test_a_copy_in_a_module_is_a_pair() -> None:
     assert pair.names == ("ada", "ben") and pair.share > 0.9
 
 
-def test_what_is_compared_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_so_many_tokens_of_a_program_are_compared(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(copies, "MAX_TOKENS", 100)
 
     def write() -> Iterator[str]:

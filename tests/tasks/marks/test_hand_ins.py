@@ -76,7 +76,7 @@ DELIVERED: dict[str, tuple[tuple[str, ...], tuple[str, str, Mapping[GradebookKin
 
 
 @cases("files, student", DELIVERED)
-def test_one_student_has_one_row(
+def test_files_of_one_student_are_joined_in_one_row(
     tmp_path: Path,
     files: tuple[str, ...],
     student: tuple[str, str, Mapping[GradebookKind, str]],

@@ -26,7 +26,7 @@ tank_drive.on_for_seconds(SpeedPercent(40), SpeedPercent(40), {seconds})
     ],
     ids=["off the mat", "white, then off the mat", "two greys", "white", "seldom", "a short way"],
 )
-def test_one_colour_on_a_long_way(
+def test_a_sensor_that_saw_one_colour_on_a_long_way_is_named(
     x: int, seconds: float, reads: int, seen: OneColor | None
 ) -> None:
     run = run_text(TEXT.format(x=x, seconds=seconds))

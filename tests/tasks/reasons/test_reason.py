@@ -243,7 +243,7 @@ hidden = {hidden}
 """
 
 
-def test_they_come_in_order_and_a_hidden_goal_is_not_told(tmp_path: Path) -> None:
+def test_reasons_are_ordered_and_hidden_goals_left_out(tmp_path: Path) -> None:
     text = MISTAKE.replace("20)", "int(input()))", 1)
     run, earlier = (run_text(text, answers=(speed,)) for speed in ("20", "30"))
     mine = Recording(run)

@@ -205,7 +205,7 @@ while left.angle() > -9999:
         ),
     },
 )
-def test_what_other_libraries_read_is_measured(text: str, words: str) -> None:
+def test_waits_of_other_libraries_are_found(text: str, words: str) -> None:
     wait = find_unmet(run_text(text))
     assert wait is not None
     assert wait.text.startswith(words)

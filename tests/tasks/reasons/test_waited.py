@@ -146,7 +146,7 @@ WAITS: dict[str, tuple[WorldSpec, Moves, list[tuple[Subject, str, int, str]]]] =
 
 
 @cases("world, moves, awaited", WAITS)
-def test_what_a_run_waited_for(
+def test_sensors_that_never_changed_are_what_a_run_waited_for(
     record: Record, world: WorldSpec, moves: Moves, awaited: list[tuple[Subject, str, int, str]]
 ) -> None:
     recorder = record(replace(SPEC, world=world))

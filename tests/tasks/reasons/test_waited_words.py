@@ -386,7 +386,7 @@ def test_a_batch_says_it_in_a_column(tmp_path: Path, here: Command) -> None:
 
 
 @pytest.mark.parametrize("subject", Subject)
-def test_there_are_words_for_everything(subject: Subject) -> None:
+def test_each_subject_of_a_wait_has_words(subject: Subject) -> None:
     port = "buttons" if subject is Subject.BUTTONS else "in4"
     awaited = Awaited(subject, port, 3, 0.5, 7, "12 cm")
     assert describe_awaited(awaited) and name_remedy(awaited, SPEC)

@@ -27,7 +27,7 @@ def noisy(run: StoredRun) -> StoredRun:
     return RunStore().load_run(handle.run_id)
 
 
-async def test_commands_are_events(run: StoredRun) -> None:
+async def test_commands_to_motors_are_listed_as_events(run: StoredRun) -> None:
     async with open_analyser(runs=(run.id, run.id)) as (pilot, screen, model):
         await typed(pilot, "c", "=command right, Colour < 60", "enter")
         events = model.events.list_events(model.log)

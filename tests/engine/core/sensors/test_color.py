@@ -57,7 +57,7 @@ def at(
         (1500, (0, 0, 0), 1, "Black", 0, 0),
     ],
 )
-def test_rainbow_bands(
+def test_the_sensor_reads_each_band_of_the_rainbow(
     x_mm: int,
     rgb: tuple[int, int, int],
     code: int,
@@ -86,7 +86,9 @@ def test_rainbow_bands(
         "far off, other side": ("Empty_Map", -1e6, 0),
     },
 )
-def test_edges(name: str, x_mm: float, red: float, mat: OpenMat) -> None:
+def test_the_sensor_mixes_both_sides_of_an_edge(
+    name: str, x_mm: float, red: float, mat: OpenMat
+) -> None:
     seen = color.measure_color(LEFT, at(x_mm, 500), mat(name))
     digits = len(str(float(red)).partition(".")[2])
     assert seen.red == pytest.approx(red, abs=0.5 * 10**-digits)
@@ -109,7 +111,9 @@ def test_disc_has_the_known_number_of_pixels(diameter: int, pixels: int) -> None
         "fractions are cut": (Pose(500.9, 500, 0), (520, 613)),
     },
 )
-def test_box_corner(pose: Pose, corner: tuple[int, int]) -> None:
+def test_the_corner_of_the_seen_box_is_rounded_as_in_the_old_simulator(
+    pose: Pose, corner: tuple[int, int]
+) -> None:
     nudged = Pose(pose.x_mm + 1e-9, pose.y_mm - 1e-9, pose.heading_deg)
     assert color.find_box_corner(nudged, LEFT) == corner
 
@@ -136,7 +140,7 @@ def test_box_corner(pose: Pose, corner: tuple[int, int]) -> None:
         "hue 359": ((255, 0, 1), 5),
     },
 )
-def test_color_code(rgb: tuple[int, int, int], code: int) -> None:
+def test_each_color_has_its_code(rgb: tuple[int, int, int], code: int) -> None:
     assert color.find_color_code(*rgb) == code
 
 
@@ -173,7 +177,7 @@ def noisy(
         "level": {"light": 21},
     },
 )
-def test_noise_differs_by(other: dict[str, Any], mat: OpenMat) -> None:
+def test_noise_differs_by_seed_tick_and_sensor(other: dict[str, Any], mat: OpenMat) -> None:
     assert noisy(mat) != noisy(mat, **other)
 
 

@@ -95,7 +95,7 @@ def test_beyond_the_edge_nothing_reflects() -> None:
 
 
 @pytest.mark.parametrize("grey", [0, 100, 255])
-def test_the_quick_way_with_noise_agrees(grey: int) -> None:
+def test_the_quick_reader_with_noise_agrees_with_the_slow_one(grey: int) -> None:
     field = paint(grey)
     place = (POSE.x_mm, POSE.y_mm, POSE.heading_deg)
     noisy = build_noisy_rgb_reader(LEFT, EV3, field)

@@ -55,7 +55,7 @@ def test_the_same_however_ticks_are_divided(drift: DriftSpec, robot: RobotSpec) 
 
 
 @pytest.mark.parametrize(("sign", "share"), [(1, 0.98), (-1, 1.0)])
-def test_it_counts_too_little_of_a_clockwise_turn(sign: int, share: float) -> None:
+def test_a_drifting_gyro_counts_too_little_of_a_clockwise_turn(sign: int, share: float) -> None:
     sim = spin(sign, "lego-micropython", DriftSpec(gyro_scale_pc=2.0), 300, RobotSpec())
     instant = sim.build_instant()
     turned_deg = -instant.pose.heading_deg

@@ -48,7 +48,9 @@ def test_walls_from_the_middle(heading_deg: float, expected_mm: int) -> None:
         "outside, facing away": (Pose(3000, 500, 0), WALLS, 2550),
     },
 )
-def test_distance(pose: Pose, world: WorldSpec, expected_mm: int) -> None:
+def test_the_distance_is_that_to_the_nearest_wall_or_box(
+    pose: Pose, world: WorldSpec, expected_mm: int
+) -> None:
     assert measure_distance_mm(pose, SENSOR, world) == expected_mm
 
 

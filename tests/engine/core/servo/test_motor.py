@@ -161,7 +161,7 @@ def test_a_motion_for_a_time_ends_at_a_wall(ending: Ending) -> None:
         ),
     ],
 )
-def test_commands_give_what_they_gave(profile: str, seed: int, given: str) -> None:
+def test_random_commands_move_motors_as_recorded(profile: str, seed: int, given: str) -> None:
     robot = Robot(WALLED, PROFILES[profile])
     chance = random.Random(seed)
     rows = []

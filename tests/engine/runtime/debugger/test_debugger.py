@@ -329,7 +329,9 @@ WAITS = {
 
 
 @cases("text, note", WAITS)
-def test_what_is_waited_for_is_said(debug: Callable[..., Driver], text: str, note: str) -> None:
+def test_a_paused_thread_says_what_it_waits_for(
+    debug: Callable[..., Driver], text: str, note: str
+) -> None:
     driver = debug(text, hold_at=(30, BEFORE_NEXT_TICK), asks_user=True)
     assert driver.paused().reason == "instant"
     assert note in driver.look(thread="MainThread").waiting

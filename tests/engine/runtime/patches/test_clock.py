@@ -96,7 +96,9 @@ PROGRAMS = {
     "sleep", "spinning threads", "error in a thread", "event", "queue", "clock loop"
 )
 @cases("text, lines", PROGRAMS)
-def test_time_and_threads(run: Run, text: str, lines: list[str] | None) -> None:
+def test_clocks_and_threads_give_the_same_run_twice(
+    run: Run, text: str, lines: list[str] | None
+) -> None:
     first = run(text)
     assert first.ended.end == "finished", first.errors
     if lines is not None:

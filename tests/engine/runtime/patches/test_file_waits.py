@@ -77,7 +77,9 @@ PROGRAMS = {
 
 @pytest.mark.slow_cases("pandas")
 @cases("text, lines", PROGRAMS)
-def test_it_is_the_runs(run: Run, text: str, lines: list[str] | None) -> None:
+def test_clocks_chance_files_and_sockets_are_those_of_the_run(
+    run: Run, text: str, lines: list[str] | None
+) -> None:
     first = run(text, prelude="none")
     assert first.ended.end == "finished", first.errors
     assert first.lines == (run(text, prelude="none").lines if lines is None else lines)

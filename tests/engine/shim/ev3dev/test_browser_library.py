@@ -35,7 +35,9 @@ SHOWN = {
 
 
 @cases("text, lines", SHOWN)
-def test_what_a_motor_shows(run_on: RunOn, text: str, lines: list[str]) -> None:
+def test_a_motor_reads_as_in_the_browser_simulator(
+    run_on: RunOn, text: str, lines: list[str]
+) -> None:
     done = run_on(MOTOR + text, profile="nbev3devsim")
     assert (done.lines, done.errors) == (lines, [])
 

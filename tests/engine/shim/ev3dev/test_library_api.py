@@ -115,7 +115,7 @@ def test_every_item_resolves_and_has_its_signature(run_on: RunOn) -> None:
     assert "\n".join(done.lines) == "looked", done.errors
 
 
-def test_exercised_items_exist() -> None:
+def test_every_item_that_tests_exercise_is_in_the_library() -> None:
     assert exercised() <= {item.id for item in items()}
 
 

@@ -46,11 +46,11 @@ BESIDE = (
 
 
 @cases(TABLES)
-def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+def test_items_do_what_the_table_says(run_on: RunOn, table: Table, robot: str, world: str) -> None:
     check(run_on, table, robot, world)
 
 
-def test_registry_lists_what_the_tables_exercise() -> None:
+def test_the_registry_of_items_lists_what_the_tables_exercise() -> None:
     ids: dict[str, set[str]] = defaultdict(set)
     for table, _, _ in chain(TABLES.values(), *(module.TABLES.values() for module in BESIDE)):
         for item in table.ids:

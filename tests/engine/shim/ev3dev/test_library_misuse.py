@@ -32,7 +32,7 @@ MISUSES = {
 
 
 @cases("text, error", MISUSES)
-def test_misuse(run_on: RunOn, text: str, error: str) -> None:
+def test_a_misused_call_raises_the_librarys_own_error(run_on: RunOn, text: str, error: str) -> None:
     done = run_on(SETUP + text, "default")
     assert (done.ended.end, done.ended.error_line) == ("raised", 5)
     assert done.errors[0] == "Traceback (most recent call last):"

@@ -20,7 +20,9 @@ TABLES: Tables = {
 
 
 @cases(TABLES)
-def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+def test_calls_of_the_older_library_do_what_the_table_says(
+    run_on: RunOn, table: Table, robot: str, world: str
+) -> None:
     check(run_on, table, robot, world)
 
 
@@ -38,7 +40,7 @@ for side in range(4):
 """
 
 
-def test_a_square_closes(run_on: RunOn) -> None:
+def test_a_square_ends_where_it_began(run_on: RunOn) -> None:
     done = run_on(SQUARE, "plain")
     assert done.pose == pytest.approx((500.0, 571.5, -360.0), abs=0.5)
     assert done.errors == []

@@ -33,7 +33,7 @@ CODES: Any = codes_module("evdev.ecodes")
         ("ABS_MT_POSITION_X", 53),
     ],
 )
-def test_number(name: str, number: int) -> None:
+def test_codes_of_events_have_the_kernels_numbers(name: str, number: int) -> None:
     assert (getattr(CODES, name), CODES.ecodes[name]) == (number, number)
 
 

@@ -10,5 +10,7 @@ TABLES: Tables = {"paths": (PATHS, "default", "empty")}
 
 
 @cases(TABLES)
-def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+def test_entries_of_device_folders_are_as_the_table_says(
+    run_on: RunOn, table: Table, robot: str, world: str
+) -> None:
     check(run_on, table, robot, world)

@@ -10,5 +10,7 @@ TABLES: Tables = {"reads and writes": (READS, "default", "empty")}
 
 
 @cases(TABLES)
-def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+def test_open_device_files_read_and_write_as_the_table_says(
+    run_on: RunOn, table: Table, robot: str, world: str
+) -> None:
     check(run_on, table, robot, world)

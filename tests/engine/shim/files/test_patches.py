@@ -10,7 +10,9 @@ TABLES: Tables = {"waits": (WAITS, "plain", "empty")}
 
 
 @cases(TABLES)
-def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+def test_every_way_to_a_device_file_does_what_the_table_says(
+    run_on: RunOn, table: Table, robot: str, world: str
+) -> None:
     check(run_on, table, robot, world)
 
 

@@ -37,7 +37,7 @@ def dark(picture: Image) -> set[tuple[int, int]]:
     }
 
 
-def test_shapes(lab: Lab) -> None:
+def test_boxes_lines_and_pixels_are_drawn_where_asked(lab: Lab) -> None:
     box = Image.empty(10, 10)
     box.draw_box(1, 1, 4, 3)
     assert dark(box) == {(x, y) for x in range(1, 5) for y in range(1, 4)} - {(2, 2), (3, 2)}

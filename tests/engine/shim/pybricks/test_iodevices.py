@@ -25,7 +25,7 @@ eye.read('COMPASS')
 """
 
 
-def test_it_reads_any_sensor(run_on: RunOn) -> None:
+def test_an_ev3dev_sensor_reads_any_mode_and_refuses_what_is_not_simulated(run_on: RunOn) -> None:
     done = run_on(READ, robot="eyes", profile="lego-micropython")
     assert done.lines == ["0 0 3 3", "True", "(0, 0) True", "(0, 0) True", "5"], done.errors
     assert done.ended.summary.startswith("NotSimulated: mode COMPASS on in1")

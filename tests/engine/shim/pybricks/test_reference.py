@@ -249,7 +249,7 @@ def test_a_blocked_call_waits_for_ever() -> None:
 
 
 @pytest.mark.parametrize("key", [key for key in OF_THE_PLANT if "until_stalled" in key])
-def test_it_runs_until_it_is_stalled(key: str) -> None:
+def test_a_stalled_motor_stops_when_the_recorded_one_did(key: str) -> None:
     experiment = Experiment(key, stop_deg=125.0).run()
     (_, recorded_ms, recorded), (_, now_ms, now) = (
         experiment.recorded["returned"][0],

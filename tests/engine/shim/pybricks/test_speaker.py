@@ -40,7 +40,9 @@ def test_a_beep_takes_its_time_and_one_without_an_end_none(lab: Lab) -> None:
         ("R/1", (0, 2000, 0)),
     ],
 )
-def test_notes(note: str, expected: tuple[int, int, int]) -> None:
+def test_a_note_has_its_frequency_length_and_pause(
+    note: str, expected: tuple[int, int, int]
+) -> None:
     tone = note_of(note, 2000)
     assert (tone.frequency_hz, tone.length_ms, tone.pause_ms) == expected
 
@@ -48,7 +50,7 @@ def test_notes(note: str, expected: tuple[int, int, int]) -> None:
 @pytest.mark.parametrize(
     "note", ["Cb4/4", "Fb4/4", "E#4/4", "B#4/4", "H4/4", "C9/4", "C4", "C4/0", "c4/4", ""]
 )
-def test_what_is_no_note(note: str) -> None:
+def test_a_wrong_note_raises_a_value_error(note: str) -> None:
     with pytest.raises(ValueError, match="note"):
         note_of(note, 2000)
 
@@ -62,7 +64,7 @@ def test_notes_play_up_to_a_wrong_one(lab: Lab) -> None:
         Speaker().play_notes(["C4/4"], 0)
 
 
-def test_files(lab: Lab, tmp_path: Path) -> None:
+def test_a_sound_file_plays_as_long_as_it_is(lab: Lab, tmp_path: Path) -> None:
     path = tmp_path / "own.wav"
     with wave.open(str(path), "wb") as file:
         file.setnchannels(1)
@@ -88,7 +90,7 @@ def test_speech_is_as_fast_as_it_is_set(lab: Lab) -> None:
         speaker.say(5)  # type: ignore[arg-type]
 
 
-def test_volumes(lab: Lab) -> None:
+def test_volumes_are_clamped_and_wrong_names_raise(lab: Lab) -> None:
     speaker = Speaker()
     speaker.set_volume(150)
     assert [lab.mixer.volume(which) for which in ("PCM", "Beep")] == [100, 100]

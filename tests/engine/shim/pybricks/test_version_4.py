@@ -300,7 +300,7 @@ def test_an_error_in_a_task_closes_the_others(base: DriveBase) -> None:
     assert base.done()
 
 
-def test_it_drives_to_a_place(base: DriveBase) -> None:
+def test_move_by_drives_to_a_place(base: DriveBase) -> None:
     base.move_by(100, 100)
     assert base.distance() == pytest.approx(141, abs=1)
     assert base.angle() == pytest.approx(-45, abs=0.5)

@@ -298,7 +298,7 @@ def seen() -> dict[str, Seen]:
 
 
 @pytest.mark.parametrize("name", DID)
-def test_command(seen: dict[str, Seen], name: str) -> None:
+def test_a_shell_command_does_what_it_does_on_the_brick(seen: dict[str, Seen], name: str) -> None:
     text, lines, sounds = DID[name]
     assert (seen[text].lines, seen[text].heard) == (lines, sounds)
 

@@ -144,7 +144,7 @@ def test_a_module_beside_the_program_comes_first(
     assert over(start("import serial", prelude="none")).lines == ["own"]
 
 
-def test_other_sockets_work(run: Run) -> None:
+def test_sockets_that_are_not_bluetooth_work(run: Run) -> None:
     text = "import socket\na, b = socket.socketpair()\na.send(b'x')\nprint(b.recv(1), socket.AF_BLUETOOTH)"
     text += "\nprint(socket.socket().family == socket.AF_INET)"
     assert run(text, prelude="none").lines == [f"b'x' {BLUETOOTH['AF_BLUETOOTH']}", "True"]
