@@ -51,3 +51,9 @@ async def test_a_search_without_a_match_shows_no_robot() -> None:
         await pilot.press(*"xyz")
         await until(pilot, lambda: "no name contains these words" in screen_text(app))
         await until(pilot, lambda: "wheels" not in screen_text(app))
+
+
+async def test_the_places_of_sensors_are_whole_in_a_narrow_tall_terminal() -> None:
+    async with open_lab(size=(65, 58)) as (pilot, app):
+        await pilot.press("r")
+        await until(pilot, lambda: "right: 20 right, 30 ahead, ⌀ 20" in screen_text(app))

@@ -54,6 +54,10 @@ def build_robot_picker(plan: NextRun) -> RobotPicker:
     return RobotPicker(groups, current, robots)
 
 
+_WIDTHS = [(0, "-narrow"), (80, "-broad")]
+"""In a narrow terminal, parts stand below the list: beside it their places would be cut off."""
+
+
 class RobotPicker(Chooser):
     """The dialog that returns the name or the path of a robot, or `PROGRAM_ROBOT`.
 
@@ -62,6 +66,8 @@ class RobotPicker(Chooser):
         current: The current value, selected at first.
         robots: The robots of the list that are in no file, by value.
     """
+
+    HORIZONTAL_BREAKPOINTS: list[tuple[int, str]] | None = _WIDTHS
 
     def __init__(
         self, groups: Sequence[ChoiceGroup], current: str, robots: Mapping[str, RobotSpec]
