@@ -46,7 +46,10 @@ class Ending(IntEnum):
 def _splice(
     start: Segment, spliced: Segment | None, build: Callable[[Segment], Trajectory]
 ) -> Trajectory:
-    """Return the trajectory from a start; one that goes on with the running segment begins where that began."""
+    """Return the trajectory that `build` makes from a start.
+
+    If its first segment only continues the running segment `spliced`, it begins where that segment began.
+    """
     trajectory = build(start)
     if spliced is None or trajectory.first.acceleration != start.acceleration:
         return trajectory

@@ -356,7 +356,7 @@ class DriveBase:
 
     @property
     def trajectory(self) -> Trajectory | None:
-        """What the distance follows, which each move begins anew."""
+        """The trajectory of the distance; each move has a new one."""
         return self.distance.trajectory
 
     @property

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 PER_PERCENT = 100
 MAX_WINDOW_MS = 300
-"""A speed is the mean over so long at most."""
+"""The longest time over which a speed is averaged."""
 HALVES_PER_DEG = 2 * MILLI * COUNTS_PER_DEG
 """Positions are kept in half thousandths of a count: a drive base divides a sum of counts by two."""
 
@@ -67,8 +67,8 @@ class Guide(Protocol):
         It is called only for motors that do not hold their position at the end.
 
         Args:
-            now_us: The time.
-            rate: The rate of the motor as the firmware measures it.
+            now_us: The present time.
+            rate: The rate of the motor as the firmware measures it, in counts per second.
         """
 
 
@@ -169,7 +169,7 @@ class ServoMotor:
 
         Args:
             now_us: The time.
-            window_ms: Over this time until then the speed is the mean; 0 for the speed at that time.
+            window_ms: The time before it over which the speed is averaged; 0 for the speed at that time.
         """
         begin_tick = (now_us - window_ms * MS_US) / self._tick_us
         newest = self._tick, self.position_deg
@@ -268,8 +268,8 @@ class ServoMotor:
     def set_position(self, now_us: int, milli: int) -> None:
         """Set the value that the motor reports for its present position, in thousandths of a count.
 
-        A motion under way ends there: the motor holds the position, or under later firmware does what it would have
-        done at the end of the motion.
+        A motion under way ends there. The motor then holds the position; under later firmware it does what it would
+        have done at the end of the motion.
         """
         shift = milli - self.find_milli(now_us)
         self._past.clear()

@@ -66,15 +66,18 @@ class ControlSettings:
 
     @property
     def _steps(self) -> int:
-        """Steps of the firmware, thousandths of a degree, per unit of the program; whole ones, if it has such."""
+        """Number of the firmware's steps, thousandths of a degree, per unit of the program, rounded down."""
         return int(self.counts_per_unit * STEPS + 1e-3)
 
     def tell(self, counts: float) -> int:
-        """Return a rate or a setting in the program's units: rounded, or cut off where there are torques."""
+        """Return a rate or a setting, given in counts, in the program's units.
+
+        Firmware that computes with torques truncates the result to whole units; other firmware rounds it.
+        """
         return int(counts * STEPS / self._steps) if self.torque_unm else self.units(int(counts))
 
     def take(self, units: int) -> int:
-        """Return a setting in counts, which `tell` gives back as it was."""
+        """Return a setting, given in the program's units, in counts, such that `tell` returns the same units again."""
         return -(-units * self._steps // STEPS) if self.torque_unm else self.counts(units)
 
     def counts(self, units: int) -> int:
@@ -125,13 +128,13 @@ class ServoKind:
     torque_unm: int = 0
     acceleration: int = 2000
     gains: tuple[int, ...] = ()
-    """Empty to compute them from the torque."""
+    """The gains kp, ki and kd; empty if they are computed from the torque."""
     feed_forward: int = 0
     max_mv: int = 9000
-    """The voltage of the torque."""
+    """The voltage at which the motor has its highest torque."""
 
     def compute_gains(self, tolerance_deg: int) -> tuple[int, ...]:
-        """Return kp and ki for a tolerance of the position, and kd for the usual one."""
+        """Return kp and ki for a tolerance of the position in degrees, and kd for the usual tolerance."""
         torque_unm = self.torque_unm * min(self.max_mv, TUNED_MV) // self.max_mv
         kp = torque_unm // tolerance_deg
         return kp, kp // 2, torque_unm // self.position_tolerance_deg // 8

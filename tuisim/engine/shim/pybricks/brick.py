@@ -136,11 +136,11 @@ class Brick:
         control: Any,
         stop: Callable[[], object] = lambda: None,
     ) -> Waiting[None]:
-        """Wait until a move is done: yield the times in microseconds at which to look again.
+        """Wait until a move is done: yield the times in microseconds at which to check again.
 
         Args:
-            done: Whether the move is done at a time in microseconds.
-            control: The controller, or drive base, that moves.
+            done: Returns whether the move is done at a time in microseconds.
+            control: The controller or drive base that executes the move.
             stop: Ends the move if the task that awaits it is closed.
         """
         begin = now = self.now_us

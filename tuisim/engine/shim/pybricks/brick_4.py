@@ -113,7 +113,7 @@ class System(Connected):
         The bytes stay when the program ends.
 
         Raises:
-            TypeError: the program asks for both or neither.
+            TypeError: the program gives both `read` and `write`, or neither.
         """
         if read is None and write is not None:
             self._stored[offset : offset + len(write)] = write

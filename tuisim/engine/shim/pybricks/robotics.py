@@ -26,7 +26,7 @@ class DriveBase(Connected):
 
     CONTROL: ClassVar[type[Control]] = Control
     MIN_SIZE_MM: ClassVar[float] = 1 / 65536
-    """Of the wheels and of the track; the firmware computes with such fractions."""
+    """Smallest diameter of the wheels and smallest axle track: the firmware computes with such fractions."""
     current: ClassVar[DriveBase | None] = None
     """The newest drive base of the program: when it is created, it stops the one before."""
     log = refused_part("DriveBase", "log", LOGGER)

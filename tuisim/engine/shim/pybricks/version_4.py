@@ -155,7 +155,11 @@ class Control(motor.Control):
     SETTINGS_WHILE_ACTIVE = True
 
     def check(self, value: float, kind: int) -> int:
-        """Return a speed, of kind 0, or an acceleration, of kind 1, if the firmware takes it; else raise ValueError."""
+        """Return a speed (kind 0) or an acceleration (kind 1) of the program as a whole number.
+
+        Raises:
+            ValueError: the firmware does not accept it.
+        """
         number = whole(value)
         motor_deg = number * self.scale / COUNTS_PER_DEG / len(self._owner.port_names)
         _check_range(motor_deg, *RANGES[kind])
@@ -164,7 +168,7 @@ class Control(motor.Control):
     def limits(
         self, speed: float | None = None, acceleration: Any = None, torque: float | None = None
     ) -> tuple[int, ...] | None:
-        """Return the highest speed, acceleration and torque in mNm, or set them."""
+        """Set the highest speed, acceleration and torque in mNm; without arguments, return them."""
         if isinstance(acceleration, tuple):
             acceleration = acceleration[0]
         for kind, value in enumerate((speed, acceleration)):

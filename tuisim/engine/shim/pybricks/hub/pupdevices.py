@@ -105,11 +105,12 @@ class ColorSensor(Sensor):
         return self._read_as("COL-AMBIENT", int)
 
     def _read_hsv(self, surface: bool, convert: Callable[[tuple[int, int, int]], Result]) -> Result:
-        """Measure hue, saturation and value, and return what `convert` makes of them.
+        """Measure hue, saturation and value, and return the result of `convert` for them.
 
         Args:
-            surface: Whether to measure with the sensor's light; without it, the ambient light is grey.
-            convert: Converts them.
+            surface: Whether to measure with the sensor's light; without it, only the ambient light is measured, as a
+                grey.
+            convert: Takes hue, saturation and value.
         """
         if surface:
             return self._read_light(lambda *channels: convert(measure_hsv(*channels)))
