@@ -81,6 +81,8 @@ def test_of_a_stored_run_every_instant_is_known(run: StoredRun) -> None:
         world.find_snapshot(0.1, 0).instant.pose.x_mm
         < world.find_snapshot(0.4, 0).instant.pose.x_mm
     )
+    # Sensors show what the program reads.
+    assert world.find_snapshot(0.1, 0).program == run.program
     # Before the first and after the last tick stand the ends.
     assert world.find_snapshot(-5.0, 0).instant.pose == SPEC.world.start
     assert world.find_snapshot(99.0, 0).instant.tick == 50

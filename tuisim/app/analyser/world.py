@@ -60,8 +60,8 @@ class RunWorld:
         self.mat = mat
         self._recording = Recording(run) if run is not None else None
         self._log = log
-        self.text = run.program.text if run is not None else ""
-        """The program, empty if unknown."""
+        self.program = run.program if run is not None else None
+        """None if it is unknown."""
 
     def find_snapshot(self, time_s: float, row: int) -> Snapshot:
         """Return the snapshot at a time.
@@ -106,7 +106,10 @@ class RunWorld:
         self, instant: Instant, field: Field | None, line: int, pen_down: bool
     ) -> Snapshot:
         return Snapshot(
-            RunPhase.ENDED, None, self.spec, field, instant, line, speed=1.0, pen_down=pen_down
+            *(RunPhase.ENDED, None, self.spec, field, instant, line),
+            speed=1.0,
+            pen_down=pen_down,
+            program=self.program,
         )
 
 
@@ -227,7 +230,7 @@ class WorldPane(Vertical):
 
     def _list_lines(self, world: RunWorld, line: int) -> list[list[Run]]:
         """Return the program around a line, with that line in the middle."""
-        texts = source_lines(world.text)
+        texts = source_lines(world.program.text if world.program else "")
         height, width = self._source.size.height, self._source.size.width
         if not texts or not height:
             return [[(f"line {line}", _PLAIN)]]
