@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tuisim.engine.breakpoints import FORMS
+from tuisim.engine.core.motor_columns import STATE_BITS
 from tuisim.engine.core.profile import MS, PROFILES, ProfileSpec
 from tuisim.engine.core.sensors import list_column_names, list_mounted
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
@@ -33,13 +34,19 @@ _MEANINGS = {
     "gyro_rate_dps": "rate of turn that the gyro measures",
     "line": "the source line that printed the sample, or that spent the time of the tick",
 }
-_COLOR = {
+_PARTS = {
     **dict.fromkeys(
         ("red", "green", "blue"), "{part} light that the {sensor} colour sensor sees, 0 to 255"
     ),
     "red_pc": "red light that the {sensor} colour sensor sees: `reflected_light_intensity_pc`",
     "mean_pc": "mean of red, green and blue that the {sensor} colour sensor sees",
     "color": "colour that the {sensor} colour sensor sees, in breakpoints by its name, such as Blue",
+    "asked_dps": "speed that the program asks of the {sensor} motor, with profile `ev3`",
+    "measured_dps": "speed that the driver of the {sensor} motor measures, with profile `ev3`",
+    "duty_pc": "power that the driver gives the {sensor} motor, with profile `ev3`",
+    "state": "sum of the states of the {sensor} motor: "
+    + ", ".join(f"{bit} `{state}`" for state, bit in STATE_BITS.items()),
+    **dict.fromkeys(STATE_BITS, "1 while the {sensor} motor has the state `{part}`, otherwise 0"),
 }
 
 
@@ -47,7 +54,7 @@ def _describe_column(name: str) -> str:
     if name in _MEANINGS:
         return _MEANINGS[name]
     sensor, _, part = name.partition("_")
-    return _COLOR.get(part, name.replace("_", " ")).format(sensor=sensor, part=part)
+    return _PARTS.get(part, name.replace("_", " ")).format(sensor=sensor, part=part)
 
 
 def _build_column_table(names: tuple[str, ...]) -> Table:
