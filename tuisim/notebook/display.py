@@ -80,7 +80,7 @@ def _format_light(face: DiscFace) -> str:
     numbers = f"red {value}, mean {seen.mean_percent:.1f} %"
     if face.read.uses_all_channels(seen):
         numbers = f"mean {value}, red {seen.red_percent:.1f} %"
-    return f"{numbers}, rgb {seen.rgb}, {seen.name}"
+    return f"{numbers}, rgb {seen.rgb}, color {seen.name}"
 
 
 def _format_reading(name: str, values: dict[str, float]) -> str:

@@ -161,16 +161,19 @@ def build_sensor_lines(
             format_value(short_other),
         ),
     )
-    channels = [f"{channel}" for channel in color.rgb]
-    wide = f"({', '.join(channels)})"
-    narrow = f"({','.join(channels)})"
+    wide = f"{color.rgb}"
+    narrow = wide.replace(" ", "")
     second = fit_line(
         width,
-        (
-            format_label(""),
-            format_value(wide.ljust(16)),
-            build_swatch(color),
-            format_value(f" {color.name}"),
+        *(
+            (
+                format_label(""),
+                format_value(wide.ljust(16)),
+                build_swatch(color),
+                format_unit(what),
+                format_value(f" {color.name}"),
+            )
+            for what in (" color", "")
         ),
         (
             format_label("", 2),

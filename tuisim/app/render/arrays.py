@@ -141,8 +141,9 @@ def _build_value_line(face: DiscFace, width: int) -> Line:
     value = face.value_words
     name = face.seen.name
     swatch = build_swatch(face.seen)
-    if len(value) + len(name) + 4 <= width:
-        return [(value, _VALUE), (" ", _UNIT), swatch, (f" {name}", _VALUE)]
+    for what in (" color", ""):
+        if len(value) + len(what) + len(name) + 4 <= width:
+            return [(value, _VALUE), (" ", _UNIT), swatch, (what, _UNIT), (f" {name}", _VALUE)]
     close = value.replace(" %", "%").replace("mean ", "")
     short = close.partition(" of ")[0]
     fits = (

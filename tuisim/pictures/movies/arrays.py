@@ -45,7 +45,7 @@ def draw_face(face: DiscFace, width: int, height: int, *, has_limits: bool) -> D
     """
     limits = face.limit_words(int(width / LETTER_PX))
     below = [
-        f"{face.value_words}, {face.seen.name}",
+        f"{face.value_words}, color {face.seen.name}",
         *([limits] if has_limits else []),
         f"rings {' '.join(face.ring_words)} {face.unit}",
     ]
