@@ -47,6 +47,9 @@ AT_REST = frozenset({RunPhase.PAUSED, RunPhase.ENDED})
 GOOD_ENDS: frozenset[RunState | None] = frozenset({End.FINISHED, End.STOPPED})
 """Ways to end a run that are no failure."""
 
+TURNING = ", motors turning"
+"""Follows the state where `Snapshot.ends_turning`."""
+
 _DARK = BrickState()
 
 
@@ -162,6 +165,12 @@ class Snapshot:
         if self.field is None:
             return {}
         return measure_sensors(self.spec.robot.further_sensors, self.instant, self.spec, self.field)
+
+    @property
+    def ends_turning(self) -> bool:
+        """Whether the end of a run is in view whose wheel motors still turned in the last tick."""
+        is_end = self.state is RunPhase.ENDED and not (self.past or self.placed)
+        return is_end and bool(self.instant.left_speed_dps or self.instant.right_speed_dps)
 
     def has_stopped_since(self, before: Snapshot | None) -> bool:
         """Return whether the run stands still now, and did not at an earlier moment."""

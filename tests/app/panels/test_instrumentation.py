@@ -220,6 +220,21 @@ def test_a_motor_shows_the_angle_and_the_speed_that_its_program_reads() -> None:
     assert "L -1234  -525°/s" in cells and "D    45   -10°/s" in cells
 
 
+def test_the_state_says_that_the_motors_turned_in_the_last_tick() -> None:
+    end = moment(state=RunPhase.ENDED, end=End.FINISHED)
+    still = replace(end.instant, left_speed_dps=0.0, right_speed_dps=0.0)
+    words = "State finished, motors turning"
+    for now, says in (
+        (end, True),
+        (replace(end, past=True), False),
+        (replace(end, placed=True), False),
+        (replace(end, instant=still), False),
+        (moment(), False),
+    ):
+        rows = [" ".join(row.split()) for row in text(now, 40, 20)]
+        assert (words in rows) is says
+
+
 def test_the_heading_is_named() -> None:
     rows = text(moment(Pose(1234.5, 1000.0, -148.2)), 48, 11)
     assert rows[8].split() == ["Pose", "x", "1234.5", "y", "1000.0", "heading", "-148.2°"]
