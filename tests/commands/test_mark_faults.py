@@ -11,6 +11,7 @@ from unittest.mock import MagicMock
 
 import pytest
 
+from tests.conftest import Command
 from tuisim.base.faults import report_file
 from tuisim.cli import run_command
 from tuisim.tasks import execute
@@ -154,3 +155,11 @@ def test_downloads_of_gradebooks_are_marked_as_they_are(
     (book,) = tmp_path.glob("*/moodle.csv")
     assert "\nParticipant 4713,Ben Weiß,,2," in book.read_text("utf-8")
     assert "\nweissben,12,,,,2" in book.with_name("canvas.csv").read_text("utf-8")
+
+
+def test_the_list_of_runs_names_the_student_of_a_marked_run(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "goals.toml").write_text(GOALS)
+    (tmp_path / "class" / "Ada Lovelace").mkdir(parents=True)
+    (tmp_path / "class" / "Ada Lovelace" / "main.py").write_text("x = 1\n")
+    assert here("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1").returncode == 0
+    assert "student:Ada_Lovelace" in here("runs", "list").stdout

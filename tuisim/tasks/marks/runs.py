@@ -15,6 +15,7 @@ from tuisim.base.source import user_python_path
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.handle import RunOptions
+from tuisim.engine.runs.store import RunStore
 from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.settings.presses import press_actions
 from tuisim.tasks.goals.trial_world import TrialWorld
@@ -29,6 +30,8 @@ STALL_LIMIT_S = 10.0
 """CPU seconds in one instant of simulated time after which a program counts as hung."""
 REAL_TIME_LIMIT_S = 120.0
 """Real seconds of one run."""
+STUDENT_TAG = "student:"
+"""Prefix of the tag that names the student of a run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,6 +170,10 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
             place = workspace / str(result.index)
             try:
                 outcome = build_outcome(result, turn.seed, place, turn.world)
+                # In a list of runs, all programs of a class may have the same name.
+                if outcome.run_id:
+                    words = turn.entry.student.name.split()
+                    RunStore().tag(outcome.run_id, [STUDENT_TAG + "_".join(words)])
             except Exception as error:  # Whatever it is, the others go on.
                 outcome = _build_unjudged(turn, error)
             remove_tree(place)
