@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
+from tuisim.engine.core.profile import PROFILES
 
 
 @pytest.mark.parametrize(
@@ -25,6 +26,11 @@ def test_each_list_names_its_entries_as_text_and_json(
 ) -> None:
     assert name in here(command).stdout
     assert name in [entry["name"] for entry in json.loads(here(command, "--json").stdout)]
+
+
+def test_a_list_of_profiles_is_one_line_for_each(here: Command) -> None:
+    lines = here("profiles").stdout.splitlines()
+    assert [line.split()[0] for line in lines] == ["PROFILE", *PROFILES, "`tuisim"]
 
 
 def test_profiles_of_a_brick_tell_each_figure_of_its_motors(here: Command) -> None:

@@ -298,7 +298,7 @@ def programs(as_json: bool) -> int:
 
 @command(argument("words", "[NAME|FILE]…", lambda: PROFILES, nargs=-1), AS_JSON)
 def profiles(words: Sequence[str], as_json: bool) -> int:
-    """List the profiles: the simulated time of each call, the motors of a brick, and the source of each number."""
+    """List the profiles; of those that are named, the time of each call, the motors, and the source of each number."""
     from tuisim.settings.profiles import load_profile
 
     chosen = [load_profile(word) for word in words] or PROFILES.values()
@@ -310,8 +310,13 @@ def profiles(words: Sequence[str], as_json: bool) -> int:
         draw_table(
             ("PROFILE", "FOR"), [(profile["name"], profile["title"]) for profile in plain_profiles]
         )
-        + "\n"
     )
+    if not words:
+        echo(
+            f"`tuisim profiles {' '.join(PROFILES)}` compares all numbers and names their sources."
+        )
+        return 0
+    echo()
     rules = list_values(ProfileSpec)
     rows = [
         [

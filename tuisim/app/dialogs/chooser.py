@@ -388,9 +388,12 @@ def build_obstacle_chooser(plan: NextRun) -> Chooser:
 
 def build_profile_chooser(plan: NextRun) -> Chooser:
     """Return the dialog for profiles."""
-    solid = "obstacles and walls, if any, are solid"
     presets = [
-        (name, name, f"light 0 to {p.reflected_max}, {solid if p.solid else 'nothing is solid'}")
+        (
+            name,
+            name,
+            f"{p.title}; light 0 to {p.reflected_max}, {'walls' if p.solid else 'nothing'} solid",
+        )
         for name, p in PROFILES.items()
     ]
     groups = [ChoiceGroup("", presets), list_files([".toml"], lambda path: load_profile(str(path)))]
