@@ -52,6 +52,15 @@ def test_the_time_is_a_column() -> None:
     assert [*lab.step(period_s=0.5).items()][1] == ("time", lab.time_s) == ("time", 0.5)
 
 
+@pytest.mark.parametrize(
+    "weight, gained_dps",
+    {"weightless": 900, "light": 1667 / 2, "medium": 833 / 2, "heavy": 556 / 2}.items(),
+)
+def test_wheels_gain_the_speed_that_the_page_names(weight: str, gained_dps: float) -> None:
+    lab = tuisim.Lab(robot=tuisim.Robot(weight=weight), columns=["left_speed_dps"])
+    assert lab.step(900, 900, period_s=0.5)["left_speed_dps"] == pytest.approx(gained_dps, abs=0.5)
+
+
 @pytest.mark.parametrize("period_s", [0.0, 0.13])
 @pytest.mark.parametrize("world", [ROUGH, SMOOTH], ids=["rough", "smooth"])
 @pytest.mark.parametrize("profile", ["robolab", "ev3", "nbev3devsim"])

@@ -42,7 +42,7 @@ class Robot(RobotDescription):
         wheel_spacing_mm: Between the centres of the wheels, in mm.
         wheel_width_mm: Wheel width, in mm.
         back_mm: How far the body reaches behind the axle, as a negative y, in mm.
-        weight: Weightless, light, medium, heavy, or a number.
+        weight: Weightless (0), light (3), medium (6), heavy (9), or a number: wheels gain 5000 / weight °/s².
         left_port: OutA … outD; of a hub A … F.
         right_port: OutA … outD; of a hub A … F.
         left_reversed: Mounted the other way round: positive speeds turn the wheel backwards.

@@ -151,8 +151,10 @@ class Lab:
         """Move the robot on by one tick or longer, and return the columns at the end. Does not block.
 
         Args:
-            left, right: Speed of each wheel's motor in degrees per second, positive forwards; beyond `max_speed_dps`
-                it is that. Without speeds, both motors go on as before.
+            left, right: The speed for each wheel's motor in degrees per second, positive forwards; beyond
+                `max_speed_dps` it is that. Under `robolab` a motor gains at most 5000 / `weight` of the robot in each
+                second: 833 for the default robot; a weightless one has its speed at once. Without speeds, both motors
+                go on as before.
             period_s: Simulated seconds, rounded to ticks; at least one tick.
             commands: What a program asks for meanwhile, such as the part of `Run.commands` that lies in the step: each
                 takes effect at its own time.

@@ -393,7 +393,8 @@ class RobotSpec(Spec):
         ROBOT_WEIGHTS,
         default=ROBOT_WEIGHTS["medium"],
         label="Weight",
-        help=f"{', '.join(ROBOT_WEIGHTS)}, or a number",
+        help=f"{', '.join(f'{name} ({weight:g})' for name, weight in ROBOT_WEIGHTS.items())}, or a number: "
+        "wheels gain 5000 / weight °/s²",
     )
     """With 0 the speed changes immediately; otherwise the acceleration is 5000 / weight degrees per second squared."""
     left_port: str = _build_output_port("outB", "Left motor")
