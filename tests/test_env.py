@@ -48,6 +48,28 @@ def test_a_task_runs_on_any_mat(task: str, background: str) -> None:
     assert lab.spec.world.background == background
 
 
+@pytest.mark.parametrize(
+    "background, lights",
+    {
+        "Lollipop": (83, 16),
+        "Line_Following_Test": (100, 100),
+        "Thruxton_Circuit": (100, 100),
+        "Loop": (100, 100),
+    }.items(),
+)
+def test_a_follower_begins_where_the_page_says(
+    background: str, lights: tuple[float, float]
+) -> None:
+    env = gymnasium.make("tuisim/LineFollower-v0", background=background)
+    assert env.reset(seed=0)[0] == pytest.approx(lights, abs=0.5)
+
+
+def test_a_start_on_the_edge_of_a_line_is_seen_at_once() -> None:
+    world = tuisim.World(background="Loop", x=220, y=500, angle=90)
+    env = gymnasium.make("tuisim/LineFollower-v0", world=world)
+    assert env.reset(seed=0)[0] == pytest.approx((46.7, 0), abs=0.1)
+
+
 def _play(env: Any, seed: int) -> bytes:
     observations = [env.reset(seed=seed)[0]]
     for action in ((1, 1), (0.5, -0.5), (-1, 1)):
