@@ -41,6 +41,14 @@ def test_read_log_takes_files_from_elsewhere(tmp_path: Path) -> None:
     }
 
 
+def test_the_numbers_of_lines_are_no_times(tmp_path: Path) -> None:
+    (path := tmp_path / "a.txt").write_text("Light: 12\nfoo\nLight: 13\n")
+    with pytest.warns(UserWarning, match="not a sample"):
+        frame = read_log(path)
+    assert (frame.index.name, frame.index.tolist()) == (None, [0, 1])
+    assert (frame["row"].tolist(), frame["value"].tolist()) == ([1, 3], [12, 13])
+
+
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @cases(
     "choices, columns, times_s",

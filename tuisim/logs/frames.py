@@ -44,11 +44,14 @@ def read_log(
     separator: Literal["", "comma", "semicolon", "tab", "bar", "blank"] = "",
     decimal: Literal["", ".", ","] = "",
 ) -> pd.DataFrame:
-    """Return the table in a file. Without choices, an export of tuisim is as it was written, to the last
-    bit, except that empty texts of a CSV file are no values.
+    """Return the table in a file.
 
-    Of another file, or with choices, the index is the time in seconds, if there is one: dates count from the first row,
-    times of day from midnight. Warnings say what was guessed or left out, and name the argument that decides.
+    Without choices, a file that `out=` or `tuisim log export` has written, with the file `.json` beside a CSV or JSONL
+    file, is as it was, to the last bit, except that empty texts of a CSV file are no values.
+
+    Of any other file, such as one of your own `to_csv`, or with choices, the index is the time in seconds, if there is
+    one, else the number of the row: dates count from the first row, times of day from midnight. Warnings say what was
+    guessed or left out, and name the argument that decides.
 
     Args:
         path: A CSV, Parquet, JSON, JSONL, Arrow or text file.
@@ -83,7 +86,8 @@ def read_log(
         chosen = {layout.time, layout.variable, layout.run, *choices.value}
         rows = rows.select([name for name in rows.column_names if name in chosen])
     frame = build_typed_frame(rows)
-    return frame if layout.time == ROW else frame.set_index(log.times_s).rename_axis("time_s")
+    counts_rows = layout.time in (ROW, "row") and time != "row"
+    return frame if counts_rows else frame.set_index(log.times_s).rename_axis("time_s")
 
 
 def _name_arguments(text: str) -> str:
