@@ -78,13 +78,11 @@ def test_a_function_knows_the_values_around_it() -> None:
     assert tuisim.simulate(build_inner(7)).output == "Number: 7\n"
 
 
-def test_functions_are_programs_of_an_experiment() -> None:
-    frame = tuisim.experiment([build_inner(1), use_course_names], seeds=[0], jobs=1)
-    assert frame["Number_last"].tolist()[:1] == [1]
-    assert frame["program"].tolist() == [
-        "test_function.py:show",
-        "test_function.py:use_course_names",
-    ]
+def test_functions_go_by_their_own_names_in_an_experiment() -> None:
+    programs = [build_inner(1), use_course_names, build_inner(2)]
+    frame = tuisim.experiment(programs, seeds=[0], jobs=1)
+    assert frame["Number_last"].tolist()[::2] == [1, 2]
+    assert frame["program"].tolist() == ["show", "use_course_names", "show 2"]
 
 
 Import = Callable[..., ModuleType]

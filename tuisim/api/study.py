@@ -160,7 +160,13 @@ class Study:
         if not named:
             raise ConfigError("no program is named", key="program")
         self._programs = [read_source(each) for each in named]
-        self._names = number_repeated([source.program.name for source in self._programs])
+        self._names = number_repeated(
+            [
+                # A function goes by its own name, without that of its file.
+                source.program.name.rpartition(":")[2] if callable(each) else source.program.name
+                for each, source in zip(named, self._programs, strict=True)
+            ]
+        )
         self._constants = constants
         self._arguments = arguments
         self._parameters = {
