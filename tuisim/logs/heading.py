@@ -220,7 +220,7 @@ def split_cells(line: str, separator: str) -> list[str]:
 
 def close_quotes(text: str, separator: str) -> str:
     """Return a text without blanks between separators and the quotes of cells."""
-    if f'{separator} "' not in text and f'" {separator}' not in text:
+    if '"' not in text:
         return text
     sign = re.escape(separator)
     return re.sub(rf'(?m)(?:^|(?<={sign}))[ \t]+(?=")|(?<=")[ \t]+(?={sign})', "", text)
