@@ -70,12 +70,18 @@ def _build_member(name: object, run: Any, rows: IntArray | None, several: bool) 
 def _encode_column(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
     """Return the distinct values of a column in order of first appearance, and the index of each row's value."""
     if pa.types.is_dictionary(column.type):
+        column = column.unify_dictionaries()
+        values = column.chunk(0).dictionary.to_pylist() if column.num_chunks else []
+        if None not in values and len(set(values)) == len(values):
+            indices = [chunk.indices for chunk in column.chunks]
+            places, codes = _encode_column(pa.chunked_array(indices, column.type.index_type))
+            return [None if place is None else values[place] for place in places], codes
         # Some writers have duplicates or nulls in the dictionary.
         column = column.cast(column.type.value_type)
     column = column.dictionary_encode("encode")
     names = column.chunk(0).dictionary.to_pylist() if column.num_chunks else []
-    codes = [read_numbers(chunk.indices) for chunk in column.chunks]
-    return names, np.concatenate(codes) if codes else np.empty(0, np.int32)
+    parts = [read_numbers(chunk.indices) for chunk in column.chunks]
+    return names, np.concatenate(parts) if parts else np.empty(0, np.int32)
 
 
 def _group_rows(codes: IntArray, count: int) -> list[IntArray]:
