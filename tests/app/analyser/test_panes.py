@@ -133,6 +133,21 @@ def test_every_pane_fits_its_size(pane: str, words: str, size: tuple[int, int]) 
         assert words in text
 
 
+def test_points_of_numbers_stand_below_each_other() -> None:
+    table = pa.table({"time": [0.08, 0.1, 0.125], "Colour": [100, 86, 50]})
+    lines = text_of(model_of(Log("test", table, guess_columns(table)))).splitlines()[1:4]
+    assert len({line.index(".") for line in lines}) == 1
+    assert (
+        len(
+            {
+                line.index(level) + len(level)
+                for line, level in zip(lines, ("100", " 86", " 50"), strict=True)
+            }
+        )
+        == 1
+    )
+
+
 def test_an_empty_log_says_what_else_there_is() -> None:
     log = long_log()
     model = model_of(type(log)("none", log.table.slice(0, 0), log.layout))
@@ -141,7 +156,7 @@ def test_an_empty_log_says_what_else_there_is() -> None:
 
 def test_the_column_run_does_not_look_like_the_number_of_a_stored_run(run: StoredRun) -> None:
     opened = OpenedLog(LogRequest(), build_log((run,)), (run,))
-    assert build_heading(AnalysisModel(opened), "run") == "run (in log)"
+    assert build_heading(AnalysisModel(opened), "run") == "nth run"
     assert build_heading(model_of(opened.log), "run") == "run"
 
 

@@ -10,6 +10,7 @@ from tuisim.analysis.model import AnalysisModel
 from tuisim.app import design
 from tuisim.base import palette
 from tuisim.base.errors import counted
+from tuisim.logs.table import Rows
 from tuisim.terminal.text_runs import Line, cut, escape_markup, find_first_row
 
 PLAIN, DIM = Style(color=palette.INK), Style(color=palette.SOFT)
@@ -34,11 +35,11 @@ def build_table_lines(model: AnalysisModel, width: int, height: int) -> list[Lin
     number_width = max(len(f"{shown_rows[-1] + 1:,}"), len(f"{shown_rows[0] + 1:,}"))
     columns, widths = _fit_columns(model, shown_rows, width - number_width - 2)
     lines = [_build_head_line(model, columns, widths, number_width)]
-    for row in shown_rows:
+    cells = [_read_cells(rows, column, shown_rows) for column in columns]
+    for row, *texts in zip(shown_rows, *cells, strict=True):
         style = HERE if row == model.row else PLAIN
         line: Line = [(f"{row + 1:>{number_width},}  ", HERE if row == model.row else DIM)]
-        for column, wide in zip(columns, widths, strict=True):
-            text = rows.text(row, column).replace("\n", "↵").replace("\t", " ")
+        for text, wide in zip(texts, widths, strict=True):
             shown_text = cut(text, wide)
             line.append(
                 (
@@ -69,6 +70,16 @@ def _build_head_line(
     return head
 
 
+def _read_cells(rows: Rows, column: str, shown_rows: Sequence[int]) -> list[str]:
+    """Return the cells of a column, its numbers with their points below each other."""
+    texts = [rows.text(row, column).replace("\n", "↵").replace("\t", " ") for row in shown_rows]
+    tails = [len(text) - len(text.partition(".")[0]) if _is_number(text) else 0 for text in texts]
+    return [
+        text + " " * (max(tails) - tail) if _is_number(text) else text
+        for text, tail in zip(texts, tails, strict=True)
+    ]
+
+
 def _is_number(text: str) -> bool:
     return text[:1].isdigit() or (text[:1] == "-" and text[1:2].isdigit())
 
@@ -83,7 +94,7 @@ def _fit_columns(
     def measure_column(column: str) -> int:
         widths = [
             len(build_heading(model, column)) + 1,
-            *(len(rows.text(row, column)) for row in seen),
+            *map(len, _read_cells(rows, column, seen)),
         ]
         return min(max(widths), MAX_CELL)
 
@@ -109,7 +120,7 @@ def build_heading(model: AnalysisModel, column: str) -> str:
 
     The title has the numbers of stored runs; the column `run` counts the runs in the log, so its heading says that.
     """
-    return f"{column} (in log)" if column == "run" and model.opened.runs else column
+    return f"nth {column}" if column == "run" and model.opened.runs else column
 
 
 def count_rows(model: AnalysisModel) -> str:
