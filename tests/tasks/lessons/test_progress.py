@@ -42,7 +42,7 @@ def test_progress_counts_done_and_skipped_steps(lesson: Lesson) -> None:
     done = StepState.DONE
     skipped = StepState.SKIPPED
     assert NEW.words(lesson) == "new"
-    assert after(lesson, done).words(lesson) == f"1 of {count} steps"
+    assert after(lesson, done).words(lesson) == f"1 of {count}"
     assert after(lesson, *[done] * count).words(lesson) == "done"
     assert after(lesson, skipped, *[done] * (count - 1)).words(lesson) == "done, 1 step skipped"
 

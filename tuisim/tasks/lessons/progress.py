@@ -83,7 +83,7 @@ class LessonProgress:
         if self.current(lesson) is None:
             return f"done, {counted(count - done, 'step')} skipped"
         begun = any(self.of(step.name) != StepProgress() for step in lesson.steps)
-        return f"{done} of {count} steps" if begun or self.opened_at else "new"
+        return f"{done} of {count}" if begun or self.opened_at else "new"
 
 
 def format_now() -> str:
