@@ -20,7 +20,7 @@ from tests.programs.robot.reading import built
         ),
         (
             "ColorSensor('in1')\nTouchSensor('in1')\nTouchSensor('in1')",
-            "in1 is taken for a touch sensor",
+            "in1 is taken for that of the touch sensor, not of the colour sensor",
         ),
         ("GyroSensor('in1')\nGyroSensor('in2')", "a robot has one gyro"),
     ],

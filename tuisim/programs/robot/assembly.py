@@ -359,7 +359,9 @@ class _Builder:
             kinds[port] = kind
             rivals = [other for other, number in others if number]
             if rivals:
-                self.doubts.append(f"{port} is taken for a {kind}, not a {rivals[0]}")
+                self.doubts.append(
+                    f"{port} is taken for that of the {kind}, not of the {rivals[0]}"
+                )
         return kinds
 
     # Sensors
