@@ -343,8 +343,14 @@ def _find_no_screen(area: PanelArea) -> None:
         lambda area: area.ensure("debug"),
         lambda area: area.move_child(Static(), after=-1),
         _find_no_screen,
+        lambda area: Static().screen,
     ],
-    ids=["a panel is added", "what was not added is moved", "there is no screen any more"],
+    ids=[
+        "a panel is added",
+        "what was not added is moved",
+        "there is no screen any more",
+        "a widget is on no screen any more",
+    ],
 )
 async def test_a_change_when_the_app_ends_does_no_harm(change: Callable[[PanelArea], None]) -> None:
     async with open_lab("print('A: 1')\n", size=(80, 24)) as (_, app):

@@ -17,6 +17,7 @@ from textual import events, on
 from textual.app import App, ScreenStackError
 from textual.color import Color
 from textual.css.query import NoMatches
+from textual.dom import NoScreen
 from textual.driver import Driver
 from textual.filter import LineFilter
 from textual.screen import Screen
@@ -282,7 +283,9 @@ class BufferedApp(HookedApp):
         there is no screen.
         """
         cause = error.error if isinstance(error, WorkerFailed) else error
-        return is_leaving(self) and isinstance(cause, (WidgetError, NoMatches, ScreenStackError))
+        return is_leaving(self) and isinstance(
+            cause, (WidgetError, NoMatches, NoScreen, ScreenStackError)
+        )
 
 
 repair_textual(input_order.end_messages)
