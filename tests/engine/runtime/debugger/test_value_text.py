@@ -25,6 +25,16 @@ class Text(str):
     """A text of its own kind."""
 
 
+class SpeedPercent:
+    """As in ev3dev2: it has words, and no representation."""
+
+    def __init__(self, percent: int) -> None:
+        self.percent = percent
+
+    def __str__(self) -> str:
+        return f"{self.percent}%"
+
+
 class Plain:
     """Without a text of its own."""
 
@@ -42,6 +52,7 @@ TEXTS: dict[str, tuple[object, str]] = {
     "many": (list(range(100)), f"[{', '.join(map(str, range(MAX_ITEMS)))}, … 100 items]"),
     "array": (np.zeros((2, 3)), "array(shape=(2, 3), dtype=float64)"),
     "text of its own kind": (Text("x"), "'x'"),
+    "words for print only": (SpeedPercent(30), "SpeedPercent(30%)"),
 }
 
 

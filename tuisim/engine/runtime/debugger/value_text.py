@@ -117,7 +117,9 @@ def _own_text(value: Any) -> str:
     if kind.__module__ == "numpy" and kind.__name__ == "ndarray":
         return cut(f"array(shape={value.shape}, dtype={value.dtype})")
     # `str.__str__` makes an exact `str`, even if the program's `__repr__` returned an object of a subclass.
-    text = _ADDRESS.sub("", str.__str__(repr(value))[: 2 * MAX_CHARACTERS])
+    is_named = kind.__repr__ is object.__repr__ and kind.__str__ is not object.__str__
+    shown = f"{kind.__name__}({value})" if is_named else str.__str__(repr(value))
+    text = _ADDRESS.sub("", shown[: 2 * MAX_CHARACTERS])
     return cut(text[:MAX_CHARACTERS] + ("…" if len(text) > MAX_CHARACTERS else ""))
 
 
