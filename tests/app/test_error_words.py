@@ -60,8 +60,8 @@ def test_the_cause_of_an_error_comes_first_in_a_short_row(
     "words, told",
     [
         (PORT, "no ColorSensor on in1: in1 us, in2 color, in4 gyro. {robot} chooses another robot"),
-        (TYPO, "{went-wrong} goes to where it went wrong"),
-        ("ValueError: no", "{went-wrong} goes to where it went wrong"),
+        (TYPO, "{went-wrong} goes there"),
+        ("ValueError: no", "{went-wrong} goes there"),
     ],
 )
 def test_the_remedy_is_told(words: str, told: str) -> None:

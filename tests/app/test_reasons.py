@@ -118,7 +118,7 @@ async def test_after_a_run_that_went_wrong_the_footer_names_it() -> None:
         await run_from_start(pilot, app, "print(colour)\n")
         await until(pilot, lambda: "! wrong?" in screen_text(app))
         assert "│ d edit l analyse" in screen_text(app)
-        assert "! goes to where it went wrong" in screen_text(app)
+        assert "! goes there" in screen_text(app)
 
 
 GOALS = """\

@@ -67,7 +67,7 @@ def find_remedy(words: str) -> str:
     About a mistyped name nothing more is said, as the error itself names the right one.
     """
     if (parts := _list_parts(words)) is None:
-        return "{went-wrong} goes to where it went wrong"
+        return "{went-wrong} goes there"
     return f"{_describe_missing(words)}: {parts}. {{robot}} chooses another robot"
 
 
