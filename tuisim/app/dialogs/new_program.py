@@ -63,11 +63,11 @@ class SkeletonSensor(NamedTuple):
 _LIGHT = "reflected_light_intensity_pc"
 READINGS = {
     "colorLeft": SkeletonSensor(
-        *("left light sensor", "Light", _LIGHT, "ColorSensor(INPUT_2)", "> 5"),
+        *("left light sensor", "Light", _LIGHT, "ColorSensor(INPUT_2)", "> 6"),
         *("reflection", "ColorSensor(Port.C)"),
     ),
     "colorRight": SkeletonSensor(
-        *("right light sensor", "Light", _LIGHT, "ColorSensor(INPUT_3)", "> 5"),
+        *("right light sensor", "Light", _LIGHT, "ColorSensor(INPUT_3)", "> 6"),
         *("reflection", "ColorSensor(Port.D)"),
     ),
     "ultrasonic": SkeletonSensor(
