@@ -73,3 +73,25 @@ def test_a_program_that_only_defines_is_told(text: str, definition: tuple[int, s
     else:
         line, call = definition
         assert idle == (line, f"the program only defines, and calls nothing: {call} is missing")
+
+
+@cases(
+    "text, slip",
+    {
+        "seconds as ms": (
+            "robot.drive(200, 0)\nwait(3)\nrobot.stop()\n",
+            (2, "wait(3) waits only 3 ms: wait(3000) waits 3 s"),
+        ),
+        "in a loop": (
+            "while 1:\n    motor.run(200)\n    wait(0.5)\n    motor.brake()\n",
+            (3, "wait(0.5) waits only 0.5 ms: wait(500) waits 0.5 s"),
+        ),
+        "long": ("robot.drive(200, 0)\nwait(300)\nrobot.stop()\n", None),
+        "no stop": ("robot.drive(200, 0)\nwait(3)\nrobot.drive(0, 9)\n", None),
+        "a wait of something else": ("robot.drive(200, 0)\nself.wait(3)\nrobot.stop()\n", None),
+    },
+)
+def test_a_move_that_stops_after_some_milliseconds_is_named(
+    text: str, slip: tuple[int, str] | None
+) -> None:
+    assert find_slip(text) == slip

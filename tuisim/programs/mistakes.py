@@ -28,7 +28,10 @@ def find_fault(text: str) -> tuple[str, int] | None:
 
 def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
     """Yield the first line with each kind of slip, such as a stop without `()`, and what is wrong with it, in words."""
-    for find_slip in _find_uncalled_method, _find_equal_branches, _find_idle_comparison:
+    for find_slip in (
+        *(_find_uncalled_method, _find_equal_branches, _find_idle_comparison),
+        _find_short_wait,
+    ):
         if slip := find_slip(tree):
             yield slip
 
@@ -135,3 +138,26 @@ def _describe_idle(test: ast.Compare, function: str) -> str:
             return f"{words} only compares: {name} = {ast.unparse(value)} sets it"
         case _:
             return f"{words} alone does nothing: the answer is not used"
+
+
+_MAX_SLIP_MS = 20
+"""In this time a motor hardly begins to turn."""
+_STARTS = ("drive", "run", "dc")
+_STOPS = ("stop", "brake", "hold")
+
+
+def _find_short_wait(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first line that waits for seconds, as it seems, between start and stop, where Pybricks has ms."""
+    for node in ast.walk(tree):
+        block = getattr(node, "body", [])
+        body = block if isinstance(block, list) else []
+        for calls in zip(body, body[1:], body[2:], strict=False):
+            match [getattr(call, "value", None) for call in calls]:
+                case (
+                    ast.Call(func=ast.Attribute(attr=start)),
+                    ast.Call(func=ast.Name(id="wait"), args=[ast.Constant(int() | float() as ms)]),
+                    ast.Call(func=ast.Attribute(attr=stop)),
+                ) if start in _STARTS and stop in _STOPS and ms <= _MAX_SLIP_MS:
+                    text = f"wait({ms}) waits only {ms} ms: wait({ms * 1000:g}) waits {ms} s"
+                    return calls[1].lineno, text
+    return None
