@@ -7,7 +7,12 @@ import pytest
 from tests.cases import cases
 from tests.tasks.reasons.runs import run_text
 from tuisim.tasks.reasons import unmet
-from tuisim.tasks.reasons.unmet import find_early_end, find_near_miss, find_unmet
+from tuisim.tasks.reasons.unmet import (
+    find_early_end,
+    find_near_miss,
+    find_stale_angle,
+    find_unmet,
+)
 
 BANDS = "# %%sim_magic_preloaded -b Grey_bands\n"
 DRIVES = f"{BANDS}tank_drive.on(SpeedPercent(40), SpeedPercent(40))\n"
@@ -120,6 +125,29 @@ def test_a_loop_that_goes_on_says_what_came_between_two_reads() -> None:
 
 def test_a_loop_that_reads_often_misses_no_band() -> None:
     assert find_near_miss(run_text(SELDOM.format(limit=10, pause=0.01))) is None
+
+
+SQUARE = """\
+# %%sim_magic_preloaded -b Empty_Map -x 800 -y 500
+for side in range(3):
+    tank_drive.on_for_rotations(SpeedPercent(40), SpeedPercent(40), 0.5)
+    tank_drive.on(SpeedPercent(30), SpeedPercent(-30))
+    while gyro.angle < 90:
+        pass
+    tank_drive.off()
+"""
+
+
+def test_a_turn_that_ends_at_once_names_the_gyro_that_nobody_reset() -> None:
+    stale = find_stale_angle(run_text(SQUARE))
+    assert stale is not None and stale.line == 5
+    assert stale.text.startswith("the gyro on in4 was at 90° already when the loop began again")
+    assert (
+        find_stale_angle(
+            run_text(SQUARE.replace("    tank_drive.off", "    gyro.reset()\n    tank_drive.off"))
+        )
+        is None
+    )
 
 
 OLD_LIBRARY = """\

@@ -26,7 +26,12 @@ from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.reasons.blank_mat import describe_blank_mat
 from tuisim.tasks.reasons.subjects import Subject
-from tuisim.tasks.reasons.unmet import find_early_end, find_near_miss, find_recount
+from tuisim.tasks.reasons.unmet import (
+    find_early_end,
+    find_near_miss,
+    find_recount,
+    find_stale_angle,
+)
 from tuisim.tasks.reasons.waited_words import Wait, find_waits
 
 if TYPE_CHECKING:
@@ -219,7 +224,7 @@ def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[
     from tuisim.tasks.reasons.unwatched import find_unwatched
 
     mat = run.open_mat() if mat is None else mat
-    if missed := find_near_miss(run, mat):
+    if missed := find_near_miss(run, mat) or find_stale_angle(run, mat):
         yield Reason(ReasonKind.LOST, missed.time_s, missed.line, missed.text)
     records = run.telemetry.array()
     read_ticks = _find_read_ticks(run, len(records))

@@ -27,6 +27,13 @@ from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.programs.facts import LoopEnd, read_facts
 from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.reasons.one_colour import describe_colors, name_limit, name_seen
+from tuisim.tasks.reasons.read_columns import (
+    COLUMNS,
+    COLUMNS_BY_MODE,
+    LIGHT_COLUMNS,
+    RED,
+    TURN_COLUMNS,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -55,41 +62,6 @@ _WORDS = {
     "==": "exactly {}",
     "!=": "anything but {}",
 }
-_LIGHT = ("red_pc", "mean_pc")
-_RED = ("red_pc", 1.0, "")
-_DEGREES = ("deg", 1.0, "°")
-_DISTANCE = ("mm", 1.0, " mm")
-_COLUMNS: Mapping[str, tuple[str, float, str]] = {
-    "reflected_light_intensity": _RED,
-    "reflected_light_intensity_pc": ("red_pc", 1.0, " %"),
-    "reflection": ("red_pc", 1.0, " %"),
-    "full_reflected_light_intensity": ("mean_pc", 1.0, " %"),
-    "color": ("color", 1.0, ""),
-    "color_name": ("color", 1.0, ""),
-    "angle": _DEGREES,
-    "heading": _DEGREES,
-    "rate": ("rate_dps", 1.0, "°/s"),
-    "distance_centimeters": ("mm", 0.1, " cm"),
-    "distance_inches": ("mm", 1 / 25.4, " in"),
-    "distance": _DISTANCE,
-    "proximity": ("proximity", 1.0, " %"),
-}
-"""What programs read: the end of its column's name, the factor from the column's unit to theirs, and theirs."""
-_VALUES: Mapping[str, tuple[str, float, str]] = {
-    "COL-REFLECT": _RED,
-    "COL-COLOR": ("color", 1.0, ""),
-    "GYRO-ANG": _DEGREES,
-    "US-DIST-CM": _DISTANCE,
-    "IR-PROX": ("proximity", 1.0, " %"),
-}
-"""As `_COLUMNS`, for `value()`, by mode."""
-_TURNS: Mapping[str, tuple[str, float, str]] = {
-    "position": _DEGREES,
-    "degrees": _DEGREES,
-    "angle": _DEGREES,
-    "rotations": ("deg", 1 / 360, " rotations"),
-}
-"""As `_COLUMNS`, for the motor of a wheel."""
 _NOUNS: Mapping[type[SensorSpec], str] = {
     ColorSensorSpec: "colour sensor",
     UltrasonicSpec: "ultrasonic sensor",
@@ -145,6 +117,16 @@ def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
         mat: Its mat; None opens it.
     """
     return _find_first(_Search.find_near_misses, run, mat)
+
+
+def find_stale_angle(run: StoredRun, mat: Field | None = None) -> Unmet | None:
+    """Return a loop that ended at once because nobody had reset the gyro; None if none did, or if that is not known.
+
+    Args:
+        run: The run.
+        mat: Its mat; None opens it.
+    """
+    return _find_first(_Search.find_stale_angles, run, mat)
 
 
 def find_recount(run: StoredRun, mat: Field | None = None) -> Unmet | None:
@@ -248,7 +230,7 @@ class _Search:
             stay = self._find_stay(loop)
             has_left = is_finished or (stay and stay[1] < len(self._records))
             series = self._measure(loop, stay) if stay and has_left else None
-            if not stay or not series or series.column not in _LIGHT:
+            if not stay or not series or series.column not in LIGHT_COLUMNS:
                 continue
             if miss := self._find_miss(loop, series):
                 yield miss
@@ -276,11 +258,31 @@ class _Search:
                     text = f"{text} {_round(first)}{series.unit}, already {goal}"
                     yield Unmet(series.ticks[0] / self._hz, loop.line, text)
 
+    def find_stale_angles(self) -> Iterator[Unmet]:
+        """Yield loops that waited for an angle of the gyro at first, and ended at once when they began again."""
+        import numpy as np
+
+        lines = self._records["line"]
+        for loop in self._loops:
+            series = self._measure(loop, (0, len(self._records)))
+            if series is None or not series.device.startswith("the gyro") or series.column != "deg":
+                continue
+            left = np.cumsum((lines < loop.first_line) | (lines > loop.last_line))[series.ticks]
+            begins = np.flatnonzero(np.diff(left)) + 1
+            is_met = COMPARE[loop.operator](series.values, loop.limit)
+            stale = begins[is_met[begins]]
+            if len(stale) and not is_met[0]:
+                text = (
+                    f"{series.device} was at {_round(series.values[stale[0]])}{series.unit} already when "
+                    "the loop began again, so that it ended at once: reset the angle before the loop"
+                )
+                yield Unmet(series.ticks[stale[0]] / self._hz, loop.line, text)
+
     def find_recounts(self) -> Iterator[Unmet]:
         """Yield lines that counted at two readings in a row while the robot moved."""
         for line, test in read_facts(self._run.program).counts:
             series = self._measure(test, (0, len(self._records)))
-            if series is None or series.column not in _LIGHT or isinstance(test.limit, str):
+            if series is None or series.column not in LIGHT_COLUMNS or isinstance(test.limit, str):
                 continue
             is_met = COMPARE[test.operator](series.values, test.limit)
             x_mm, y_mm = (self._records[name][series.ticks] for name in ("x_mm", "y_mm"))
@@ -347,7 +349,7 @@ class _Search:
         if isinstance(loop.limit, str) or COMPARE[loop.operator](series.values, loop.limit).any():
             return ""
         goal = _name_goal(loop, f"{loop.limit:g}{series.unit}")
-        skip = self._find_skip(loop, stay, series) if series.column in _LIGHT else None
+        skip = self._find_skip(loop, stay, series) if series.column in LIGHT_COLUMNS else None
         came = skip[1] if skip else self._name_nearest(loop, series)
         return f"{series.device} to read {goal}: {came}"
 
@@ -438,16 +440,18 @@ class _Search:
         if wheel := self._find_wheel(ports):
             return self._measure_wheel(loop, wheel, ports[0], ticks)
         mode = READING_MODES[rows["mode"][0]]
-        read = _VALUES.get(mode) if loop.attribute == "value" else _COLUMNS.get(loop.attribute)
+        read = (
+            COLUMNS_BY_MODE.get(mode) if loop.attribute == "value" else COLUMNS.get(loop.attribute)
+        )
         if len(sensors) != 1 or read is None:
             return None
         return self._measure_sensor(loop, sensors[0], read, ticks)
 
     def _measure_wheel(self, loop: LoopEnd, wheel: str, port: str, ticks: Array) -> _Series | None:
         """Return the position of a wheel's motor at some ticks; None if the loop reads another attribute of it."""
-        if loop.attribute not in _TURNS:
+        if loop.attribute not in TURN_COLUMNS:
             return None
-        column, factor, unit = _TURNS[loop.attribute]
+        column, factor, unit = TURN_COLUMNS[loop.attribute]
         values = self._records[f"{wheel}_position_{column}"][ticks] * factor
         values = values * self._scales.get(port, 1.0)
         return _Series(f"the motor on {port}", column, unit, ticks, values)
@@ -473,7 +477,7 @@ class _Search:
         if name not in columns:
             return None
         values = columns[name] * factor
-        if read is _RED:
+        if read is RED:
             values = np.floor(values * spec.profile.reflected_max / 100)
         elif loop.attribute == "reflection":
             values = np.floor(values)
