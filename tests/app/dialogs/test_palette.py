@@ -37,6 +37,8 @@ ENTRIES = [
         ("charts", "panel-chart"),
         ("chrat", "panel-chart"),
         ("brekpoint", "break"),
+        ("how do I export to excel", "export"),
+        ("where is the chart?", "panel-chart"),
     ],
 )
 def test_words_that_people_use_find_an_action(typed: str, first: str) -> None:

@@ -25,6 +25,22 @@ _BESIDE = 10
 _OUTSIDE = 4
 """Cells beside the frame in a narrow terminal."""
 _SHOW = "show or hide "
+_QUESTION_WORDS = (
+    "how",
+    "what",
+    "where",
+    "do",
+    "does",
+    "can",
+    "i",
+    "to",
+    "the",
+    "a",
+    "my",
+    "of",
+    "in",
+    "is",
+)
 _MIN_ROWS, _OTHER_ROWS = 16, 5
 """Minimum number of rows of a long list, and the number of rows of the frame around it."""
 
@@ -45,11 +61,14 @@ class Entry(NamedTuple):
 def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
     """Return the entries that contain every word of a text; for a word that none contains, the one most like it counts.
 
+    The small words of a question are left out.
+
     They are ranked by where the words are: the start of the title, or of what it shows or hides; the starts of words of
     the title; anywhere in title or group; among the further words. Of equals, entries that show or hide something come
     first.
     """
-    words = typed.lower().split()
+    typed_words = typed.lower().rstrip("?").split()
+    words = [word for word in typed_words if word not in _QUESTION_WORDS] or typed_words
     texts = {entry.id: " ".join(entry[1:5]).lower() for entry in entries}
     known = " ".join(texts.values())
     words = [
