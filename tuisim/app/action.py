@@ -141,13 +141,13 @@ _ID = re.compile(r"\{([a-z-]+)\}")
 
 
 class ActionHost(DOMNode):
-    """An app or a screen whose keys are lines of a table; the command palette offers them by title."""
+    """An app or a screen that runs the action of a pressed key; the command palette lists the actions by title."""
 
     ACTIONS: Mapping[str, Action[Any, Any]] = {}
     """The lines by id."""
 
     def take_keys(self, actions: Mapping[str, Action[Any, Any]]) -> None:
-        """Replace the table by one with the same actions, some of them with other keys, and bind those keys."""
+        """Replace the table of actions by one with the same actions, and bind the keys that differ."""
         changed = [
             action for name, action in actions.items() if action.key != self.ACTIONS[name].key
         ]
@@ -166,7 +166,7 @@ class ActionHost(DOMNode):
         self.ACTIONS = actions
 
     def find_situation(self) -> Any:
-        """Return the state that decides which keys are available."""
+        """Return the state that decides which actions are available; an action's `why_not` gets it."""
 
     def action_target(self) -> Any:
         """Return the argument that the functions of the actions get."""
@@ -242,7 +242,7 @@ _COLUMNS_FOR_ONE = 20
 
 
 def find_max_entries(columns: int) -> int:
-    """Return how many entries the footer has at most in a terminal of that width."""
+    """Return how many entries the footer may show in a terminal with this number of columns."""
     return _FEWEST + max(0, columns - _FEWEST_AT) // _COLUMNS_FOR_ONE
 
 
@@ -282,7 +282,7 @@ def _find_key_label(action: Action[Any, Any]) -> str:
 
 
 class ActionWords(Widget):
-    """A widget with words that stand for actions, named in their style; a click runs one."""
+    """A widget with clickable words: a click on a word runs the action that the word's style names."""
 
     ALLOW_SELECT = False
 
@@ -301,7 +301,7 @@ async def press(screen: Screen[Any], key: str) -> None:
 
 
 def _find_key(x: int, words: Iterable[KeyWord]) -> str:
-    """Return the key whose words are at a column; empty if there is none."""
+    """Return the key of the entry at column `x` of a row of entries; empty if `x` is behind the last one."""
     end = 0
     for key, word in words:
         end += len(key) + len(word) + 2

@@ -106,7 +106,7 @@ _AWAKE_S = 1.0
 
 @dataclass(frozen=True, slots=True)
 class AppSettings:
-    """Everything the command line decides about the app."""
+    """Everything that the command line decides about the app."""
 
     spec: RunSpec
     settings: Settings | None = None
@@ -208,7 +208,7 @@ class LabApp(PanelMessages):
         """How the run ended, for the output panel once it has shown every row."""
 
     def _take_config(self, config: UserConfig) -> tuple[ConfigError, ...]:
-        """Use the user's own keys; return everything that is wrong in the file."""
+        """Bind the user's own keys; return the errors in the user's settings."""
         problems = [*config.problems]
         try:
             self.take_keys(apply_keys(ACTIONS, config))
@@ -221,12 +221,12 @@ class LabApp(PanelMessages):
         return tuple(problems)
 
     def complain(self, error: TuisimError) -> None:
-        """Show an error, also in the cell of a notebook that has caused it."""
+        """Show an error in the app, and also in the notebook cell that has caused it."""
         self.tell_server("problem", text=str(error))
         super().complain(error)
 
     def _tell_config(self) -> None:
-        """Tell what is wrong in `config.toml`, or what it decides about the run."""
+        """Show the errors in `config.toml`, and which settings of the run come from it or were decided by the app."""
         for error in self._config_problems[:MAX_PROBLEMS]:
             self.complain(error)
         if self.settings.from_config:
@@ -281,7 +281,7 @@ class LabApp(PanelMessages):
         time_travel.go_to_now(self.context)
 
     def _waits(self, event: events.Event) -> bool:
-        """Return whether an event has to wait; keys that start or need a run also wait until the mat is prepared."""
+        """Return whether an event has to wait; a key that needs a run also waits until the mat is prepared."""
         if self.settings.welcomes and not self.has_greeted:
             return True
         needs_mat = getattr(event, "key", "") in RUN_KEYS and len(self.screen_stack) == 1
@@ -302,7 +302,11 @@ class LabApp(PanelMessages):
     # The world
 
     def show_mat(self, pixels: Pixels | None) -> None:
-        """Show the image of the prepared mat, None if it is shown already; then start a run that waits for the mat."""
+        """Show the image of the prepared mat; then start the run that was waiting for the mat, if any.
+
+        Args:
+            pixels: The image; None if the world panel shows it already.
+        """
         if pixels is not None and (world := self.panel_area.world):
             world.set_mat(pixels)
         self.draw(force=True)
@@ -321,10 +325,10 @@ class LabApp(PanelMessages):
     # A run
 
     def start_run(self, paused: bool = False) -> bool:
-        """Start the program, as soon as the mat is ready. Return whether it has started.
+        """Start the program, or let it start when the mat is ready. Return whether it has started.
 
         Args:
-            paused: Pause it at its first line.
+            paused: Whether the program pauses at its first line.
         """
         if not self.loader.mat_is_ready:
             self._run_when_ready = not paused
@@ -395,13 +399,13 @@ class LabApp(PanelMessages):
             self._frame_timer.pause()
 
     def _set_frame_gap(self, gap_s: float) -> None:
-        """Poll the run, and draw, at this interval from now on."""
+        """From now on, poll the run and draw a frame every `gap_s` seconds."""
         if self._frame_timer is not None:
             self._frame_timer.stop()
         self._frame_timer = self.set_interval(gap_s, self._on_frame_timer)
 
     def _is_starting(self) -> bool:
-        """Return whether the run is starting: a frame drawn now would delay the one that shows its first tick."""
+        """Return whether the run is starting: a frame drawn at this moment would delay the one with its first tick."""
         if not self._starting_until_s:
             return False
         runs = self.run_controller
@@ -425,7 +429,7 @@ class LabApp(PanelMessages):
         return time.monotonic() < self._awake_until_s
 
     def _wake(self) -> None:
-        """Poll the run at frame rate for a while: something has happened."""
+        """Poll the run at the full frame rate for a while, since something has happened."""
         self._awake_until_s = time.monotonic() + _AWAKE_S
         if self._frame_timer:
             self._frame_timer.resume()
@@ -511,7 +515,11 @@ class LabApp(PanelMessages):
         return True
 
     def handle_painted(self, size: int) -> None:
-        """Ask the terminal to report when it has shown what it was sent; the answer is a `CursorPosition` event."""
+        """Ask the terminal to report when it has shown the frame that was sent; its answer is a `CursorPosition` event.
+
+        Args:
+            size: Length of the codes of the frame, in characters.
+        """
         if self.pacer.record_painted(size) and self.own_driver is not None:
             self.own_driver.write(_CURSOR_QUERY)
 
@@ -520,11 +528,11 @@ class LabApp(PanelMessages):
 
     @on(Driver.SignalResume)
     def pace_again(self) -> None:
-        """Do not wait for answers any longer: the terminal was away, or another page has taken its place."""
+        """Stop waiting for the terminal's answers: it was suspended, or another browser page has taken its place."""
         self.pacer.record_interruption()
 
     def handle_situation_change(self) -> None:
-        """Update the footer; when the run has stopped, draw the panels with it, so that neither is ahead."""
+        """Update the footer; when the run has stopped, draw the panels with it, so that both change together."""
         self._wake()
         state = self.state()
         has_stopped = state.run.state in AT_REST and self._drawn[0][0] not in (
@@ -535,7 +543,7 @@ class LabApp(PanelMessages):
             self._show_footer(state)
 
     def find_situation(self) -> Situation:
-        """Return the state that decides which keys are available."""
+        """Return the state of the app that decides which keys are available."""
         return self._build_situation(self.run_controller.state)
 
     def _build_situation(self, phase: RunPhase) -> Situation:
@@ -565,7 +573,7 @@ class LabApp(PanelMessages):
         return self.context
 
     def state(self) -> AppState:
-        """Return everything that panels and footer show, at the instant in view."""
+        """Return everything that the panels and the footer show, at the instant in view."""
         run = self.run_controller.build_snapshot()
         playing = self.run_controller.timeline.playing
         return AppState(run, self._build_situation(run.state), self._looks_back, playing)
@@ -628,7 +636,10 @@ class LabApp(PanelMessages):
     # What the user does
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave the keys that scroll lesson or code to the widget with the focus if they would scroll neither."""
+        """Return whether a key runs an action of the app.
+
+        The keys that scroll the lesson or the code go to the focused widget if they would scroll neither.
+        """
         if action == "act" and parameters[0] in PAGES:
             return accept_page_keys(self.panel_area)
         if action == "act" and parameters[0] in TEXT_KEYS:
@@ -636,7 +647,7 @@ class LabApp(PanelMessages):
         return super().check_action(action, parameters)
 
     def action_leave_field(self) -> None:
-        """Leave an input field; from the world, return from the past."""
+        """Move the focus from a field to the world; if it is there already, leave the past for the newest instant."""
         if self.debugger.is_away and self.focused in (None, self.panel_area.world):
             self.go_to_now()
         self.panel_area.focus_world()
@@ -646,7 +657,7 @@ class LabApp(PanelMessages):
         self.action_leave_field()
 
     def on_server_asks(self, message: ServerAsks) -> None:
-        """Do what the server of the page asks for, see `do_asked`."""
+        """Do what the web server of the page requests, see `do_asked`."""
         do_asked(self.context, message.asked)
 
 

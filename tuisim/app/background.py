@@ -42,10 +42,10 @@ def run(
     group: str = "default",
     exclusive: bool = False,
 ) -> None:
-    """Run a function in a thread, and pass on what it returns. Does not block.
+    """Run a function in a thread, and pass its result to `then`. Does not block.
 
-    Cancelled work, whose node is gone or which other work has replaced, goes on in its thread: it still passes on its
-    result, but no error. Nothing is passed on while the app shuts down.
+    If the node is removed or other work replaces this one, the function still runs to its end in its thread: `then` is
+    called, but `failed` is not. While the app shuts down, neither is called.
 
     Args:
         node: The app, screen or widget that the work belongs to.
@@ -66,16 +66,23 @@ def begin(
     group: str = "default",
     exclusive: bool = False,
 ) -> None:
-    """Run a coroutine function in the app's loop, as work of a node. Does not block."""
+    """Run a coroutine function in the app's event loop until it ends or its node is removed. Does not block.
+
+    Args:
+        node: The app, screen or widget that the work belongs to.
+        work: The function.
+        group: Name of the group of the work.
+        exclusive: Cancel other work of the group.
+    """
     # The function itself is passed: a node that is being removed would never await its coroutine.
     called_later: Any = work
     node.run_worker(called_later, group=group, exclusive=exclusive)
 
 
 async def _run_and_wait(work: Callable[[], None]) -> None:
-    """Call a function in a thread of its own.
+    """Call a function in a thread of its own, and wait until it returns.
 
-    An app that has been left would wait for a thread of asyncio, however long the function takes.
+    A thread of asyncio would keep the process of a closed app alive until the function returns.
     """
     loop = asyncio.get_running_loop()
     done: asyncio.Future[None] = loop.create_future()
@@ -105,23 +112,23 @@ async def _run_and_wait(work: Callable[[], None]) -> None:
 
 
 def start(work: Callable[[], object]) -> None:
-    """Run a function in a thread; nobody gets what it returns."""
+    """Run a function in a thread, and ignore what it returns. Does not block."""
     _threads[:] = [thread for thread in _threads if thread.is_alive()]
     _threads.append(Thread(target=work, daemon=True))
     _threads[-1].start()
 
 
 def enter() -> None:
-    """Begin an app: objects that exist by now, such as modules, are left out of garbage collections, which are rare."""
+    """Prepare Python's garbage collector for an app: existing objects are never collected, and collections are rare."""
     gc.freeze()
     gc.set_threshold(COLLECT_EVERY)
 
 
 def leave(code: int) -> int:
-    """Return the exit code of an app that has been left; end the process here if threads are still at work.
+    """Wait for a moment until the threads of a closed app have written their files; return its exit code.
 
-    A user who has left waits for nothing but, for a moment, for files that are being written. Those that are not
-    finished by then are dropped, which is said.
+    If threads are still at work then, end the process here with that code, and name on stderr the files that were not
+    written.
     """
     give_up = time.monotonic() + FINISHES_WITHIN_S
     while any(thread.is_alive() for thread in _threads):
@@ -160,9 +167,9 @@ def _run_in_worker(
 def call(
     app: App[Any], function: Callable[Given, None], *args: Given.args, **kwargs: Given.kwargs
 ) -> None:
-    """Call a function in the app's thread, from a thread; without effect while the app shuts down.
+    """Call a function in the app's thread, from another thread, and wait until it returns.
 
-    Blocks until the function has returned.
+    While the app shuts down, the function is not called.
     """
     if not is_leaving(app):
         app.call_from_thread(function, *args, **kwargs)

@@ -39,7 +39,7 @@ _WORLD_FIELDS = (
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """A run that leaves another one at an instant."""
+    """A run that repeats another run up to an instant, and then differs by a user action or an edited program."""
 
     of: Recording
     tick: int
@@ -51,12 +51,12 @@ class Branch:
 
     @property
     def time_s(self) -> float:
-        """The instant in simulated seconds."""
+        """The instant of the branch, in simulated seconds."""
         return self.tick / self.of.spec.profile.tick_hz
 
     @property
     def edited(self) -> bool:
-        """Whether the program differs from that of the former run."""
+        """Whether the program of the branch differs from that of the former run."""
         return (self.program.text, self.program.prelude) != (
             self.of.program.text,
             self.of.program.prelude,
@@ -64,7 +64,7 @@ class Branch:
 
     @property
     def title(self) -> str:
-        """A description for messages."""
+        """The branch in words, for messages, such as `branch of run 12 at 3.50 s`."""
         return f"branch of {self.of.name} at {self.time_s:.2f} s"
 
     @property
@@ -74,18 +74,18 @@ class Branch:
 
     @property
     def noise(self) -> NoiseSpec:
-        """The noise from that instant on."""
+        """The noise of the branch from its instant on."""
         if isinstance(self.then, protocol.SetNoise):
             return NoiseSpec(self.then.light, self.then.motor)
         return self.of.find_noise(self.of.telemetry.record(self.tick))
 
     def script(self) -> tuple[UserAction, ...]:
-        """Return the user's actions up to that instant."""
+        """Return the user's actions in the former run up to the instant of the branch."""
         return tuple(action for action in self.of.actions() if action.tick <= self.tick)
 
     @property
     def runs(self) -> Program:
-        """The program to run: its present text, with the arguments and the answers of the former run."""
+        """The program that the branch runs: its present text, with the arguments and the answers of the former run."""
         return replace(
             self.of.program,
             name=self.program.name,
@@ -95,7 +95,7 @@ class Branch:
 
 
 def find_first_difference(before: Recording, now: Recording, tick: int) -> int | None:
-    """Return the first tick, up to a given one, at which the worlds of two runs differ or one has ended; or None."""
+    """Return the first tick up to `tick` at which the worlds of two runs differ, or only one run goes on; or None."""
     old, new = (run.telemetry.array()[: tick + 1] for run in (before, now))
     both = min(len(old), len(new))
     differs = np.zeros(both, bool)
@@ -107,7 +107,7 @@ def find_first_difference(before: Recording, now: Recording, tick: int) -> int |
 
 
 def build_branch_message(branch: Branch, now: Recording) -> str:
-    """Return the message for a branch that has reached its instant, or has ended before."""
+    """Return the notice that a run is a branch, with the time from which it differs from the former run, if it does."""
     differs = find_first_difference(branch.of, now, branch.tick)
     words = f"This is a {branch.title}" + (", of the edited program" if branch.edited else "")
     if differs is None:
@@ -119,7 +119,7 @@ def build_branch_message(branch: Branch, now: Recording) -> str:
 
 
 def action_words(action: protocol.Message | None) -> str:
-    """Return in words what a user action changes, for the end of a sentence; empty for nothing."""
+    """Return a user action as the end of a sentence, such as ` with the pen down`; empty for no action."""
     match action:
         case protocol.SetPose(x_mm=x, y_mm=y, heading_deg=heading):
             return f" with the robot at x {x:z.0f}, y {y:z.0f}, {heading:z.0f}°"

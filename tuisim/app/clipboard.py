@@ -30,7 +30,7 @@ _PICTURE = "screenshot"
 
 @dataclass(frozen=True, slots=True)
 class Copied:
-    """A text for the clipboard."""
+    """A text for the clipboard, with a name for the notice about it."""
 
     name: str
     """What it is, in words."""
@@ -39,7 +39,7 @@ class Copied:
 
 @runtime_checkable
 class CopiedPanel(Protocol):
-    """The additional interface of a panel that knows better what to copy than what is on the screen."""
+    """A panel that can choose the text for the clipboard itself, instead of its text on the screen."""
 
     def copy_text(self) -> Copied | None:
         """Return the text to copy now; None to copy the panel's text on the screen."""
@@ -53,7 +53,13 @@ def find_copied(panel: str, widget: Widget) -> Copied:
 
 
 def describe_world(now: Snapshot, mat: str, rows: Sequence[str]) -> Copied | None:
-    """Return the picture of the world with the readings below it; None without a picture."""
+    """Return the text to copy from the world panel: its picture in characters, and the readings below it.
+
+    Args:
+        now: The instant in view.
+        mat: Title of the mat.
+        rows: The picture; without any row, the result is None.
+    """
     from tuisim.app.panels.instrumentation import build_lines
 
     if not rows:
@@ -66,7 +72,7 @@ def describe_world(now: Snapshot, mat: str, rows: Sequence[str]) -> Copied | Non
 
 
 def describe_copy(panel: str, copied: Copied) -> str:
-    """Return the notice about a copy: what was copied, and in braces the action that writes a file of it."""
+    """Return the notice about a copy: what was copied, and in braces the id of the action that writes it to a file."""
     action = _WRITES.get(panel, _PICTURE)
     return f"{copied.name}: sent to the terminal's clipboard. {{{action}}} writes a file"
 

@@ -32,7 +32,7 @@ _GOES_ON = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.INSTANT})
 
 
 class DebugController:
-    """The debugger of the app.
+    """The debugger of the app: breakpoints, watches, steps by lines, and the variables at the instant in view.
 
     Args:
         app: Shows notices, and starts the program.
@@ -90,7 +90,7 @@ class DebugController:
         return source_lines(self._text)
 
     def load_breaks(self, program: Program | None) -> None:
-        """Update the breakpoints for another program or another text."""
+        """Load the stored breakpoints and watches of another program; mark the breakpoints in the present text."""
         key = program.file if program else ""
         if key != self._program:
             self._program = key
@@ -108,14 +108,14 @@ class DebugController:
             self.set_breaks(breaks)
 
     def set_breaks(self, breaks: tuple[Breakpoint, ...]) -> None:
-        """Set the breakpoints, in the run as well, and store them."""
+        """Replace the breakpoints by others, also in the live run, and store them."""
         self.breaks = breaks
         self._send_breakpoints()
         self._keep()
         self.mark()
 
     def _send_breakpoints(self) -> None:
-        """Send the breakpoints to the live run, each on its line of the text that runs."""
+        """Send the breakpoints to the live run, whose text may be older than the edited one: each on its line there."""
         lines = self._lines()
         texts = []
         for entry in self.breaks:
@@ -139,21 +139,26 @@ class DebugController:
                 self._app.complain(error)
 
     def mark(self) -> None:
-        """Show the breakpoints in the code."""
+        """Mark the breakpoints in the code panel."""
         if code := self._panel_area.code:
             marks = {line: _mark(entry) for line, entry in break_lines(self.breaks).items()}
             code.set_marks(marks, self._count_words)
 
     @property
     def _count_words(self) -> str:
-        """The number of active breakpoints in words; empty if each is on a line, where its mark shows it."""
+        """Return the number of active breakpoints in words, with the key of their dialog.
+
+        It is empty if all of them are on lines, where the code panel marks them.
+        """
         active = [entry for entry in self.breaks if not entry.disabled]
         if all(entry.find_line() for entry in active):
             return ""
         return self._app.fill_keys(f"{counted(len(active), 'breakpoint')}: {{breaks}}")
 
     def toggle_line(self, line: int, which: str = "") -> None:
-        """Set or remove the breakpoint on a line, or the next line of code; a disabled one is enabled. Say so.
+        """Set or remove the breakpoint on a line, or enable a disabled one, and show a notice about that.
+
+        A line without code stands for the next line of code.
 
         Args:
             line: From 1.
@@ -183,7 +188,7 @@ class DebugController:
 
     @property
     def current_line(self) -> int:
-        """The line shown as current, in the edited text; 0 if there is none."""
+        """The line of the edited text that is shown as current; 0 if there is none."""
         snapshot = self._run_controller.build_snapshot()
         return (
             self._lines().find_shown_line(snapshot.line)
@@ -194,7 +199,7 @@ class DebugController:
     # What comes from the run
 
     def run_changed(self) -> None:
-        """Reset the state because there is another run, or none any more."""
+        """Reset the debugger, because another run is in view, or none any more."""
         self._app.notices.release()
         self._paused = self.position = self.view = self._run_controller.paused_line = None
         self._run_controller.chosen_line = None
@@ -213,7 +218,7 @@ class DebugController:
         self.show()
 
     def handle_end(self) -> None:
-        """Handle the end of the run: it is no longer paused; a past instant stays in view."""
+        """Note that the run has ended, so that it is no longer paused; a past instant stays in view."""
         self._paused = None
         if not self.is_away:
             self._forget_steps()
@@ -257,7 +262,10 @@ class DebugController:
         self._inspect_again()
 
     def _set_tick_time(self, paused: Paused) -> Paused:
-        """Return a pause with the time of its tick, as every panel shows it: the program's own is somewhat later."""
+        """Return a pause with the time of its tick instead of the program's own time, which is somewhat later.
+
+        Every panel shows the time of the tick.
+        """
         hz = self._run_controller.timeline.tick_hz
         return replace(paused, time_ns=compute_due_ns(paused.tick, hz))
 
@@ -275,7 +283,7 @@ class DebugController:
 
     @property
     def looks_back(self) -> bool:
-        """Whether a past instant is viewed, even one within the newest tick."""
+        """Whether a past instant is in view, even one within the newest tick."""
         return self.position is not None or self._run_controller.timeline.at is not None
 
     @property
@@ -285,7 +293,7 @@ class DebugController:
 
     @property
     def is_away(self) -> bool:
-        """Whether a past instant is viewed, or will be once it is computed."""
+        """Whether a past instant is in view, or will be once it is computed."""
         return self.looks_back or self.busy
 
     @property
@@ -294,13 +302,17 @@ class DebugController:
         return protocol.Inspect(self.watches, self._thread, self._frame)
 
     def choose_frame(self, by: int) -> None:
-        """Select the caller of the current frame, or the function that it called."""
+        """Show the variables of another frame of the call stack.
+
+        Args:
+            by: Number of frames: positive towards the callers, negative towards the called functions.
+        """
         if self.view:
             self._frame = min(max(0, self._frame + by), max(0, len(self.view.inspected.stack) - 1))
             self._inspect_again()
 
     def choose_thread(self) -> None:
-        """Select the next thread."""
+        """Show the variables of the next thread of the program."""
         if self.view and (threads := self.view.inspected.threads):
             names = [thread.name for thread in threads]
             index = (
@@ -319,7 +331,7 @@ class DebugController:
             self._run_controller.send(self.inspect_request)
 
     def poll(self) -> None:
-        """Follow the instant in view and process what has been computed."""
+        """Process what the re-run of the program has computed, and request the variables at the instant in view."""
         self.replay.poll()
         timeline = self._run_controller.timeline
         if self.position is not None and timeline.at not in (None, self.position.tick):
@@ -335,10 +347,10 @@ class DebugController:
             self._follow(Position(timeline.at))
 
     def _has_past_variables(self) -> bool:
-        """Return whether the program is run again up to an instant in view, for the values of its variables.
+        """Return whether the program is to run again up to a past instant in view, to get the values of its variables.
 
-        The debug panel needs that. If only the code is shown, it is done for runs of this session, not for stored ones,
-        whose programs may be somebody else's.
+        The debug panel needs them. If only the code panel is shown, this is done for runs of this session, not for
+        stored ones, whose programs may be somebody else's.
         """
         run = self._run_controller.run
         recording = self._run_controller.timeline.recording
@@ -346,15 +358,15 @@ class DebugController:
         return self._panel_area.is_shown("debug") or (is_own and self._panel_area.is_shown("code"))
 
     def choose_line(self, tick: int, line: int) -> None:
-        """Choose the line to show at the instant to go to next, such as the line that printed a sample; 0 for none.
+        """Choose the line to show at the tick that is shown next, such as the line that printed a sample; 0 for none.
 
-        It stays the line of this instant until another instant, or another line of it, is gone to.
+        It stays the line of this tick until another tick, or another line of it, comes into view.
         """
         self._run_controller.chosen_line = (tick, line) if line else None
         self.position = self._wanted = None
 
     def go_to_now(self) -> None:
-        """Return to the newest instant, also from earlier lines of its own tick."""
+        """Return to the newest instant, even from an earlier line of the newest tick."""
         self.position = None
         self._steps.clear()
         if self.replay.busy:
@@ -411,7 +423,7 @@ class DebugController:
         self._take_step()
 
     def _is_past(self, at: Position) -> bool:
-        """Return whether an instant is in the past; a re-run may get farther than the current run."""
+        """Return whether a position is before the newest one of the run; a re-run may get farther than that."""
         now = self._paused
         if now is None or now.ordinal == UNKNOWN_ORDINAL:
             return at.tick <= (self._run_controller.timeline.newest if now is None else now.tick)
@@ -450,7 +462,7 @@ class DebugController:
     # Steps
 
     def _find_position(self) -> Position | None:
-        """Return the instant in view, exact to the line as far as that is known."""
+        """Return the position in view, with the executed line if that is known; None before the first tick."""
         timeline = self._run_controller.timeline
         if self.position is not None:
             return self.position
@@ -461,11 +473,11 @@ class DebugController:
         return Position(timeline.newest) if timeline.recording and timeline.newest >= 0 else None
 
     def step(self, how: protocol.LineStep) -> None:
-        """Step to the next line: of the live program, or as recorded."""
+        """Step to the next line: the recorded one if the past is in view, else that of the live program."""
         self.go_on(protocol.StepLine(how))
 
     def run_to(self, line: int) -> None:
-        """Continue until a line is about to run."""
+        """Continue until the program is about to execute a line of the edited text."""
         run_controller = self._run_controller
         runs = self._lines().find_run_line(line) if run_controller.in_run or self.is_away else line
         if runs:
@@ -474,7 +486,11 @@ class DebugController:
             self._app.say("This line is not in the running text")
 
     def go_on(self, command: Message) -> None:
-        """Send a command that continues the program until it pauses again, once the step on its way has arrived."""
+        """Send a command that continues the program until it pauses again; without a run, start the program first.
+
+        While an earlier step has not ended, the command waits for it. If the past is in view, the step is a recorded
+        one.
+        """
         if self.is_away:
             self._step_past(command)
         elif self._run_controller.in_run and self._is_stepping:
@@ -521,7 +537,7 @@ class DebugController:
             self._steps.append(1)
 
     def _take_step(self) -> None:
-        """Take the next of the steps that wait."""
+        """Take the next of the steps that wait for an earlier step, if there is one."""
         match self._steps.popleft() if self._steps else None:
             case int(count):
                 self._go_back(count)
@@ -541,7 +557,7 @@ class DebugController:
         self.show()
 
     def close(self) -> None:
-        """Stop the debugger's processes."""
+        """Stop the process that runs programs again for past variables."""
         self.replay.close()
 
 
@@ -552,7 +568,7 @@ def _mark(one: Breakpoint) -> str:
 
 
 def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
-    """Return the line breakpoints by line; if a line has several, an enabled one takes precedence."""
+    """Return the breakpoints that are on lines, by line; of several on a line, an enabled one."""
     by_line: dict[int, Breakpoint] = {}
     for point in sorted(breaks, key=lambda point: not point.disabled):
         line = point.find_line()

@@ -21,13 +21,13 @@ def is_comparable(earlier: Recording, later: Recording) -> bool:
 
 
 def find_pose(run: Recording, time_s: float) -> Pose:
-    """Return the pose of a run's robot at a time in seconds; after its end, the last one."""
+    """Return the pose of a run's robot at a simulated time in s; after the end of the run, its last pose."""
     tick = round(time_s * run.spec.profile.tick_hz)
     return run.telemetry.record(min(tick, run.newest)).pose
 
 
 def find_run_before(later: Recording) -> Recording | None:
-    """Return the newest stored run that a later run repeats; None if there is none.
+    """Return the newest stored run, of the same program file, that the run `later` repeats; None if there is none.
 
     Raises:
         LogError: the store cannot be read.
@@ -37,7 +37,7 @@ def find_run_before(later: Recording) -> Recording | None:
 
 
 def find_similar_run(program: Program, spec: RunSpec) -> StoredRun | None:
-    """Return the newest stored run of a program file; None without one, or if its text or specification differs."""
+    """Return the newest stored run of a program file; None if there is none, or its text or specification differs."""
     with suppress(LogError):
         run = next(_load_runs(program, ""), None)
         if run and run.program.text == program.text and run.spec == spec:
@@ -46,7 +46,12 @@ def find_similar_run(program: Program, spec: RunSpec) -> StoredRun | None:
 
 
 def _load_runs(program: Program, before: str) -> Iterator[StoredRun]:
-    """Yield the stored runs of a program file, the newest first: those before the run `before`, all if it is empty."""
+    """Yield the stored runs of a program file, the newest first.
+
+    Args:
+        program: The program.
+        before: Id of a run: only runs before it; empty for all.
+    """
     from tuisim.engine.runs.store import RunStore
 
     store = RunStore()

@@ -61,7 +61,7 @@ def copy(context: ActionContext) -> None:
 
 
 def choose_preset(context: ActionContext, preset: Preset) -> None:
-    """Show the panels of a preset; if it is shown already, the standard ones."""
+    """Show the panels of a preset; if that preset is shown already, show the standard one."""
     preset_in_view = context.panels.choose_preset(preset)
     key = context.app.ACTIONS[f"layout-{preset}"].key_label
     _say_layout(context, "" if preset_in_view == Preset.STANDARD else f" ({key} again: standard)")
@@ -82,7 +82,7 @@ def _say_layout(context: ActionContext, more: str) -> None:
 
 
 def keep_layout(context: ActionContext) -> None:
-    """Keep preset and panels for the next start."""
+    """Store the preset and the shown panels for the next start in a terminal of this size."""
     context.panels.keep_panels()
     context.app.say(
         f"The next start in a terminal of this size shows these panels: layout {context.panels.preset}"
@@ -90,7 +90,7 @@ def keep_layout(context: ActionContext) -> None:
 
 
 def focus_next_panel(context: ActionContext, by: int) -> None:
-    """Focus the panel that comes `by` places later; where there is room for one panel only, show it."""
+    """Focus the panel that is `by` panels after the focused one; an area with room for one panel shows it instead."""
     if panel := context.panels.show_next_panel(by):
         context.app.handle_situation_change()
         context.app.call_after_refresh(context.panels.focus_opened, panel)
@@ -171,7 +171,12 @@ _APPLY: Mapping[str, Callable[[ActionContext, Any], None]] = {
 
 
 def change_setting(context: ActionContext, setting: Setting, value: Scalar | None) -> None:
-    """Write a setting to `config.toml`, and apply it at once where the app can.
+    """Write a setting to `config.toml`, and apply it to the running app where that is possible.
+
+    Args:
+        context: The parts of the app.
+        setting: The setting.
+        value: Its new value; None removes the setting from the file.
 
     Raises:
         ConfigError: the value is wrong, or the file cannot be written.
@@ -195,7 +200,7 @@ def open_settings(context: ActionContext) -> None:
 
 
 def choose_theme(context: ActionContext) -> None:
-    """Show the themes."""
+    """Open the list of themes to choose from."""
     context.app.action_choose_theme()
 
 

@@ -248,7 +248,7 @@ def _open_in_own_editor(context: ActionContext, path: Path) -> None:
 
 
 def start_program(context: ActionContext) -> None:
-    """Ask for mat, sensor and skeleton of a new program, and start it in the code panel."""
+    """Ask for the mat, sensor and skeleton of a new program, and show its text in the code panel."""
     context.document.run_when_saved(partial(_ask_new_program, context))
 
 
@@ -280,7 +280,7 @@ def _ask_new_program(context: ActionContext) -> None:
 
 
 def compare(context: ActionContext) -> None:
-    """Ask for a run and show where the current one differs from it."""
+    """Ask for a stored run and show where the run in view differs from it."""
     from tuisim.app.dialogs.runs import RunChooser
 
     recording = context.runs.timeline.recording
@@ -301,7 +301,7 @@ def compare(context: ActionContext) -> None:
 
 
 def _load_diff(run_id: str, other_id: str) -> tuple[Recording, RunDiff]:
-    """Return the other run and the differences. Reads both runs."""
+    """Read two stored runs; return the run `other_id` and the differences between both."""
     from tuisim.engine.runs.diff import diff_runs
 
     store = RunStore()

@@ -33,7 +33,7 @@ def home(context: ActionContext) -> None:
 
 
 def _move(context: ActionContext, pose: Pose) -> None:
-    """Place the robot at a pose, and offer to undo that."""
+    """Place the robot at a pose; the undo key returns it to its pose before."""
     before = context.runs.pose
     context.runs.place(pose)
     if not context.debugger.is_away:
@@ -55,7 +55,7 @@ def clear_trace(context: ActionContext) -> None:
 
 
 def place_randomly(context: ActionContext) -> None:
-    """Put the robot at a random place on the field."""
+    """Put the robot at a random place on the field where it touches no obstacle; a notice says if there is none."""
 
     from tuisim.app.setup.poses import choose_random_pose
 
@@ -142,7 +142,7 @@ def choose(context: ActionContext, what: str) -> None:
 
 
 def reset_robot(context: ActionContext) -> None:
-    """Undo the edits of the robot."""
+    """Undo the user's changes of the robot's parts; a notice says if there are none."""
     if context.runs.next_run.robot_is_edited:
         context.loader.try_change(plans.undo_robot_edits)
     else:
@@ -165,7 +165,7 @@ def find_world_panel(context: ActionContext) -> World | None:
 
 
 def switch_earlier(context: ActionContext) -> None:
-    """Show or hide the robot of the earlier run."""
+    """Show or hide the robot of the earlier run beside that of the run in view."""
     runs = context.runs
     runs.shows_earlier = not runs.shows_earlier
     if runs.earlier is None:

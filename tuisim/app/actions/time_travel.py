@@ -42,7 +42,7 @@ def go_to_tick(context: ActionContext, tick: int | None) -> None:
 
 
 def _is_laid_out(context: ActionContext, recording: Recording) -> bool:
-    """Return whether the current mat is that of the run; if not, say so."""
+    """Return whether the app's current mat is that of a run; show a notice if it is not."""
     mat = context.runs.mat
     if mat is not None and mat.key[:2] == mat_key(recording.spec)[:2]:
         return True
@@ -88,7 +88,10 @@ def skip_ticks(context: ActionContext, ticks: int) -> None:
 
 
 def step_tick(context: ActionContext) -> None:
-    """Go forward one tick: as recorded in the past, else live; from an earlier line of the newest tick, go to now."""
+    """Go forward one tick: to the next recorded one in the past, else by simulating one.
+
+    From an earlier line of the newest tick, go to the newest instant instead.
+    """
     if context.runs.in_past:
         skip_ticks(context, 1)
     elif context.debugger.is_away:
@@ -166,7 +169,7 @@ def ask_instant(context: ActionContext) -> None:
 
 
 def go_to_sample(context: ActionContext, words: str) -> None:
-    """Go to a sample.
+    """Go to the tick of the sample that a command finds; show a notice if there is none.
 
     Args:
         context: The parts of the app.
@@ -241,10 +244,10 @@ def _say_nothing_wrong(context: ActionContext) -> str:
 
 
 def propose_action(context: ActionContext, action: protocol.Message) -> bool:
-    """Propose a branch with a user action if the past is in view, even an earlier line of the newest tick.
+    """Propose a branch with a user action if a past instant is in view, even an earlier line of the newest tick.
 
     Returns:
-        Whether it is, so that the action does not apply to the present.
+        Whether a past instant is in view; the caller then must not apply the action to the present.
     """
     if is_away := context.debugger.is_away:
         propose_branch(context, action)

@@ -194,7 +194,7 @@ class LogChart(LinesPanel):
         return max(self._pictures[0][1].columns, 1) if self._pictures else 1
 
     def time_beside(self, time_s: float, columns: int) -> float:
-        """Return the time that is a number of columns to the right of another one."""
+        """Return the time that is a number of columns to the right of `time_s`, in the unit of the time axis."""
         low, high = self._model.find_x_limits() if self._model else (0.0, 1.0)
         return time_s + columns * (high - low) / self.columns()
 
@@ -222,7 +222,11 @@ class LogChart(LinesPanel):
         self._read(None)
 
     def _read(self, time_s: float | None) -> None:
-        """Show the values below the pointer, or without it those at the cursor."""
+        """Show the values of the drawn variables in the lower border.
+
+        Args:
+            time_s: Time under the pointer; None shows the values at the cursor.
+        """
         self._pointed_s = time_s
         model = self._model
         drawn = (
@@ -241,7 +245,7 @@ class LogChart(LinesPanel):
 
 
 def _select_facets(facets: list[LogTrace], selected: str, max_count: int) -> list[LogTrace]:
-    """Return as many facets as fit, the selected one among them."""
+    """Return at most `max_count` facets (charts of one variable), the selected one among them."""
     index = next((index for index, trace in enumerate(facets) if trace.name == selected), 0)
     first = min(max(index - max_count + 1, 0), max(len(facets) - max_count, 0))
     return facets[first : first + max_count]

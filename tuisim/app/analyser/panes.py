@@ -83,7 +83,7 @@ Item = TypeVar("Item")
 
 
 class _LazyRows(Sequence[Cells], Generic[Item]):
-    """Rows that are created on access, as a long log has a hundred thousand bands or events."""
+    """Rows of cells that are made when they are read: a long log has a hundred thousand bands or events."""
 
     def __init__(self, items: Sequence[Item], row: Callable[[Item], Cells]) -> None:
         self._items = items
@@ -110,7 +110,7 @@ def _list_bands(model: AnalysisModel) -> Sequence[Cells]:
 
 
 def _format_band(band: Band, *, is_moved: bool) -> Cells:
-    """Return a band as cells, the one of its true level empty unless noise has moved levels of the log."""
+    """Return a band as cells; its true level is an empty cell unless noise has moved the levels of the log."""
     return (
         band.variable,
         str(band.number),
@@ -250,7 +250,7 @@ PANES: Mapping[str, Pane] = {
 
 
 def build_frame(name: str, model: AnalysisModel) -> pd.DataFrame:
-    """Return the rows of a pane other than the table as a data frame; bands with all their properties."""
+    """Return the rows of a pane as a data frame, the bands with all their properties; not for the table."""
     import pandas as pd
 
     if name == "bands":
@@ -348,7 +348,7 @@ def _build_continuation(
 
 
 def _count_rows(name: str, model: AnalysisModel, width: int) -> int:
-    """Return the number of lines that show all of a pane; for one that wraps, an upper bound."""
+    """Return how many lines show a whole pane; for a pane whose last column wraps, an upper bound."""
     if name == "table":
         return 1 + len(model.rows)
     rows = PANES[name].rows(model)
@@ -386,9 +386,10 @@ def describe_place(name: str, model: AnalysisModel, chosen: int, width: int, hei
 def _choose_columns(
     pane: Pane, rows: Sequence[Cells], width: int
 ) -> tuple[list[int], list[int], int]:
-    """Return the columns that are shown, the widths of all columns, and the gap between two.
+    """Return the indices of the columns to show, the widths of all columns, and the gap between two columns.
 
-    If not all columns fit, a first column with the same text in all rows is left out, and then the gap is made smaller.
+    If not all columns fit, a first column with the same text in all rows is left out; if that is not enough, the gap
+    becomes smaller.
     """
     widths = [max(map(len, column)) for column in zip(pane.heads, *rows, strict=True)]
     filled = [index for index in range(len(widths)) if any(row[index] for row in rows)]
@@ -478,7 +479,7 @@ class PaneView(LinesPanel):
 
     @property
     def lines(self) -> int:
-        """The number of visible rows."""
+        """The number of rows of the pane that are visible at a time."""
         return max(self._text.size.height - 1, 1)
 
     def turn_to(self, name: str) -> None:
@@ -508,7 +509,7 @@ class PaneView(LinesPanel):
             self.styles.max_height = max(_count_rows(self.name_shown, model, width), _MIN_ROWS) + 2
 
     def _compute(self, model: AnalysisModel, pane: str) -> None:
-        """Compute what a pane still lacks, unless a job does it already; for a long log, in the background."""
+        """Compute the content that a pane lacks, unless a job already does; for a long log, in the background."""
         names = {"bands": model.list_unsearched, "statistics": model.list_unsummed}.get(
             pane, list
         )()

@@ -84,14 +84,14 @@ class PreviewDialog(Dialog[ReadChoices]):
         self.query_one("#rows").focus()
 
     def action_choose(self, name: str) -> None:
-        """Open the list of a choice."""
+        """Open the list of options of one choice, such as the separator."""
         field = self.query_one(f"#{name}", Select)
         if not field.disabled:
             field.focus()
             field.action_show_overlay()
 
     def action_open(self) -> None:
-        """Return the choices, unless nothing can be read with them."""
+        """Close the dialog and return the choices, unless the file cannot be read with them."""
         if not self.query_one("#message").has_class("wrong"):
             self.dismiss(self._choices)
 
@@ -109,7 +109,7 @@ class PreviewDialog(Dialog[ReadChoices]):
         self._read()
 
     def _read(self) -> None:
-        """Show the first rows as they are read now."""
+        """Read the first rows with the current choices, and show them; show an error if they cannot be read."""
         try:
             self._preview.read(self._choices)
         except TuisimError as error:
@@ -127,7 +127,7 @@ class PreviewDialog(Dialog[ReadChoices]):
             field.query_one("#label", Static).update(word)
 
     def _is_idle(self, name: str) -> bool:
-        """Return whether a choice would change nothing."""
+        """Return whether a choice has no effect on this file, such as the unit of times that are no numbers."""
         if name == "time":
             return False
         return not self._preview.has_number_time if name == "unit" else not self._preview.lines
@@ -136,7 +136,7 @@ class PreviewDialog(Dialog[ReadChoices]):
         return "\n".join(self._preview.log.notes)
 
     def _list_offers(self, name: str) -> list[tuple[str, Any]]:
-        """Return the options of a choice; the first one lets the app find the value in the file."""
+        """Return the options of a choice as (label, value); with the first one, the app finds the value in the file."""
         chosen = getattr(self._choices, name)
         offers = self._preview.list_offers(name)
         usual = getattr(NO_CHOICES, name)

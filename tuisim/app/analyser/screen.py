@@ -103,7 +103,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         yield self.key_footer
 
     def can_take(self, event: Event) -> bool:
-        """Return whether an event can be handled now; a key that works on the log needs an open one."""
+        """Return whether the screen can handle an event now; a key that works on the log needs an open log."""
         is_there = self.is_open or not (isinstance(event, Key) and event.key in self._keys_of_log)
         return super().can_take(event) and is_there
 
@@ -134,10 +134,10 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     @property
     def model(self) -> AnalysisModel:
-        """The model of the open log; each reading of a growing log makes a new one.
+        """The model of the open log; when a growing log is read again, a new model replaces it.
 
         Raises:
-            LogError: there is none yet.
+            LogError: no log is open yet.
         """
         if self._model is None:
             raise LogError("no log is open yet")
@@ -184,7 +184,10 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             self.update()
 
     def set_model(self, model: AnalysisModel) -> None:
-        """Show the log that was read, unless another one was requested since; without samples, open the telemetry."""
+        """Show the log that was read, unless another one was requested meanwhile.
+
+        If the program has printed no samples, the telemetry is opened instead.
+        """
         opened = model.opened
         before = self._model
         if opened.request is not self.request:
@@ -238,7 +241,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.update()
 
     def find_situation(self) -> int | None:
-        """Return the number of rows, None while there is no log."""
+        """Return the number of rows of the open log, which decides which keys work; None while no log is open."""
         return None if self._model is None else self._model.log.rows
 
     def update(self) -> None:
@@ -260,7 +263,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.chart.set_model(self.model)
 
     def lay_out(self, chart: bool, pane: bool) -> None:
-        """Show chart, pane, or both."""
+        """Show the chart, the pane, or both."""
         self.chart.display = chart
         self.pane.display = pane
         self.call_after_refresh(self.update)
@@ -273,7 +276,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.call_after_refresh(self.update)
 
     def show_pane(self, name: str) -> None:
-        """Show a pane."""
+        """Show a pane, given by its key in `PANES`."""
         self.pane.turn_to(name)
         if not self.pane.display:
             self.lay_out(chart=True, pane=True)
@@ -299,7 +302,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     # Selection
 
     def choose(self, number: int) -> None:
-        """Select a row of a pane other than the table; the cursor goes to its time."""
+        """Select a row of the pane, which is not the table, and move the cursor to the time of that row."""
         model = self.model
         name = self.pane.name_shown
         count = len(PANES[name].rows(model))
@@ -350,7 +353,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         forms: Sequence[Form] = (),
         completes: bool = False,
     ) -> None:
-        """Ask for a line of text and apply it.
+        """Ask for a line of text in a dialog, and call `do` with it.
 
         Args:
             title: Title of the dialog.
@@ -404,16 +407,16 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     def run_task(
         self, word: str, rows: int, do: Callable[[TableTask], Made], then: Callable[[Made], None]
     ) -> None:
-        """Run a function and pass on its result; newer work replaces older work.
+        """Run a function on the log and pass on its result; if newer work begins meanwhile, the result is dropped.
 
         Args:
             word: Label of the work, shown while it runs.
-            rows: Number of rows; decides between background and synchronous work.
+            rows: Number of rows that the work reads; for many, it runs in the background.
             do: The work; must only read the log.
             then: Called with the result, in the app's thread.
 
         Raises:
-            TuisimError: raised by `do` if it runs synchronously; otherwise the error is shown.
+            TuisimError: raised by `do` if it does not run in the background; otherwise the screen shows the error.
         """
         task = TableTask(word)
         if rows <= FAST_ROWS:
@@ -435,7 +438,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.update()
 
     def end(self, task: TableTask, then: Callable[[], None]) -> None:
-        """Handle the result of a job, unless a newer job has started."""
+        """Call `then` for a finished background job, and update the screen; do nothing if a newer job has started."""
         if task is self.job:
             self.job = None
             try:
@@ -445,7 +448,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             self.update()
 
     def give_up(self) -> None:
-        """Ignore the result of the current job."""
+        """Stop waiting for the current background job: its result will be ignored."""
         if self.job is not None:
             self.job.stopped = True
         self.job = None
@@ -455,10 +458,10 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
 
 def read_doubtful(request: LogRequest) -> Log | None:
-    """Return the first rows of a file if the user should check how it is read, since something was guessed; else None.
+    """Return the first rows of a file whose format was guessed, for the user to check; None if nothing is in doubt.
 
     Raises:
-        LogError: it cannot be read, or has no row.
+        LogError: the file cannot be read, or has no row.
     """
     is_known = request.is_remembered or request.choices != NO_CHOICES
     if is_known or not is_readable_again(request.file):

@@ -87,7 +87,7 @@ def _is_number(text: str) -> bool:
 def _fit_columns(
     model: AnalysisModel, shown_rows: list[int], width: int
 ) -> tuple[list[str], list[int]]:
-    """Return the columns shown and their widths: the frozen ones, then as many as fit with the selected one."""
+    """Return the names and widths of the columns that fit: the frozen columns and the selected one among them."""
     rows = model.rows
     seen = shown_rows[:_SAMPLED]
 
@@ -116,15 +116,16 @@ def _fit_columns(
 
 
 def build_heading(model: AnalysisModel, column: str) -> str:
-    """Return the heading of a column.
+    """Return the heading of a column in the table.
 
-    The title has the numbers of stored runs; the column `run` counts the runs in the log, so its heading says that.
+    For the column `run` of a log of stored runs it is `run (in log)`: this counts the runs of the log, while the title
+    of the screen has their numbers in the store.
     """
     return f"nth {column}" if column == "run" and model.opened.runs else column
 
 
 def count_rows(model: AnalysisModel) -> str:
-    """Return how many rows are shown, and the filter."""
+    """Return in words how many rows the table shows, and its filter."""
     rows = model.rows
     total = model.log.rows
     words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else counted(total, "row")

@@ -46,7 +46,7 @@ NO_POSES = "This log has no robot positions"
 
 
 class RunWorld:
-    """The world of one run, at any time of it.
+    """Gives snapshots of one run's world at any time of the run.
 
     Args:
         spec: The run's specification.
@@ -122,11 +122,11 @@ def has_poses(opened: OpenedLog) -> bool:
 
 
 def load_world(opened: OpenedLog, run: int) -> RunWorld | None:
-    """Return the world of a run of a log, None if it is unknown. Blocks, long the first time for each mat.
+    """Return the world of a run of a log; None if the log does not know it. Blocks, long the first time for each mat.
 
     Args:
         opened: The log.
-        run: Which of its runs, from 0.
+        run: Index of the run in the log.
     """
     if run < len(opened.runs):
         stored = opened.runs[run]
@@ -186,7 +186,7 @@ class WorldPane(Vertical):
             self.show(self._model)
 
     def set_model(self, model: AnalysisModel) -> None:
-        """Switch to another log."""
+        """Switch to another log, and hide the pane if that log has no poses of a robot."""
         self._model = model
         self._shown = None
         self._worlds.clear()
@@ -229,7 +229,7 @@ class WorldPane(Vertical):
             self.show(model)
 
     def _list_lines(self, world: RunWorld, line: int) -> list[list[Run]]:
-        """Return the program around a line, with that line in the middle."""
+        """Return the lines of the program around `line`, which is in the middle."""
         texts = source_lines(world.program.text if world.program else "")
         height, width = self._source.size.height, self._source.size.width
         if not texts or not height:

@@ -66,7 +66,7 @@ def draw_test_card(cols: int, rows: int, cell_px: tuple[int, int]) -> Pixels:
 
 
 class _TestCard(PixelView):
-    """The test picture, drawn with the highlighted set of glyphs."""
+    """The test picture, drawn with the glyphs of the set that is highlighted in the list."""
 
     def __init__(self, best: CellSet) -> None:
         super().__init__()
@@ -82,7 +82,7 @@ class _TestCard(PixelView):
         return self._tried
 
     def show(self, name: str) -> None:
-        """Draw the picture with a set."""
+        """Draw the picture with a set of glyphs, given by its name or `AUTO`."""
         self._tried = self._best if name == AUTO else CellSet(name)
         self.draw_picture()
 

@@ -95,7 +95,7 @@ def _is_readable(fits: Callable[[Path], object], path: Path) -> bool:
 
 
 class ListDialog(FieldDialog[str]):
-    """A dialog with a list, usually with a field for a path; it returns what was chosen or typed."""
+    """A dialog with a list, and usually with a field for a path; it returns the chosen entry or the typed text."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*MOVE_KEYS]
 
@@ -124,7 +124,7 @@ class ListDialog(FieldDialog[str]):
                 self.dismiss(typed)
 
     def read(self, typed: str) -> object:
-        """Read what a typed name or path stands for.
+        """Return what a typed name or path stands for, such as the world in a file.
 
         Raises:
             TuisimError: it stands for nothing that can be chosen.
@@ -137,7 +137,7 @@ class ListDialog(FieldDialog[str]):
 
 
 class Chooser(ListDialog):
-    """The dialog that returns a name or a path. What is typed searches the list, and may be a path.
+    """The dialog that returns a name or a path. Typed words search the list; the field also takes a path.
 
     Args:
         title: Title of the dialog.
@@ -175,7 +175,7 @@ class Chooser(ListDialog):
         yield self.build_list()
 
     def compose_field(self) -> Iterable[Widget]:
-        """Yield the field, and below it the line that says what is wrong with its text."""
+        """Yield the field, and below it the line for errors in the typed text."""
         yield self.field()
         yield Static(id="message", markup=False)
 
@@ -243,7 +243,7 @@ class Chooser(ListDialog):
         return [ChoiceGroup(f"In {os.path.dirname(typed) or '.'}", entries)] if entries else []
 
     def on_key(self, event: events.Key) -> None:
-        """Complete a path by tab."""
+        """On tab, complete the typed path."""
         fields = self.query(Input)
         typed = fields.first().value if fields else ""
         if (
@@ -268,18 +268,18 @@ class Chooser(ListDialog):
         field.focus()
 
     def choose(self, value: str) -> None:
-        """Show the content of a folder that was chosen, or return another value."""
+        """Show the content of a chosen folder; for any other value, close the dialog and return it."""
         if is_path(value) and value.endswith("/"):
             self._type(value)
         else:
             super().choose(value)
 
     def read(self, typed: str) -> object:
-        """Read what a typed name or path stands for."""
+        """Return what a typed name or path stands for, as the function `read` given to the dialog does."""
         return self._read(typed)
 
     def report_unread(self, error: TuisimError) -> None:
-        """Choose the entry that the search has highlighted; if there is none, say what is wrong."""
+        """Choose the entry that the search has highlighted; if there is none, show the error of the typed text."""
         listed = self.query_one(OptionList)
         if listed.highlighted is None:
             self.say(shorten_error(error), wrong=True)
@@ -299,7 +299,10 @@ def search_groups(groups: Iterable[ChoiceGroup], typed: str) -> list[ChoiceGroup
 
 
 def find_best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
-    """Return the value of the first entry whose name begins with a text; else contains it; else of the first entry."""
+    """Return the value of the first entry whose name begins with the typed text.
+
+    If there is none, it is the first entry whose name contains the text, or else the first entry of all.
+    """
     entries = [entry for group in groups for entry in group.entries]
     prefix = typed.lower()
     return min(
@@ -344,7 +347,7 @@ def is_log(word: str) -> bool:
 
 
 def _read_openable(word: str) -> object:
-    """Read a program, a world or goals; a log is read as it opens.
+    """Read and check a program, a world or goals; of a log, check only that the file exists.
 
     Raises:
         TuisimError: there is no such file, or it is wrong.
@@ -463,7 +466,7 @@ class MatPicker(Chooser):
         self._show("")
 
     def show_again(self) -> None:
-        """Show the current selection, which may have changed since the call was scheduled."""
+        """Show the preview of the mat that is highlighted when this is called."""
         self._show(self._shown)
 
     @on(OptionList.OptionHighlighted)
@@ -471,7 +474,7 @@ class MatPicker(Chooser):
         self._show(event.option.id or "")
 
     def _show(self, name: str) -> None:
-        """Preview a mat: its title at once, its image as soon as it is decoded."""
+        """Preview a mat: show its title, and its image as soon as that is decoded."""
         self._shown = name
         view = self.query_one(PixelView)
         if not (name in self._mats or Path(name).suffix.lower() in IMAGES) or not view.size:
@@ -494,7 +497,7 @@ class MatPicker(Chooser):
         self.query_one("#title", Static).update(title if is_drawn else f"{title} · loading …")
 
     def _clear_stale(self, key: tuple[str, Viewport]) -> None:
-        """Remove the picture of another mat that is still in view while that of this one is decoded."""
+        """Remove the picture of the mat highlighted before, while that of the present one is still being decoded."""
         if self.is_attached and key[0] == self._shown and key not in self._pictures:
             self.query(PixelView).first().clear_picture()
 
@@ -529,6 +532,6 @@ class _MatPicture(PixelView):
 
 
 def find_field_view(view: PixelView) -> Viewport:
-    """Return the viewport in which a widget shows the whole field, in its finest points."""
+    """Return the viewport in which a widget shows the whole field with its smallest points, such as pixels."""
     cell = view.choose_cell(view.graphics)
     return fit_field(cell.cols * view.size.width, cell.rows * view.size.height, cell)

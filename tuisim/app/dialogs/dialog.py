@@ -39,7 +39,14 @@ _IMPERATIVES = {"applies": "apply", "goes": "go"}
 
 
 def name_and_title(name: str, title: str, name_cells: int, wraps: bool = True) -> Table:
-    """Return a line of a list: a name, and a title that wraps beside it, or is cut off."""
+    """Return a line of a list: a name in `name_cells` cells, and a title beside it.
+
+    Args:
+        name: The name.
+        title: The title.
+        name_cells: Width of the name.
+        wraps: Whether a long title continues in further rows; else it is cut off.
+    """
     table = Table.grid(padding=(0, 2), expand=True)
     table.add_column(width=name_cells, style="bold", no_wrap=not wraps)
     table.add_column(ratio=1, no_wrap=not wraps)
@@ -66,7 +73,7 @@ _TRANSPARENT = Color(0, 0, 0, 0)
 
 
 def _strip_links(strip: Strip) -> Strip:
-    """Return a part of the screen below a dialog without its links, as nothing there can be clicked."""
+    """Return a row of the screen below a dialog without its links, because nothing there can be clicked."""
     if isinstance(strip, LazyStrip):
         return strip
     return Strip(BackgroundScreen.process_segments(strip, _TRANSPARENT), strip.cell_length)
@@ -77,7 +84,7 @@ def _shorten_label(key: str) -> str:
 
 
 def _find_enter_verb(hint: str) -> str:
-    """Return what Enter does in a dialog, from the words in its frame; empty if they do not name it."""
+    """Return the verb for what Enter does in a dialog, from the hint in its frame; empty if it does not name Enter."""
     match = _ENTER.search(hint)
     if match is None:
         return ""
@@ -88,8 +95,8 @@ def _find_enter_verb(hint: str) -> str:
 class ClosesOnce(HookedScreen[Result], Generic[Result]):
     """A modal screen that returns one result, and ignores events after that.
 
-    Each call of Textual's `dismiss` removes the topmost screen, whichever screen it was called for. A key pressed twice
-    would return two results, and remove the screen below as well.
+    Textual's `dismiss` removes the topmost screen, whichever screen it was called for: without this class, a key
+    pressed twice would return two results, and remove the screen below as well.
     """
 
     # The app's keys do not work below a modal screen.
@@ -115,7 +122,7 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         self.app.post_message(self.Changed())
 
     def can_take(self, event: Event) -> bool:
-        """Return whether an event can be handled now; a key that cannot waits, as do the keys after it."""
+        """Return whether the screen can handle an event now; if not, the event waits, and all later ones with it."""
         return self.is_ready and not (
             self._is_at_work and isinstance(event, Key) and event.key != "escape"
         )
@@ -126,7 +133,7 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         then: Callable[[Made], None],
         failed: Callable[[TuisimError], None],
     ) -> None:
-        """Run a function in a thread; keys wait for its result, except for Escape.
+        """Run a function in a thread; meanwhile keys wait, except for Escape.
 
         Args:
             work: Called in the thread.
@@ -145,11 +152,11 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
 
     @property
     def is_closed(self) -> bool:
-        """Whether it has returned its result, or was never opened."""
+        """Whether the screen has returned its result, or was never opened."""
         return self not in self.app.screen_stack
 
     def dismiss(self, result: Result | None = None) -> AwaitComplete:
-        """Return the result and close, with every screen above; no effect if already closed."""
+        """Close the screen with a result, and every screen above it with None; without effect if it is closed."""
         if self.is_closed:
             return AwaitComplete()
         stack = self.app.screen_stack
@@ -182,7 +189,7 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
 
 
 class Dialog(ClosesOnce[Result], Generic[Result]):
-    """A frame with a title; returns None on Escape."""
+    """A modal screen with a titled frame around its widgets; Escape closes it with the result None."""
 
     TITLE_TEXT: str = ""
     HINT: str = "Escape closes"
@@ -199,7 +206,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
             yield from self.compose_content()
 
     def on_resize(self) -> None:
-        """Leave out hints in the middle that the frame has no room for: the footer below tells the keys, too."""
+        """Show as many hints as fit in the frame; those in the middle go first, as the footer shows the keys, too."""
         frame = self.query_one(".dialog")
         hints = self.HINT.split(_BETWEEN)
         while len(_BETWEEN.join(hints)) > frame.region.width - _HINT_EDGES and len(hints) > 2:
@@ -208,7 +215,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
 
     @property
     def keys(self) -> tuple[KeyWord, ...]:
-        """Enter, the dialog's keys that work where the focus is, then Escape."""
+        """The keys for the footer: Enter, the dialog's own keys that work with the present focus, then Escape."""
         words = (
             (binding.key.split(","), binding.description.lower())
             for binding in self._collect_bindings()
@@ -247,7 +254,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
                 await press(self, keys.get(label, ""))
 
     def _receives_key(self, key: str) -> bool:
-        """Return whether a field with the focus leaves a key to the dialog."""
+        """Return whether a key reaches the dialog: a focused text field takes letters and some other keys itself."""
         field = self.focused
         if not isinstance(field, Input):
             return True
@@ -270,12 +277,12 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
         self.dismiss(None)
 
     def action_move(self, action: str) -> None:
-        """Do an action of the list, see `MOVE_KEYS`."""
+        """Run an action of the dialog's list, such as `cursor_down`, see `MOVE_KEYS`."""
         getattr(self.query_one(OptionList), f"action_{action}")()
 
 
 class FieldDialog(Dialog[Result], Generic[Result]):
-    """A dialog with a list and a field: text that is typed while the list has the focus goes into the field."""
+    """A dialog with a list and a field: what the user types while the list has the focus goes into the field."""
 
     def on_key(self, event: Key) -> None:
         typed = (event.character or "").strip() if event.is_printable else ""

@@ -35,7 +35,7 @@ class _List(FieldDialog[Result]):
         self.query_one(OptionList if self._entries else Input).focus()
 
     def list_entries(self, index: int | None = None) -> None:
-        """Fill the list; `index` is selected."""
+        """Fill the list with the present entries, and select the one at `index`; None selects none."""
 
     def _list(self, options: list[Option], index: int | None) -> None:
         listed = self.query_one(OptionList)
@@ -80,12 +80,12 @@ class _TextList(_List[None], Generic[Entry]):
         yield from self.compose_explanation()
 
     def compose_explanation(self) -> ComposeResult:
-        """Return the explanation of what may be entered."""
+        """Return the widgets that explain what the user may enter."""
         yield from ()
 
     @abstractmethod
     def parse(self, text: str) -> Entry:
-        """Parse an entry.
+        """Return the entry that a text stands for.
 
         Raises:
             ConfigError: the text is invalid.
@@ -96,11 +96,11 @@ class _TextList(_List[None], Generic[Entry]):
         """Return the text of an entry, for editing."""
 
     def label(self, entry: Entry) -> str:
-        """Return the line of an entry in the list."""
+        """Return an entry as a line of the list."""
         return self.format_entry(entry)
 
     def list_entries(self, index: int | None = None) -> None:
-        """Fill the list; `index` is selected."""
+        """Fill the list with the present entries, and select the one at `index`; None selects none."""
         self._list([Option(self.label(entry)) for entry in self._entries], index)
 
     @property
@@ -148,7 +148,7 @@ class _TextList(_List[None], Generic[Entry]):
 
 
 class BreaksDialog(_TextList[Breakpoint]):
-    """The dialog of the breakpoints."""
+    """The dialog in which the user edits the breakpoints."""
 
     TITLE_TEXT: str = "Breakpoints"
     HINT: str = "Enter changes · Space switches · Delete removes · Escape closes"
@@ -161,12 +161,19 @@ class BreaksDialog(_TextList[Breakpoint]):
         changed: Callable[[tuple[Breakpoint, ...]], None],
         lines: Sequence[str] = (),
     ) -> None:
-        """Create the dialog for a program with these lines; none if there is no program."""
+        """Create the dialog.
+
+        Args:
+            entries: The current breakpoints.
+            run: The run whose columns can be used in conditions.
+            changed: Called with the new breakpoints after each change.
+            lines: Lines of the open program; none without a program.
+        """
         super().__init__(entries, run, changed)
         self._lines = lines
 
     def compose_explanation(self) -> ComposeResult:
-        """Return the syntax of breakpoints."""
+        """Return the widgets that explain the syntax of breakpoints."""
         yield build_form_table(FORMS)
 
     def parse(self, text: str) -> Breakpoint:
@@ -181,7 +188,7 @@ class BreaksDialog(_TextList[Breakpoint]):
         return entry.written()
 
     def label(self, entry: Breakpoint) -> str:
-        """Return the line of a breakpoint in the list."""
+        """Return a breakpoint as a line of the list."""
         return f"{'○' if entry.disabled else '●'} {'line ' if entry.text[:1].isdigit() else ''}{entry.text}"
 
     def action_switch(self) -> None:
@@ -193,14 +200,18 @@ class BreaksDialog(_TextList[Breakpoint]):
 
 
 class WatchesDialog(_TextList[str]):
-    """The dialog of the watches."""
+    """The dialog in which the user edits the watched expressions."""
 
     TITLE_TEXT: str = "Watches"
     HINT: str = "Enter changes · Delete removes · Escape closes"
     PLACEHOLDER: ClassVar[str] = "new expression, such as len(values) or x / 2"
 
     def parse(self, text: str) -> str:
-        """Parse a Python expression."""
+        """Return a typed Python expression as an entry.
+
+        Raises:
+            ConfigError: the text is no expression.
+        """
         return parse_watch(text)
 
     def format_entry(self, entry: str) -> str:
@@ -209,7 +220,7 @@ class WatchesDialog(_TextList[str]):
 
 
 def label_pose(pose: Pose) -> str:
-    """Return a pose in words."""
+    """Return a pose in words: x and y in mm, the heading in degrees."""
     return f"x {pose.x_mm:g}, y {pose.y_mm:g}, {shown_heading_deg(pose.heading_deg):g}°"
 
 
@@ -242,7 +253,7 @@ class SavedPoses(_List[Pose]):
         yield Static(id="message", markup=False)
 
     def list_entries(self, index: int | None = None) -> None:
-        """Read the poses and fill the list; `index` is selected."""
+        """Read the saved poses, fill the list, and select the one at `index`; None selects none."""
         try:
             self._entries = load_poses()
         except TuisimError as error:

@@ -18,7 +18,7 @@ from tuisim.programs.program_file import replace_mat
 
 
 class Skeleton(StrEnum):
-    """What a new program does at first."""
+    """The text with which a new program begins."""
 
     LOG = "log"
     UNTIL = "until"
@@ -39,7 +39,7 @@ SKELETON_TITLES = {
 
 
 class SkeletonSensor(NamedTuple):
-    """The words with which a new program reads one sensor of the usual robot."""
+    """The words for one sensor of the usual robot in the text of a new program."""
 
     noun: str
     """The sensor in words."""
@@ -155,8 +155,8 @@ def build_program_text(mat: str, sensor: str, skeleton: Skeleton) -> str:
 
     Args:
         mat: Name of the mat, or path of its image.
-        sensor: One of `READINGS`.
-        skeleton: What the program does.
+        sensor: The sensor that it reads, one of `READINGS`.
+        skeleton: What the program does with the sensor.
     """
     reading = READINGS[sensor]
     kind, _, port = reading.made.rstrip(")").partition("(")
@@ -194,11 +194,11 @@ _LISTS = {"mat": "Mat", "sensor": "Sensor", "skeleton": "Program"}
 
 
 class NewProgramDialog(Dialog[str]):
-    """The dialog that returns the text of a new program.
+    """The dialog with the mats, sensors and skeletons of a new program; it returns the text of the program.
 
     Args:
         mats: The mats that can be chosen: titles by the word that names one in a magic line.
-        current: The word of the mat that is laid out, chosen at first.
+        current: The word of the current mat, which is selected at first.
     """
 
     TITLE_TEXT: str = "A new program"
@@ -242,7 +242,7 @@ class NewProgramDialog(Dialog[str]):
         self._typed = ""
 
     def on_key(self, event: events.Key) -> None:
-        """Go to the first entry with the letters that were typed."""
+        """Select the first entry that matches the letters typed so far in the focused list."""
         listed = self.focused
         if not event.character or not event.is_printable or not isinstance(listed, OptionList):
             return
@@ -271,7 +271,10 @@ class NewProgramDialog(Dialog[str]):
 
 
 def _find_title(titles: Sequence[str], typed: str) -> int | None:
-    """Return the index of the first title that begins with a text; else, has its letters in their order; or None."""
+    """Return the index of the first title that begins with a text.
+
+    If none does, return that of the first title with the letters of the text in their order; None if there is none.
+    """
     for fits in (lambda title: title.startswith(typed), lambda title: _has_letters(title, typed)):
         if (
             index := next(

@@ -46,7 +46,7 @@ _MIN_ROWS, _OTHER_ROWS = 16, 5
 
 
 class Entry(NamedTuple):
-    """One line of a list."""
+    """One line of a list that can be searched, such as an action of the command palette."""
 
     id: str
     title: str
@@ -59,7 +59,7 @@ class Entry(NamedTuple):
 
 
 def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
-    """Return the entries that contain every word of a text; for a word that none contains, the one most like it counts.
+    """Return the entries that contain every word of a text; an unknown word is replaced by the most similar known one.
 
     The small words of a question are left out.
 
@@ -93,7 +93,7 @@ def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
 
 
 class SearchList(Dialog[str]):
-    """The dialog with a list to search; it returns the id of the chosen entry.
+    """The dialog with a list that typed words search; it returns the id of the chosen entry.
 
     Args:
         entries: The list, in its order.
@@ -179,9 +179,9 @@ GUIDE_PREFIX = "?"
 
 
 class Palette(SearchList):
-    """The command palette: returns the id of an action; if no action matches, words for the guide after `GUIDE_PREFIX`.
+    """The command palette: returns the id of the chosen action. Actions that work now come first.
 
-    Actions that work now come first.
+    If no action contains the typed words, it returns `GUIDE_PREFIX` and these words, for a search of the guide.
     """
 
     TITLE_TEXT: str = "Commands"
@@ -205,18 +205,18 @@ class Palette(SearchList):
         super().__init__(sorted(entries, key=lambda entry: not entry.works))
 
     def handle_unfound(self, typed: str) -> None:
-        """Ask the guide."""
+        """Close with the typed words for a search of the guide."""
         if typed:
             self.dismiss(GUIDE_PREFIX + typed)
 
 
 class ThemeChooser(SearchList):
-    """The dialog that returns the name of a theme; meanwhile, the app has the highlighted one.
+    """The dialog that returns the name of a theme; while it is open, the app has the highlighted theme.
 
     Args:
         names: The themes.
-        current: The present one, which returns on Escape.
-        show: Shows a theme.
+        current: The present theme, to which the app returns on Escape.
+        show: Gives the app a theme.
     """
 
     TITLE_TEXT: str = "Themes"

@@ -17,11 +17,11 @@ def is_path(typed: str) -> bool:
 
 
 def list_completions(typed: str, suffixes: Collection[str]) -> list[tuple[str, str, str]]:
-    """Return the folders and files that a typed path may become, as entries of a list: value, name, and no title.
+    """Return the folders and files that begin with a typed path, as entries of a list: value, name, and an empty title.
 
     Args:
-        typed: A path; what stands after its last `/` is the beginning of a name, in which case does not count.
-        suffixes: Suffixes of the files, with their dots. The value of a folder ends with `/`.
+        typed: A path; upper and lower case are the same in its last part. The value of a folder ends with `/`.
+        suffixes: Suffixes of the files, with their dots.
     """
     if typed in ("~", ".", ".."):
         return [(f"{typed}/", f"{typed}/", "")]
@@ -47,7 +47,12 @@ def list_completions(typed: str, suffixes: Collection[str]) -> list[tuple[str, s
 
 
 def complete_path(typed: str, entries: Collection[tuple[str, str, str]]) -> str:
-    """Return a typed path with the letters that all of its completions have in common after it."""
+    """Return a typed path, made longer by the letters that all of its completions have in common.
+
+    Args:
+        typed: The path.
+        entries: Its completions, as `list_completions` returns them.
+    """
     values = [value for value, *_ in entries]
     columns = zip(*(value.lower() for value in values), strict=False)
     common = sum(1 for _ in takewhile(lambda letters: len({*letters}) == 1, columns))

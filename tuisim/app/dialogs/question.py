@@ -26,20 +26,24 @@ Answer = tuple[str, str]
 
 
 def _compose_answers(answers: Iterable[tuple[str, str, str]]) -> Iterator[Static]:
-    """Yield an empty row, and the row of answers: for each an action of the dialog, its key, and what it does."""
+    """Yield an empty row, and the row of answers.
+
+    Args:
+        answers: For each answer the action of the dialog, its key, and what it does in words.
+    """
     yield Static()
     words = (f"[@click=screen.{action}]  {key}  {does}  [/]" for action, key, does in answers)
     yield Static("   ".join(words), classes="link")
 
 
 class Question(Dialog[str]):
-    """The dialog that returns the key of an answer, None on Escape.
+    """The dialog with a question; it returns the key of the chosen answer, None on Escape.
 
     Args:
         title: The subject.
         text: The question.
-        answers: Enter gives the first one.
-        escape: Text of what Escape does.
+        answers: The answers; Enter chooses the first one.
+        escape: What Escape does, in words.
     """
 
     def __init__(
@@ -75,12 +79,12 @@ RESTART = "restart"
 
 
 class BranchQuestion(Dialog[str]):
-    """The dialog that asks about a branch; it returns `BRANCH`, `RESTART` or None.
+    """The dialog that asks whether to branch from a run at an instant; it returns `BRANCH`, `RESTART` or None.
 
     Args:
         branch: The proposed branch.
-        change: What the branch changes there, in words, or empty.
-        in_run: Whether the former run is still live, and ends with this.
+        change: What the user changes at that instant, in words; empty for nothing.
+        in_run: Whether the former run is still live; it ends when the branch starts.
         restart: Whether to offer a run from the start.
     """
 
@@ -162,7 +166,7 @@ Form = tuple[str, str]
 
 
 class LineInput(Input):
-    """A field; tab accepts the suggested completion, without one it goes to the next widget.
+    """A text field in which tab accepts the suggested completion; without a suggestion, tab goes to the next widget.
 
     Args:
         value: Initial text.
@@ -211,7 +215,7 @@ def complete_line(line: str, words: Sequence[str]) -> str | None:
 
 
 def build_form_table(forms: Sequence[Form]) -> Static:
-    """Return the accepted forms of a line, and what they mean."""
+    """Return a table of the forms that a line of text may have, and what each means."""
     table = Table.grid(padding=(0, 2))
     for form, meaning in forms:
         table.add_row(form, meaning)
@@ -219,17 +223,17 @@ def build_form_table(forms: Sequence[Form]) -> Static:
 
 
 class LinePrompt(Dialog[bool]):
-    """The dialog that asks for a line of text; it returns True once the line has been applied.
+    """The dialog that asks for a line of text; it returns True after the line was applied.
 
     Args:
         title: Title of the dialog.
-        do: The action; a TuisimError is shown and the line can be corrected.
+        do: Applies the line; a TuisimError is shown and the line can be corrected.
         value: Initial text, selected, so that typing replaces it.
         forms: The accepted forms.
         words: Possible completions of the current word; tab accepts one.
         placeholder: Text of the empty field.
-        text: What stands above the field; empty for nothing.
-        sees_below: Whether the screen below should stay in view: a low terminal has the forms without their meanings.
+        text: Text above the field; empty for none.
+        sees_below: Whether the screen below should stay visible: in a low terminal, the forms then lack their meanings.
     """
 
     HINT = "Enter applies · Escape closes"
@@ -289,4 +293,4 @@ class LinePrompt(Dialog[bool]):
 
 
 class AnswerPrompt(LinePrompt):
-    """A line that answers a question of a lesson: at the top, so that the readings below stay in view."""
+    """The dialog for the answer to a lesson's question; it is at the top, so that the readings below stay visible."""

@@ -37,7 +37,7 @@ _MIN_ROWS, _MAX_ROWS = 6, 16
 
 
 def build_robot_picker(plan: NextRun) -> RobotPicker:
-    """Return the dialog for robots: the one built for the program, those known by name, and files."""
+    """Return the dialog with the robots to choose from: the program's own, those known by name, and those in files."""
     built = plan.program_robot
     files = list_files([".toml", ".json"], lambda path: load_robot(str(path)))
     groups = [
@@ -64,7 +64,7 @@ class RobotPicker(Chooser):
     Args:
         groups: The list.
         current: The current value, selected at first.
-        robots: The robots of the list that are in no file, by value.
+        robots: The robots of the list that are not in files, by the value of their entry.
     """
 
     HORIZONTAL_BREAKPOINTS: list[tuple[int, str]] | None = _WIDTHS
@@ -122,7 +122,7 @@ class RobotPicture(PixelView):
         self._find_robot: RobotSpec | None = None
 
     def show(self, robot: RobotSpec | None) -> None:
-        """Show a robot, or none."""
+        """Show a robot; None clears the picture."""
         self._find_robot = robot
         self.draw_picture()
 
@@ -146,21 +146,21 @@ class RobotPicture(PixelView):
 
 
 class RobotParts(LinesPanel):
-    """The parts of a robot, a line each."""
+    """A list of the parts of a robot, one per line."""
 
     def __init__(self) -> None:
         super().__init__()
         self._lines: list[Line] = []
 
     def show(self, lines: list[Line]) -> None:
-        """Show lines, one for each part."""
+        """Show the lines of another robot, one for each part."""
         self._lines = lines
         self.styles.height = self.rows
         self._redraw()
 
     @property
     def rows(self) -> int:
-        """The rows that it takes."""
+        """The height that the list needs, in rows; at least 1."""
         return max(len(self._lines), 1)
 
     def _redraw(self) -> None:
@@ -189,7 +189,10 @@ def _build_line(rgb: Rgb | None, port: str, words: str) -> Line:
 
 
 def _describe_place(sensor: SensorSpec) -> str:
-    """Return where a sensor is in words, and its size, such as `, 10 left, 65 ahead, ⌀ 20`."""
+    """Return a sensor's position in mm from the robot's centre, and its size, such as `: 10 left, 65 ahead, ⌀ 20`.
+
+    It is empty for a sensor without a position.
+    """
     x_mm, y_mm = getattr(sensor, "x_mm", math.nan), getattr(sensor, "y_mm", math.nan)
     if math.isnan(x_mm):
         return ""

@@ -41,7 +41,7 @@ MAX_LISTED = 300
 
 
 def find_runs(runs: Iterable[RunInfo], search: str) -> list[RunInfo]:
-    """Return the runs, newest first, whose lines contain every word of a search.
+    """Return the runs whose lines in the list contain every word of a search, the newest first.
 
     If the words are numbers, the runs with these numbers come first.
     """
@@ -98,7 +98,12 @@ _MIN_LIST_ROWS = 5
 
 
 def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
-    """Return the cells of a line of the list for which a terminal of that width has room."""
+    """Return the cells of one line of the list by column, without the columns that do not fit.
+
+    Args:
+        texts: The text of each column.
+        columns: Width of the terminal.
+    """
     left_out = next(names for from_columns, names in _LEFT_OUT.items() if columns >= from_columns)
     more = _MORE_CELLS if columns >= _WIDE_COLUMNS else {}
     widths = {name: cells + more.get(name, 0) for name, cells in _COLUMNS.items()}
@@ -110,13 +115,13 @@ def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
 
 
 def build_header(columns: int) -> str:
-    """Return the heads of the list in a terminal of that width."""
+    """Return the line with the headings of the list of runs, for a terminal with this number of columns."""
     names = " ".join(_arrange({name: name for name in _COLUMNS}, columns).values())
     return f"{names}  note" if columns >= _MIN_NOTE_COLUMNS else names
 
 
 def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
-    """Return one line of the list, below `build_header`; a wide one with tags or what went wrong."""
+    """Return a run as a line of the list, below `build_header`; in a wide terminal with its tags or its failure."""
     texts = {
         "run": f"{run.number}{'●' if marked else ' '}",
         "when": _format_date(run)[5:],
@@ -142,16 +147,16 @@ def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
 
 
 def parse_branch_root(run: RunInfo) -> int | None:
-    """Return the number of the run that a run branched off from, None if it is no branch."""
+    """Return the number of the run from which a run branched off; None if the run is no branch."""
     tag = next((word for word in run.tags.split() if word.startswith(BRANCH_TAG)), "")
     number = tag.removeprefix(BRANCH_TAG)
     return int(number) if number.isdecimal() else None
 
 
 def find_likeliest(listed: Sequence[RunInfo], this: RunInfo) -> int:
-    """Return the index of the run that another run is most often compared with.
+    """Return the index of the run in a list with which the user most likely compares the run `this`.
 
-    It is the run from which that one branched off, else the first of the same program, else the first of all.
+    It is the run from which `this` branched off, else the first run of the same program, else the first of all.
     """
     root = parse_branch_root(this)
     likely = [index for index, run in enumerate(listed) if run.number == root]
@@ -163,7 +168,7 @@ class RunChooser(ListDialog):
     """The dialog of the stored runs; it returns the id of the chosen one.
 
     Args:
-        compared: The run to compare the chosen one with, if any.
+        compared: The run to compare the chosen one with; None if the chosen one is to be opened.
     """
 
     DEFAULT_CSS = f"""
@@ -213,7 +218,7 @@ class RunChooser(ListDialog):
             self.query_one(OptionList).highlighted = find_likeliest(listed, this)
 
     def line(self, run: RunInfo) -> Text:
-        """Return one line of the list."""
+        """Return a run as a line of the list."""
         return run_line(run, self.app.size.width)
 
     def _list(self, search: str) -> None:
@@ -235,7 +240,7 @@ class RunChooser(ListDialog):
         self._draw_way()
 
     def on_resize(self) -> None:
-        """Fit the list; draw the path again once its view has its size: a low dialog shows none."""
+        """Fit the list to the dialog, and draw the robot's path again for its new size; a low dialog has no path."""
         options = self.query_one(OptionList)
         options.styles.max_height = max(_MIN_LIST_ROWS, self.size.height * 9 // 10 - _OTHER_ROWS)
         self.query_one(".heads", Static).update(build_header(self.size.width))
@@ -246,7 +251,7 @@ class RunChooser(ListDialog):
         self.call_after_refresh(self._draw_way)
 
     def _draw_way(self) -> None:
-        """Show the path of the selected run, as soon as it is drawn."""
+        """Show the path of the robot in the selected run, as soon as it is drawn."""
         view = self.query_one(PixelView)
         if not view.size or not self._looked_at:
             return
@@ -301,7 +306,7 @@ class RunsChooser(RunChooser):
         """Ids, in the order in which they were marked."""
 
     def on_descendant_focus(self) -> None:
-        """Say how runs are marked: a space in the field is one of its words' ends."""
+        """Show in the frame which key marks runs: in the text field, space separates words instead."""
         marks = "space" if self._receives_key("space") else "↓, then space"
         self.HINT = f"Enter opens · {marks} marks several · type to search · Escape closes"
         Dialog.on_resize(self)
@@ -311,7 +316,7 @@ class RunsChooser(RunChooser):
         super().action_move(action)
 
     def line(self, run: RunInfo) -> Text:
-        """Return one line of the list."""
+        """Return a run as a line of the list, with a mark if it was marked."""
         return run_line(run, self.app.size.width, marked=run.id in self._marked)
 
     def action_mark(self) -> None:
@@ -335,7 +340,7 @@ class RunsChooser(RunChooser):
 
     @on(Input.Submitted)
     def _open_named(self, event: Input.Submitted) -> None:
-        """Open the marked runs, or several given by number, such as `12 13`; any other text is a search."""
+        """Open the marked runs, or the runs with the typed numbers, such as `12 13`; any other text is a search."""
         numbers = {str(run.number): run.id for run in self._runs}
         words = event.value.split()
         named = [numbers[word] for word in words if word in numbers]
@@ -347,13 +352,13 @@ class RunsChooser(RunChooser):
 
 
 class Differences(Dialog[bool]):
-    """The dialog with the differences of two runs; it returns True to go to the first one.
+    """The dialog with the differences of two runs; it returns True if the user wants to go to the first difference.
 
     Args:
         first: Name of the first run.
         second: Name of the other one.
         diff: The differences.
-        samples: Whether the caller can also go to a sample: the first one that differs counts if no tick differs.
+        samples: Whether the caller can go to a sample that differs, if no tick does.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", "Go there", show=False)]

@@ -48,7 +48,7 @@ def parse_path(text: str) -> Path:
 
 
 class FileDialog(Dialog[Path]):
-    """A field for a file name; returns the path of the written file.
+    """The dialog with a field for a file name; it writes the file, and returns its path.
 
     Args:
         proposed: Initial text of the field.
@@ -71,11 +71,11 @@ class FileDialog(Dialog[Path]):
         yield Static(id="message", markup=False)
 
     def compose_extras(self) -> ComposeResult:
-        """Return the widgets between the field and the message."""
+        """Return the widgets between the field and the message; none here."""
         yield from ()
 
     def resolve_target(self, path: Path) -> Path:
-        """Return the target if it can be written.
+        """Return the path of the file to write for a typed path.
 
         Raises:
             TuisimError: it cannot be written.
@@ -127,13 +127,13 @@ def _check_no_folder(path: Path) -> None:
 
 
 class SaveDialog(FileDialog):
-    """Asks where to save something, and saves it.
+    """The dialog that asks where to save something, and saves it.
 
     Args:
         what: The subject, such as `robot`.
         proposed: Initial text of the field.
         save: Writes the file completely or not at all, or begins to; raises TuisimError.
-        suffixes: What the name may end in, in words; empty for those of the class.
+        suffixes: What the name may end in, in words; empty for the `SUFFIXES` of the class.
         check: Raises a TuisimError for a file that cannot be written.
         forms: Suffixes, and what they mean.
         notice: Whether to show a notice that the file is written.
@@ -159,17 +159,17 @@ class SaveDialog(FileDialog):
         self.TITLE_TEXT = f"Save the {what}"
 
     def resolve_target(self, path: Path) -> Path:
-        """Return the target if it can be written."""
+        """Return the path of the file to write for a typed path, see `FileDialog`."""
         self._check(path)
         return path
 
     def compose_extras(self) -> ComposeResult:
-        """Return what the suffixes mean."""
+        """Return the widgets that explain the suffixes."""
         if self._forms:
             yield build_form_table(self._forms)
 
     def write(self, target: Path) -> None:
-        """Write the file at once."""
+        """Write the file, show a notice, and close the dialog."""
         self._save(target)
         if self._notice:
             self.app.notify(f"{self._what.capitalize()} saved to {target}", markup=False)
@@ -177,7 +177,7 @@ class SaveDialog(FileDialog):
 
 
 class ProgramDialog(SaveDialog):
-    """Writes a program."""
+    """The dialog that asks where to save a program, and saves it."""
 
     SUFFIXES: str = ".py"
 
@@ -189,7 +189,7 @@ _KINDS = {
 
 
 class ExportDialog(FileDialog):
-    """Writes the log of one run to a file.
+    """The dialog that asks for a file, and writes the log of a stored run to it.
 
     Args:
         run_id: The run.
@@ -209,7 +209,7 @@ class ExportDialog(FileDialog):
         self._telemetry = False
 
     def compose_extras(self) -> ComposeResult:
-        """Return the choice between samples and telemetry."""
+        """Return the widgets to choose between samples and telemetry."""
         yield Static(self._describe_kind(), id="kind")
 
     def action_switch(self) -> None:
@@ -220,7 +220,11 @@ class ExportDialog(FileDialog):
         return f"[@click=screen.switch]{_KINDS[self._telemetry]}[/]"
 
     def resolve_target(self, path: Path) -> Path:
-        """Return the target; raise a TuisimError for a file that no exporter can write."""
+        """Return the path of the file to write for a typed path.
+
+        Raises:
+            TuisimError: no exporter can write such a file.
+        """
         return check_target(path)
 
     def write(self, target: Path) -> None:

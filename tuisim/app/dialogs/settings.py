@@ -36,7 +36,7 @@ _NAME_CELLS = 13
 
 
 def format_value(value: Scalar) -> str:
-    """Return a value as the user writes it, without quotes."""
+    """Return the value of a setting as the user types it, without quotes."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
@@ -49,7 +49,7 @@ def describe_setting(setting: Setting) -> str:
 
 
 def parse_value(setting: Setting, text: str) -> Scalar:
-    """Return a typed text as a value for the file: as a number if the setting takes one."""
+    """Return the value that a typed text stands for: a number if the setting takes one, else the text."""
     if not isinstance(setting.default, int | float):
         return text.strip()
     for kind in (int, float):
@@ -61,7 +61,7 @@ def parse_value(setting: Setting, text: str) -> Scalar:
 
 
 class SettingsScreen(Dialog[None]):
-    """The settings; a change is written at once.
+    """The dialog with the settings; it writes each change to the file when the user makes it.
 
     Args:
         change: Writes and applies a setting.
@@ -154,7 +154,7 @@ class SettingsScreen(Dialog[None]):
             self._choose(self._selected_setting, name)
 
     def _choose(self, setting: Setting, value: Scalar) -> None:
-        """Set one of a few values; the usual one needs no line in the file."""
+        """Set a setting to one of its few values; for the default value, remove its line from the file."""
         self._set(setting, None if value == setting.default else value)
 
     def _write_typed(self, text: str) -> None:

@@ -20,7 +20,7 @@ from tuisim.terminal.textual_internals import find_bindings
 
 
 class Begin(StrEnum):
-    """The ways to begin that the welcome offers."""
+    """What a user can begin with in the welcome, such as a lesson or a new program."""
 
     NEW = "new"
     EXAMPLE = "example"
@@ -46,7 +46,7 @@ _MAX_NUMBERED = 9
 
 
 class Welcome(Dialog[Begin | Recent]):
-    """The welcome; it returns the way to begin, or the recent work to continue; None on Escape.
+    """The welcome; it returns what to begin with, or the recent work to continue; None on Escape.
 
     Args:
         is_first: Whether this is the first start, so that the text says what the app is.
@@ -107,7 +107,7 @@ class Welcome(Dialog[Begin | Recent]):
         self.action_take(int(event.option.id or 0))
 
     def action_leave_for(self, action: str) -> None:
-        """Close, and do what the key does in the app."""
+        """Close the welcome, and run an action of the app, as its key would."""
         self.dismiss(None)
         self.app.call_later(self.app.run_action, f"app.act('{action}')")
 

@@ -66,7 +66,7 @@ EDITOR_KEYS = (
 
 
 class EditorCommand(StrEnum):
-    """What keys in the text ask the code panel to do."""
+    """A command of a key in the text that the code panel carries out, not the text itself."""
 
     TYPE = "type"
     STOP_TYPING = "stop_typing"
@@ -77,7 +77,7 @@ class EditorCommand(StrEnum):
 
 
 class CodeArea(TextArea):
-    """A program's text. It can be edited only while `typing`."""
+    """The widget with a program's text; the text can be edited only while `typing`."""
 
     ALLOW_SELECT = False
     DEFAULT_CSS = "CodeArea { height: 1fr; border: none; padding: 0; overflow-x: hidden; &:focus { border: none; } }"
@@ -101,7 +101,7 @@ class CodeArea(TextArea):
 
     @dataclass
     class Wanted(Message):
-        """Posted for a key that does more than edit the text."""
+        """Posted when a key for the code panel was pressed, see `EditorCommand`."""
 
         command: EditorCommand
 
@@ -109,7 +109,7 @@ class CodeArea(TextArea):
         """Posted when the lookup of names begins or ends, see `is_completing`."""
 
     class LettersChanged(Message):
-        """Posted when letters have become text, or keys of the app again."""
+        """Posted when letters begin to be typed into the text, or become keys of the app again."""
 
     @dataclass
     class GutterClicked(Message):
@@ -150,16 +150,16 @@ class CodeArea(TextArea):
 
     @property
     def program_text(self) -> str:
-        """The whole text, with `\\n` as line ends."""
+        """The whole text of the program, with `\\n` as line ends."""
         return self.text.translate(_UNGUARD)
 
     def load_program(self, text: str) -> None:
-        """Show another text; the undo history is cleared."""
+        """Show the text of another program, and clear the undo history."""
         self._colouring = Colouring()
         self.load_text(text.translate(_GUARD))
 
     def replace_program(self, text: str) -> None:
-        """Show a text that was changed elsewhere: cursor and scroll position stay, and it can be undone."""
+        """Show a text that was changed elsewhere, as an edit that can be undone; cursor and scroll position stay."""
         top, (row, column) = self.scroll_offset.y, self.cursor_location
         self.history.checkpoint()
         self.replace(
@@ -176,17 +176,17 @@ class CodeArea(TextArea):
         return super().edit(guarded)
 
     def undo(self) -> None:
-        """Undo the last edits."""
+        """Undo the last edits of the text."""
         self._colouring.forget_line(0)
         super().undo()
 
     def redo(self) -> None:
-        """Redo what was undone."""
+        """Redo the edits that were undone last."""
         self._colouring.forget_line(0)
         super().redo()
 
     def get_line(self, line_index: int) -> Text:
-        """Return a line with its colours."""
+        """Return a line of the text, from 0, with its syntax colours."""
         line = self.document.get_line(line_index)
         text = Text(_UNSHOWN.sub("·", line), end="", no_wrap=True)
         for start, end, kind in self._colouring.color_line(self.document.lines, line_index):
@@ -205,11 +205,11 @@ class CodeArea(TextArea):
 
     @property
     def allow_horizontal_scroll(self) -> bool:
-        """Allow scrolling of long lines, without a scroll bar, which would take a row."""
+        """Whether long lines can be scrolled; always, although there is no scroll bar, which would take a row."""
         return True
 
     def scroll_cursor_visible(self, center: bool = False, animate: bool = False) -> Offset:
-        """Scroll to the cursor, and to the start of the lines if it is visible there; see `TextArea`."""
+        """Scroll to the cursor, and as far left as the cursor stays visible; see `TextArea`."""
         scrolled = super().scroll_cursor_visible(center, animate)
         x = self.wrapped_document.location_to_offset(self.cursor_location).x
         if x + _CURSOR_COLS + self.gutter_width <= self.scrollable_content_region.width:
@@ -217,7 +217,7 @@ class CodeArea(TextArea):
         return scrolled
 
     def on_resize(self) -> None:
-        """Scroll back to the start of the lines, and to the highlighted one, unless the user types."""
+        """Scroll to the start of the lines, and to the highlighted line, unless the user types."""
         if not self.typing:
             self.call_after_refresh(self.scroll_to, x=0, animate=False, force=True)
             self.call_after_refresh(self.scroll_to_line, self._lit)
@@ -225,25 +225,25 @@ class CodeArea(TextArea):
     # Marks
 
     def set_breaks(self, breaks: Mapping[int, str]) -> None:
-        """Set the breakpoint markers."""
+        """Show the markers of breakpoints, given by line from 1."""
         if breaks != self._breaks:
             self._breaks = dict(breaks)
             self.refresh()
 
     @property
     def error_line(self) -> int:
-        """The line that is marked as an error, 0 for none."""
+        """The line that is marked as an error, from 1; 0 for none."""
         return self._error
 
     def set_error(self, line: int) -> None:
-        """Mark the line of an error, 0 for none."""
+        """Mark the line of an error, from 1; 0 removes the mark."""
         before = self._error
         self._error = line
         self._refresh_line(before)
         self._refresh_line(line)
 
     def light(self, line: int) -> None:
-        """Highlight a line, 0 for none."""
+        """Highlight a line, from 1; 0 removes the highlight."""
         if line != self._lit:
             before = self._lit
             self._lit = line
@@ -252,7 +252,7 @@ class CodeArea(TextArea):
 
     @property
     def unknown(self) -> Sequence[UnknownName]:
-        """The names that are marked as not defined."""
+        """The names in the text that are marked as not defined."""
         return self._unknown
 
     def set_unknown(self, names: tuple[UnknownName, ...]) -> None:
@@ -264,7 +264,11 @@ class CodeArea(TextArea):
             self.refresh()
 
     def set_values(self, values: Mapping[int, Sequence[Variable]]) -> None:
-        """Show the values of variables behind lines, from 1."""
+        """Show the values of variables behind the lines of the text.
+
+        Args:
+            values: The variables by line, from 1.
+        """
         if values != self._values:
             self._values = values
             self.refresh()
@@ -292,17 +296,17 @@ class CodeArea(TextArea):
             self.scroll_to(y=max(0, rows.start - height // 3), animate=False, force=True)
 
     def move_to_code(self, line: int) -> None:
-        """Put the cursor on the first non-blank character of a line."""
+        """Put the cursor on the first non-blank character of a line, from 1."""
         text = self.document.get_line(min(line, self.document.line_count) - 1)
         self.move_cursor((line - 1, len(text) - len(text.lstrip())))
 
     @property
     def gutter_width(self) -> int:
-        """Width of the gutter: a breakpoint, the run or an error, the number, a blank."""
+        """Width of the gutter in cells: the marker of a breakpoint, that of the run or an error, a number, a blank."""
         return max(2, len(str(self.document.line_count))) + 3
 
     def render_line(self, y: int) -> Strip:
-        """Return one row of the screen."""
+        """Return row `y` of the widget."""
         strip = super().render_line(y)
         if self.placeholder and not self.text:
             return strip
@@ -341,9 +345,15 @@ class CodeArea(TextArea):
     def _append_values(
         self, text: Strip, values: Sequence[Variable], room: int, style: Style
     ) -> Strip:
-        """Return a row with the values of variables behind its text, without their names if these do not fit.
+        """Return a row of text with the values of variables behind it; without their names if these do not fit.
 
-        The text gives way: without its value a line is of little use to who looks for an error.
+        If the values do not fit either, the text is cut: who looks for an error needs the values more.
+
+        Args:
+            text: The row.
+            values: The variables.
+            room: Width of the row in cells.
+            style: Style of the values.
         """
         ground = Style(bgcolor=style.bgcolor)
         used = cell_len(text.text.rstrip()) + VALUE_GAP
@@ -380,18 +390,18 @@ class CodeArea(TextArea):
 
     @property
     def takes_letters(self) -> bool:
-        """Whether letters are typed."""
+        """Whether letters are typed into the text, and so are no keys of the app."""
         return self.typing or self.awaits_letters
 
     def await_letters(self, on: bool) -> None:
-        """Let the next letter start typing, or not."""
+        """Set whether the next letter starts typing."""
         on = on and self.can_be_typed_in and not self.typing
         if on != self.awaits_letters:
             self.awaits_letters = on
             self.post_message(self.LettersChanged())
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave keys that are also the app's, such as those of its layouts, to it while the user does not type."""
+        """Return whether a key runs an action of the text; those for typing run only while the user types."""
         return (
             self.typing if action in _TYPING_ACTIONS else super().check_action(action, parameters)
         )
@@ -447,7 +457,7 @@ class CodeArea(TextArea):
             self._consume_event(event)
 
     def _begin_typing(self, event: events.Key) -> None:
-        """Start typing with enter, or after a click with a letter, which is typed; escape makes letters keys again."""
+        """Start typing on enter; after a click also on a letter, which is typed. Escape ends typing."""
         is_letter = self.awaits_letters and event.is_printable
         if event.key == "enter" or is_letter:
             self._consume_event(event)
@@ -462,14 +472,14 @@ class CodeArea(TextArea):
         event.prevent_default()
 
     def _count_deletable_blanks(self) -> int:
-        """Return how many blanks before the cursor backspace deletes, 0 if there is more than indentation."""
+        """Return how many blanks before the cursor backspace deletes; 0 if there is more than indentation."""
         row, column = self.cursor_location
         return text_lines.count_deletable_blanks(self.document.get_line(row)[:column])
 
     # Completion
 
     async def _complete(self) -> None:
-        """Complete the word before the cursor, list what may follow, or indent; keys that are typed meanwhile wait."""
+        """Complete the word before the cursor, or list possible names, or indent; keys pressed meanwhile wait."""
         place = self.cursor_location
         matches: tuple[Candidate, ...] = ()
         if self._find_word() is not None:
@@ -494,7 +504,12 @@ class CodeArea(TextArea):
             self.insert_text(" " * count_tab_columns(self))
 
     def list_names(self, names: tuple[Candidate, ...], begin: tuple[int, int]) -> None:
-        """Open the list of names if the word at the cursor begins at a place."""
+        """Open the list of names for the word at the cursor, unless the cursor has left that word.
+
+        Args:
+            names: The possible names.
+            begin: Row and column where the word begins.
+        """
         word, (row, column) = self._find_word(), self.cursor_location
         if word is not None and (row, column - len(word)) == begin:
             self.candidates.open(names, begin, word, self._locate_word(word))
@@ -514,12 +529,12 @@ class CodeArea(TextArea):
             self.parent.post_message(self.LookedUp())
 
     def _find_word(self) -> str | None:
-        """Return the word that ends at the cursor, as `find_word`."""
+        """Return the word that ends at the cursor, see the function `find_word`."""
         row, column = self.cursor_location
         return find_word(self.document.get_line(row), column)
 
     def _locate_word(self, word: str) -> Offset:
-        """Return where on the screen the word begins that ends at the cursor."""
+        """Return the position on the screen where a word begins that ends at the cursor."""
         x, y = self.cursor_screen_offset
         return Offset(x - cell_len(word), y)
 
@@ -532,7 +547,7 @@ class CodeArea(TextArea):
         )
 
     def follow_word(self) -> None:
-        """Shorten the list of names to the word that is typed now, or close it."""
+        """Show only the names in the list that begin with the word typed so far, or close the list."""
         if not self.candidates.is_open:
             return
         word, (row, column) = self._find_word(), self.cursor_location
@@ -551,7 +566,7 @@ class CodeArea(TextArea):
         self.replace(text, *sorted(self.selection), maintain_selection_offset=False)
 
     def _change_lines(self, change: text_lines.Change) -> None:
-        """Change the selected lines, or the cursor's."""
+        """Replace the selected lines, or the line of the cursor, by what a function returns for them."""
         (top, left), (bottom, right) = sorted(self.selection)
         was_empty = self.selection.is_empty
         if bottom > top and right == 0:
@@ -569,7 +584,7 @@ class CodeArea(TextArea):
             self.selection = Selection((top, 0), (bottom, len(changed[-1])))
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Report a click on a line number, without moving the cursor; one on the text starts typing with a letter."""
+        """Report a click on a line number; after a click on the text, let the next letter start typing."""
         if event.x >= self.gutter_width:
             self.await_letters(True)
         else:

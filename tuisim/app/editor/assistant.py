@@ -29,7 +29,7 @@ MAX_LINES = 5000
 
 
 class Assistant:
-    """Helps to type in one text: marks faults and unknown names, shows signatures and what may follow a dot.
+    """Helps the user to type: marks mistakes and unknown names, shows signatures, and lists the names after a dot.
 
     Args:
         area: The text, with its list of names.
@@ -53,7 +53,10 @@ class Assistant:
         self._is_asking = self._asks_again = False
 
     def describe_cursor(self, width: int) -> Text:
-        """Return the message about an unknown name at the cursor, else the signature of the call, in `width` cells."""
+        """Return a message about the cursor's place in at most `width` cells.
+
+        It is about an unknown name at the cursor, else the signature of the call around it; empty if there is neither.
+        """
         row, column = self._area.cursor_location
         unknown = next(
             (
@@ -70,7 +73,7 @@ class Assistant:
         return format_signature(self._signature, width) if self._signature else Text()
 
     def load_program(self, path: str) -> None:
-        """Forget all about another program, and check the names of this one.
+        """Forget the names of the program before, and check those of the one that is in the text now.
 
         Args:
             path: Path of its file, or its name.
@@ -84,7 +87,7 @@ class Assistant:
         self.check_names()
 
     def schedule_check(self) -> None:
-        """After an edit, check the names soon, and offer names after a dot."""
+        """After an edit, check the names of the text soon, and list the possible names after a dot."""
         self._check_timer = self._restart_timer(self._check_timer, CHECK_DELAY_S, self.check_names)
         row, column = self._area.cursor_location
         is_after_dot = completion.find_word(self._area.document.get_line(row), column) == ""
@@ -115,7 +118,7 @@ class Assistant:
         return self._area.set_timer(after_s, call)
 
     def start(self) -> None:
-        """Begin to help while typing: the first name that is looked up need not wait for the library."""
+        """When typing begins, import the library that finds names, so that the first completion is quick."""
         if not completion.is_ready():
             background.start(completion.preload)
 
@@ -130,7 +133,7 @@ class Assistant:
         background.begin(self._area, self._fetch_names, group="names", exclusive=True)
 
     async def _fetch_names(self) -> None:
-        """List what may follow the dot at the cursor, unless the user asks for it or types on."""
+        """List the possible names after the dot at the cursor, unless the user has asked for them or types on."""
         text, path, row, column = self._place()
         word = completion.find_word(self._area.document.get_line(row), column)
         if word is None or self._area.candidates.is_open:
@@ -141,7 +144,7 @@ class Assistant:
             self._area.candidates.is_offered = True
 
     def check_names(self) -> None:
-        """Look for a line that is not Python and for names that are not defined, and mark them."""
+        """Mark a line that is not valid Python, and the names that are not defined."""
         if self._area.document.line_count > MAX_LINES:
             return
         fault = find_faulty_line(self._area.program_text, self._area.path)
@@ -173,7 +176,7 @@ class Assistant:
     # Signature
 
     def ask_signature(self) -> None:
-        """Look up the function whose arguments are at the cursor."""
+        """Look up the signature of the function whose arguments are at the cursor."""
         if self._is_asking:
             self._asks_again = True
         elif self._area.typing:

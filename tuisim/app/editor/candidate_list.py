@@ -34,7 +34,7 @@ _HELP_GROUND = Style(bgcolor=design.RAISED)
 
 
 def list_lines(candidates: Sequence[Candidate], chosen: int, width: int) -> list[Line]:
-    """Return the rows of a list: the candidates around the chosen one, and the help for it."""
+    """Return the rows of a list of names, `width` cells wide: those around the chosen one, and the help for that."""
     room = min(MAX_ROWS, len(candidates))
     first = find_first_row(chosen, len(candidates), room)
     lines: list[Line] = []
@@ -64,7 +64,7 @@ def _pad_line(line: Sequence[tuple[str, Style]], width: int, style: Style) -> Li
 
 
 def measure_width(candidates: Sequence[Candidate], room: int) -> int:
-    """Return the width of a list in cells, at most `room`."""
+    """Return the width that a list of names needs, in cells; at most `room`."""
     longest = max(
         max(len(candidate.name) + len(candidate.signature or candidate.kind), len(candidate.help))
         for candidate in candidates
@@ -73,14 +73,22 @@ def measure_width(candidates: Sequence[Candidate], room: int) -> int:
 
 
 def list_place(word: Offset, size: Size, screen: Size) -> Offset:
-    """Return where a list of a size stands: below the word, or above it if there is no room, all of it in view."""
+    """Return the position of a list of names on the screen, all of it visible.
+
+    It is below the word that is typed, or above it if there is no room.
+
+    Args:
+        word: Position of the word.
+        size: Size of the list.
+        screen: Size of the screen.
+    """
     below = word.y + 1
     y = below if below + size.height <= screen.height else max(0, word.y - size.height)
     return Offset(max(0, min(word.x - 1, screen.width - size.width - 1)), y)
 
 
 def format_signature(signature: Signature, width: int) -> Text:
-    """Return a signature with the present parameter in bold, shortened to a width around it."""
+    """Return a signature with its current parameter in bold, cut to `width` cells around that parameter."""
     indices = range(len(signature.parameters))
     middle = signature.index or 0
     while len(text := _build_signature(signature, indices)) > width and len(indices) > 1:
@@ -107,7 +115,10 @@ def _build_signature(signature: Signature, indices: range) -> Text:
 
 
 class CandidateList(Widget):
-    """The list, over everything else on the screen; the keys come from the text."""
+    """The list of names that may complete a word, above everything else on the screen.
+
+    It never has the focus: the text passes on the keys.
+    """
 
     ALLOW_SELECT = False
     DEFAULT_CSS = "CandidateList { overlay: screen; display: none; width: auto; height: auto; }"
@@ -117,7 +128,7 @@ class CandidateList(Widget):
 
     @dataclass
     class Chosen(Message):
-        """Posted for the name that was clicked."""
+        """Posted when a name in the list was clicked."""
 
         name: str
 
@@ -136,19 +147,19 @@ class CandidateList(Widget):
 
     @property
     def is_open(self) -> bool:
-        """Whether it is shown."""
+        """Whether the list is shown."""
         return bool(self._shown)
 
     def open(
         self, candidates: tuple[Candidate, ...], begin: tuple[int, int], word: str, place: Offset
     ) -> None:
-        """Show candidates.
+        """Show the names that begin with a word.
 
         Args:
-            candidates: All of them.
-            begin: Row and column of the word that is completed.
-            word: What has been typed of it.
-            place: Where that word begins on the screen.
+            candidates: All names, also those that do not begin with the word.
+            begin: Row and column of the word in the text.
+            word: The letters typed so far.
+            place: Position of the word on the screen.
         """
         self._candidates = candidates
         self.begin = begin
@@ -158,7 +169,7 @@ class CandidateList(Widget):
         self.filter(word, place)
 
     def filter(self, word: str, place: Offset) -> None:
-        """Show only the candidates that begin with a word; without any, or if only the word itself is left, close."""
+        """Show only the names that begin with a word; close the list if there is none, or only the word itself."""
         if word == self._word and self.is_open:
             return
         self._word = word
@@ -184,18 +195,19 @@ class CandidateList(Widget):
         self.display = False
 
     def can_complete(self, word: str) -> bool:
-        """Return whether a dot or a parenthesis typed after a word puts the chosen name in its place.
+        """Return whether a dot or a parenthesis typed after a word replaces the word by the chosen name.
 
-        It does so if the user asked for the list, and the word is no whole name itself.
+        It does if the user asked for the list, and the word is not a whole name already.
         """
         return (
             self.is_open and bool(word) and not self.is_offered and not self._has_whole_name(word)
         )
 
     def takes_key(self, event: events.Key) -> bool:
-        """Return whether the list handles a key.
+        """Return whether the list handles a key, and not the text.
 
-        Enter begins a line instead if it was pressed before the list was seen, or after a whole name in an offered one.
+        Enter goes to the text, and begins a line, if it was pressed before the list was visible, or after a whole name
+        in a list that opened by itself.
         """
         is_whole = self.is_offered and self._has_whole_name(self._word)
         ends_line = event.key == "enter" and (is_whole or event.time < self._opened_s)
@@ -205,7 +217,7 @@ class CandidateList(Widget):
         return any(candidate.name == word for candidate in self._shown)
 
     def take_key(self, key: str) -> str:
-        """Handle a key of the list; return the name that is to be put in, empty if the key chooses none."""
+        """Handle a key of the list; return the name to write into the text, empty if the key chooses none."""
         name = ""
         match key:
             case "escape":
@@ -222,7 +234,7 @@ class CandidateList(Widget):
         return name
 
     def render_line(self, y: int) -> Strip:
-        """Return one row."""
+        """Return row `y` of the list."""
         lines = list_lines(self._shown, self._chosen, self._width) if self._shown else []
         segments = [Segment(text, style) for text, style in lines[y]] if y < len(lines) else []
         return Strip(segments, self._width if segments else 0)
@@ -243,6 +255,6 @@ class CandidateList(Widget):
         self.take_key("down")
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        """Choose the name before."""
+        """Choose the previous name."""
         event.stop()
         self.take_key("up")

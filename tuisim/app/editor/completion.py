@@ -73,7 +73,7 @@ _asking = Lock()
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A name that may stand at the cursor."""
+    """A name that may complete the word at the cursor."""
 
     name: str
     signature: str = ""
@@ -86,7 +86,7 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True)
 class Signature:
-    """A function that is being called."""
+    """The signature of a function whose call is being typed."""
 
     name: str
     parameters: tuple[str, ...]
@@ -95,7 +95,7 @@ class Signature:
 
 
 def find_word(line: str, column: int) -> str | None:
-    """Return the word that is being typed, empty right after a dot; None if nothing can be completed there."""
+    """Return the word that ends at a column of a line, empty right after a dot; None if no name can be there."""
     before = line[:column]
     if any(
         start < column <= end and kind in ("string", "comment")
@@ -110,7 +110,7 @@ def find_word(line: str, column: int) -> str | None:
 
 
 def is_in_call(lines: Sequence[str], row: int, column: int) -> bool:
-    """Return whether a place may be between the parentheses of a call."""
+    """Return whether a position in a text, row and column from 0, may be between the parentheses of a call."""
     depth = 0
     for index in range(row, max(-1, row - MAX_CALL_LINES), -1):
         line = lines[index][:column] if index == row else lines[index]
@@ -133,7 +133,7 @@ def is_in_call(lines: Sequence[str], row: int, column: int) -> bool:
 
 
 def find_candidates(text: str, path: str, row: int, column: int) -> tuple[Candidate, ...]:
-    """Return the names that may stand at a place, the usual ones first.
+    """Return the names that may complete the word at a position, the most usual ones first.
 
     Args:
         text: The program as it stands in the editor; it need not be valid.
@@ -169,7 +169,10 @@ def find_candidates(text: str, path: str, row: int, column: int) -> tuple[Candid
 
 
 def find_signature(text: str, path: str, row: int, column: int) -> Signature | None:
-    """Return the function whose arguments are at a place; None if none is known. Arguments as for `find_candidates`."""
+    """Return the signature of the function whose arguments are at a position; None if it is unknown.
+
+    Arguments as for `find_candidates`.
+    """
     with _asking:
         script, first = _build_script(text, path)
         signatures: list[Any] = _ask_jedi(
@@ -185,7 +188,7 @@ def find_signature(text: str, path: str, row: int, column: int) -> Signature | N
 
 
 def find_members(text: str, path: str, row: int, column: int) -> frozenset[str] | None:
-    """Return all names after the dot behind an object of a library; None if they are not all known.
+    """Return the names of all attributes of the object before a dot, which is of a library; None if not all are known.
 
     Args:
         text, path: As for `find_candidates`.
@@ -218,12 +221,12 @@ def is_ready() -> bool:
 
 
 def preload() -> None:
-    """Let Jedi read what every program uses, so that no key waits for it later. Blocks."""
+    """Let Jedi read the modules that every program uses, so that later look-ups are quick. Blocks."""
     find_candidates(*_WARM_UP_PLACE)
 
 
 def _ask_jedi(ask: Callable[[], Result], otherwise: Result) -> Result:
-    """Return the answer of Jedi, or `otherwise` if Jedi fails."""
+    """Return the result of a look-up with Jedi, or `otherwise` if Jedi fails."""
     try:
         return ask()
     # Jedi has errors of its own with some programs that are not finished.
@@ -232,7 +235,7 @@ def _ask_jedi(ask: Callable[[], Result], otherwise: Result) -> Result:
 
 
 def _build_script(text: str, path: str) -> tuple[Script, int]:
-    """Return Jedi's view of a program after its prelude, and how many lines the prelude has."""
+    """Return Jedi's object for a program with its prelude before it, and the number of lines of the prelude."""
     import jedi
     from jedi.api.environment import InterpreterEnvironment
 
@@ -263,7 +266,7 @@ def _build_script(text: str, path: str) -> tuple[Script, int]:
 
 
 def _find_pybricks(text: str) -> str:
-    """Return the folder with the names of Pybricks in the version that a program is for."""
+    """Return the name of the folder with the modules of Pybricks in the version for which a program is written."""
     words = {*re.findall(r"\w+", text)}
     if words & {HUB_DEVICES.rpartition(".")[2], *HUBS}:
         return "hub"
@@ -282,24 +285,24 @@ def _is_likely(completion: Completion, word: str) -> bool:
 
 
 def _find_module(completion: Completion) -> str:
-    """Return the module in which a name is defined."""
+    """Return the name of the module that defines a name which Jedi proposes; empty if it is unknown."""
     places: list[Any] = _ask_jedi(completion.goto, [])
     return str(places[0].module_name) if places else ""
 
 
 def _find_class(script: Script, line: int, column: int) -> str:
-    """Return the class of the object that ends at a place; empty if it is unknown, or no object of a class."""
+    """Return the name of the class of the object that ends at a position; empty if Jedi finds no instance there."""
     kinds: list[Any] = script.infer(line, column)
     return str(kinds[0].full_name) if kinds and kinds[0].type == "instance" else ""
 
 
 def _rank(completion: Completion, word: str, owner: str) -> tuple[int, ...]:
-    """Return what sorts a candidate: names in the case that is typed first; private, constant and general ones last.
+    """Return the sort key of a name: names in the typed case come first; private, constant and general ones last.
 
     Args:
-        completion: The candidate.
-        word: What has been typed of it.
-        owner: The class behind the dot, whose own names come before inherited ones; empty if there is none.
+        completion: The name.
+        word: The letters typed so far.
+        owner: The class of the object before the dot, whose own names precede inherited ones; empty if there is none.
     """
     is_constant = completion.name.isupper() and completion.type == "statement"
     module = _find_module(completion)

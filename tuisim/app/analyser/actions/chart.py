@@ -24,12 +24,12 @@ _AGAINST = (
 
 
 def mark(screen: LogScreen) -> None:
-    """Set the second cursor, A, where the cursor is, or remove it."""
+    """Put the second cursor, named A, at the cursor; if there is a second cursor already, remove it."""
     screen.model.mark_s = screen.model.cursor_s if screen.model.mark_s is None else None
 
 
 def pan_chart(screen: LogScreen, share: float) -> None:
-    """Show an earlier or later time range, by a share of the present one; a negative share is earlier."""
+    """Move the time range of the chart by a share of its length; a negative share moves it to earlier times."""
     screen.model.pan(share)
 
 
@@ -39,13 +39,13 @@ def fit(screen: LogScreen) -> None:
 
 
 def tick(screen: LogScreen) -> None:
-    """Show or hide the selected variable."""
+    """Draw the selected variable in the chart, or remove it from the chart."""
     if screen.model.selected:
         screen.model.trace.on = not screen.model.trace.on
 
 
 def switch_facets(screen: LogScreen) -> None:
-    """Switch between one chart per variable and one for all."""
+    """Switch between one chart for each variable and one chart for all."""
     switch(screen, "facets")
     if screen.chart.options.facets:
         if len(screen.model.traces.list_ticked()) < 2:
@@ -64,7 +64,7 @@ def switch(screen: LogScreen, option: str) -> None:
 
 
 def align(screen: LogScreen) -> None:
-    """Ask how to align runs."""
+    """Ask by what runs are aligned in the chart, such as time or distance, and draw it again."""
 
     def go(text: str) -> None:
         screen.model.align(text or TIME)

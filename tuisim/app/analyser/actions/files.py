@@ -125,7 +125,7 @@ def ask_chart_file(screen: LogScreen) -> None:
 
 
 def report(screen: LogScreen) -> None:
-    """Ask for the file to write the report to."""
+    """Ask for an HTML file, and write a report on the log with the ticked variables to it."""
     from tuisim.analysis.report import build_default_name, check_report
 
     opened = screen.model.opened

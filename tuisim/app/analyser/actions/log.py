@@ -33,7 +33,7 @@ _OTHER_RUNS = (("last", "the newest run"), ("12", "run 12"))
 
 
 def switch_telemetry(screen: LogScreen) -> None:
-    """Open the telemetry instead of the printed samples, or the reverse."""
+    """Open the telemetry of the stored runs if the printed samples are shown, else the printed samples."""
     if screen.request.file:
         screen.say("A file has no telemetry: R opens stored runs")
         return
@@ -85,7 +85,11 @@ def ask_variable(screen: LogScreen) -> None:
 
 
 def note(screen: LogScreen) -> None:
-    """Ask for a note on the selected band if bands are in view, else on the range between two cursors, or a sample."""
+    """Ask for the text of a note, and store it.
+
+    The note is on the selected band if the bands are in view, else on the range between the two cursors, else on the
+    sample at the cursor.
+    """
     model = screen.model
     trace = model.trace_of_row(model.row)
     name = trace.name
@@ -115,7 +119,7 @@ def note(screen: LogScreen) -> None:
 
 
 def _mark_time_s(model: AnalysisModel) -> float:
-    """Return the time, in its run, of the sample at the second cursor."""
+    """Return the time in s, in its run, of the sample nearest to the second cursor; without one, that at the cursor."""
     trace = model.trace_of_row(model.row)
     if model.mark_s is None or not len(trace.pyramid.times_s):
         return model.find_time_s(model.row)
@@ -183,7 +187,7 @@ def _show_differences(
 
 
 def _go_to_difference(screen: LogScreen, model: AnalysisModel, time_s: float) -> None:
-    """Put the cursor, in the first run, where the runs begin to differ."""
+    """Put the cursor at a time of the first run, in s, at which the runs begin to differ."""
     name = model.selected.partition(" #")[0]
     selected = next(
         (trace.name for trace in model.traces if trace.name in (name, f"{name} #1")), model.selected

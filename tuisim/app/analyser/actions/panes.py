@@ -81,7 +81,7 @@ _FILTERS = (
 
 
 def choose(screen: LogScreen, step: int) -> None:
-    """Move the selection by a number of columns."""
+    """Select the column that is `step` columns to the right of the selected one."""
     screen.model.rows.choose(step)
 
 
@@ -102,7 +102,10 @@ def sort(screen: LogScreen) -> None:
 
 
 def _arrange(screen: LogScreen, model: AnalysisModel, arrangement: TableView) -> None:
-    """Show the rows that a filter or an order has given, with the cursor on one of them, if the log is still open."""
+    """Show the rows of the table after a filter or a sort, with the cursor on one of them.
+
+    Do nothing if another log was opened in the meantime.
+    """
     if screen.model is not model:
         return
     rows = model.rows
@@ -142,7 +145,7 @@ def show_all(screen: LogScreen) -> None:
 
 
 def search(screen: LogScreen) -> None:
-    """Ask for a search text."""
+    """Ask for a text to search the pane for, and go to its first match."""
 
     def go(text: str) -> None:
         screen.searched = text
@@ -213,7 +216,7 @@ def go_to_end(screen: LogScreen, last: bool) -> None:
 
 
 def columns(screen: LogScreen, step: int) -> None:
-    """Move the cursor by columns of the chart, at least to another sample."""
+    """Move the cursor by a number of columns of the chart, but at least to the next or previous sample."""
     model = screen.model
     before = model.row
     model.go_to_time(screen.chart.time_beside(model.cursor_s, step))
