@@ -165,15 +165,11 @@ def build_sensor_lines(
     narrow = wide.replace(" ", "")
     second = fit_line(
         width,
-        *(
-            (
-                format_label(""),
-                format_value(wide.ljust(16)),
-                build_swatch(color),
-                format_unit(what),
-                format_value(f" {color.name}"),
-            )
-            for what in (" color", "")
+        (
+            format_label("  color"),
+            format_value(wide.ljust(16)),
+            build_swatch(color),
+            format_value(f" {color.name}"),
         ),
         (
             format_label("", 2),

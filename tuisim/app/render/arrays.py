@@ -141,9 +141,13 @@ def _build_value_line(face: DiscFace, width: int) -> Line:
     value = face.value_words
     name = face.seen.name
     swatch = build_swatch(face.seen)
-    for what in (" color", ""):
-        if len(value) + len(what) + len(name) + 4 <= width:
-            return [(value, _VALUE), (" ", _UNIT), swatch, (what, _UNIT), (f" {name}", _VALUE)]
+    for middle in (
+        [(" ", _UNIT), swatch, (" color", _UNIT)],
+        [(" color", _UNIT)],
+        [(" ", _UNIT), swatch],
+    ):
+        if len(value) + sum(len(text) for text, _ in middle) + 1 + len(name) <= width:
+            return [(value, _VALUE), *middle, (f" {name}", _VALUE)]
     close = value.replace(" %", "%").replace("mean ", "")
     short = close.partition(" of ")[0]
     fits = (
