@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from unittest.mock import MagicMock
+
 import pytest
 from textual.app import App
 
-from tuisim.app.dialogs.question import LinePrompt, complete_line
+from tuisim.app.dialogs.question import BRANCH, RESTART, BranchQuestion, LinePrompt, complete_line
 
 
 def test_the_word_that_is_typed_is_ended() -> None:
@@ -30,3 +32,20 @@ async def test_a_prompt_is_brief_where_the_screen_below_should_stay_in_sight(
         await pilot.app.push_screen(prompt)
         await pilot.pause()
         assert prompt.has_class("-brief") is is_brief
+
+
+@pytest.mark.parametrize(
+    "is_edited, restart, answer",
+    [(False, True, BRANCH), (True, True, RESTART), (True, False, BRANCH)],
+)
+async def test_enter_runs_an_edited_program_from_its_start_where_that_is_offered(
+    is_edited: bool, restart: bool, answer: str
+) -> None:
+    branch = MagicMock(time_s=2.0, edited=is_edited, goes_on=True)
+    results: list[str | None] = []
+    async with App[None]().run_test() as pilot:
+        question = BranchQuestion(branch, "", in_run=False, restart=restart)
+        await pilot.app.push_screen(question, results.append)
+        await pilot.press("enter")
+        await pilot.pause()
+        assert results == [answer]

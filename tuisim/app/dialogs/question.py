@@ -89,7 +89,8 @@ class BranchQuestion(Dialog[str]):
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("y,enter", "branch", "Branch", show=False),
+        Binding("y", "branch", "Branch", show=False),
+        Binding("enter", "likely", show=False),
         Binding("r", "restart", "From the start", show=False),
         Binding("n", "leave", "Stay", show=False),
     ]
@@ -101,6 +102,7 @@ class BranchQuestion(Dialog[str]):
             "y branches · r runs from the start · n stays" if restart else "y branches · n stays"
         )
         self._restart = restart
+        self._is_edited = branch.edited
         program = "The edited program" if branch.edited else "The program"
         again = (
             "runs from its start to this instant"
@@ -120,6 +122,8 @@ class BranchQuestion(Dialog[str]):
             ("restart", "r", "Run from the start"),
             ("leave", "n", "Stay"),
         ]
+        # Whoever has edited the program most often wants to see it from its start.
+        answers[:2] = answers[1::-1] if self._is_edited else answers[:2]
         yield from _compose_answers(
             answer for answer in answers if self._restart or answer[0] != "restart"
         )
@@ -128,6 +132,10 @@ class BranchQuestion(Dialog[str]):
     def keys(self) -> tuple[KeyWord, ...]:
         """The keys of the answers that are offered, then Escape."""
         return tuple(word for word in super().keys if self._restart or word[0] != "r")
+
+    def action_likely(self) -> None:
+        """Return the first answer."""
+        self.dismiss(RESTART if self._restart and self._is_edited else BRANCH)
 
     def action_branch(self) -> None:
         self.dismiss(BRANCH)
