@@ -22,7 +22,7 @@ _ASKED = re.compile(r"(?P<what>\w+)\((?:ev3-ports:)?(?P<port>\w+)\) is not conne
 
 
 def _list_wordings(words: str) -> Iterator[str]:
-    """Yield an error in fewer and fewer words; each says what to do about it, if the error does."""
+    """Yield shorter and shorter wordings of an error, each with the remedy if the error names one."""
     yield words
     if (parts := _list_parts(words)) is not None:
         missing = _describe_missing(words)
@@ -48,13 +48,13 @@ def _describe_missing(words: str) -> str:
 
 
 def _list_parts(words: str) -> str | None:
-    """Return what the robot has on its ports, with short names; None if an error does not say it."""
+    """Return the parts on the robot's ports that an error lists, with short names; None if it lists none."""
     match = _PARTS.search(words)
     return None if match is None else _PART.sub(r"\1 \2", match["parts"])
 
 
 def fit_words(words: str, width: int) -> str:
-    """Return an error in at most `width` letters: whole if there is room, else the part that helps most."""
+    """Return the longest wording of an error with at most `width` letters, else the part that helps most."""
     wordings = list(_list_wordings(words))
     return next(
         (wording for wording in wordings if len(wording) <= width), cut(wordings[-1], width)
@@ -62,9 +62,9 @@ def fit_words(words: str, width: int) -> str:
 
 
 def find_remedy(words: str) -> str:
-    """Return what to do in the app about an error, with ids of actions in braces.
+    """Return what the user can do in the app about an error, with ids of actions in braces.
 
-    About a mistyped name nothing more is said, as the error itself names the right one.
+    An error about a mistyped name already says the right name.
     """
     if (parts := _list_parts(words)) is None:
         return "{went-wrong} goes there"
@@ -72,7 +72,7 @@ def find_remedy(words: str) -> str:
 
 
 def shorten_error(error: TuisimError) -> str:
-    """Return the text of an error about a name typed into a list, without a hint that repeats the list or a command."""
+    """Return the text of an error about a name that was typed beside a list, without hints that repeat the list."""
     guess, question, _ = error.hint.partition("?")
     if question and guess.startswith("did you mean"):
         return f"{error.message} ({guess}?)"

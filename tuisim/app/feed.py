@@ -41,7 +41,10 @@ _JUMP_MM = 25.0
 
 
 def sample_series(rows: Iterable[OutputRow]) -> Series:
-    """Return the samples among printed lines, at the simulated time of the print or the time they carry."""
+    """Return the samples among printed lines as times in s and values, by name.
+
+    The time is that of the print, or the one that the sample itself has.
+    """
     series: Series = {}
     for sample in list_samples(rows):
         times, values = series.setdefault(sample.name, ([], []))
@@ -52,7 +55,7 @@ def sample_series(rows: Iterable[OutputRow]) -> Series:
 
 @dataclass(slots=True)
 class Feed:
-    """Reading positions in one run's telemetry."""
+    """Reads a run's telemetry piece by piece, for the chart and the pen trace."""
 
     recording: Recording
     _parts: int = field(default=0, init=False)
@@ -66,16 +69,20 @@ class Feed:
 
     @property
     def is_behind(self) -> bool:
-        """Whether part of the run has not been passed to the chart yet."""
+        """Whether some ticks of the run have not been returned by `chart_series` yet."""
         return self._charted < self.recording.telemetry.count
 
     @property
     def is_far_behind(self) -> bool:
-        """Whether more than one call of `chart_series` is due."""
+        """Whether it takes more than one call of `chart_series` to return the rest of the run."""
         return self._charted + POINTS_A_FEED < self.recording.telemetry.count
 
     def begin_again(self) -> bool:
-        """If a part was plugged in, which adds columns, chart the run from its start; return whether there was one."""
+        """If a part was plugged in, which adds columns, restart the chart at the first tick.
+
+        Returns:
+            Whether a part was plugged in since the last call.
+        """
         if self._parts == len(self.recording.plugged):
             return False
         self._parts = len(self.recording.plugged)
@@ -87,7 +94,13 @@ class Feed:
         self._charted = 0
 
     def chart_series(self, mat: Field) -> Series:
-        """Return telemetry traces of the ticks since the last call; of a long stretch, only the first part."""
+        """Return the telemetry of the ticks since the last call, as times in s and values by column.
+
+        Of many ticks it returns only the first ones, and not every one.
+
+        Args:
+            mat: The mat that the sensors read.
+        """
         run = self.recording
         count = run.telemetry.count
         stride = max(1, (count - self._charted) // POINTS_OF_A_RUN)
@@ -111,7 +124,7 @@ class Feed:
         return {name: (times_s, values[name].tolist()) for name in values}
 
     def trace_points(self) -> Points:
-        """Return where the pen drew since the last call."""
+        """Return the points in mm at which the pen drew since the last call."""
         records = self.recording.telemetry.array(self._traced)
         if not len(records):
             return [], []
@@ -131,7 +144,10 @@ class Feed:
 
 
 def trace_run(run: Recording, tick: int) -> Points:
-    """Return where the pen of a run had drawn by the end of a tick, thinned in the same way for all ticks."""
+    """Return the points in mm, x and y, at which the pen of a run has drawn up to a tick.
+
+    Of a long run every n-th point is returned, with the same n for all ticks.
+    """
     records = run.telemetry.array()
     stride = max(1, len(records) // TRACE_POINTS_A_FEED)
     records = records[: tick + 1]
@@ -147,7 +163,12 @@ def trace_run(run: Recording, tick: int) -> Points:
 def _count_jumps(
     records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None
 ) -> npt.NDArray[np.int64]:
-    """Return for each record how often the robot has been placed elsewhere up to it."""
+    """Return for each record how often the robot was placed elsewhere until then.
+
+    Args:
+        records: Consecutive records.
+        before_mm: The position in the record before them; None if there is none.
+    """
     before_x, before_y = before_mm or (np.nan, np.nan)
     way = np.hypot(
         np.diff(records["x_mm"], prepend=before_x), np.diff(records["y_mm"], prepend=before_y)
@@ -176,7 +197,7 @@ PAST_ROWS = 200
 
 
 class PanelFeed:
-    """Passes on what a run writes over time: rows to the output, traces to the chart and to the world.
+    """Passes the output of a run on to the output panel, its data to the chart, and its pen trace to the world.
 
     Args:
         panel_area: The panels.
@@ -196,14 +217,14 @@ class PanelFeed:
         self._printed: object = None
 
     def run_changed(self) -> None:
-        """Begin with another run, or with none."""
+        """Begin to pass on another run, or none if none is in view."""
         recording = self._runs.timeline.recording
         self._feed = Feed(recording) if recording else None
         self._uncharted.clear()
         self._panel_area.clear_log()
 
     def begin_again(self) -> None:
-        """Pass on once more what the run in view has written so far; its trace stays as it is."""
+        """Pass the output and telemetry of the run in view on from its start again; its pen trace stays as it is."""
         recording = self._runs.timeline.recording
         if recording is not None and self._feed is not None:
             self._feed.restart_chart()
@@ -212,14 +233,14 @@ class PanelFeed:
             self.add_rows([*recording.rows.rows(0)])
 
     def add_rows(self, rows: list[OutputRow]) -> None:
-        """Pass rows that the program has written on to the output, and to the chart if it is on the screen."""
+        """Pass new output rows of the program to the output panel, and to the chart if that is on the screen."""
         if output := self._panel_area.output:
             output.add(rows)
         self._uncharted += rows
         self._send_rows()
 
     def _send_rows(self) -> None:
-        """Pass the rows that have been written on to the chart, if it is on the screen."""
+        """Pass the waiting output rows to the chart, if that is on the screen."""
         if self._uncharted and self._panel_area.is_shown("chart"):
             self._append(sample_series(self._uncharted), logged=True)
             self._uncharted.clear()
@@ -231,7 +252,7 @@ class PanelFeed:
 
     @property
     def is_behind(self) -> bool:
-        """Whether the chart is on the screen and has not got the whole run yet."""
+        """Whether the chart is on the screen and does not show the whole run yet."""
         return (
             self._feed is not None
             and self._feed.is_behind
@@ -239,13 +260,16 @@ class PanelFeed:
         )
 
     def _find_mat(self, feed: Feed) -> Field | None:
-        """Return the mat that the chart's readings are taken from; None if no chart or no mat."""
+        """Return the mat of the run, for the readings in the chart; None if the chart is hidden or there is no mat."""
         return (
             self._runs.find_mat(feed.recording.spec) if self._panel_area.is_shown("chart") else None
         )
 
     def _send_telemetry(self, feed: Feed) -> None:
-        """Pass on telemetry as often as the chart is drawn; at once if much of it waits, or the run does not go on."""
+        """Pass telemetry on to the chart as often as the chart is drawn.
+
+        Much waiting telemetry, or that of a run that does not go on, is passed on without a delay.
+        """
         now_s = time.monotonic()
         is_soon = now_s < self._charted_s + CHART_PERIOD_S and not feed.is_far_behind
         if is_soon and self._runs.state is RunPhase.RUNNING:
@@ -255,13 +279,13 @@ class PanelFeed:
             self._append(feed.chart_series(mat), logged=False)
 
     def name_output(self) -> None:
-        """Name the program that has printed the output; before the first run, the one that is open."""
+        """Give the output panel the name of the program that has printed, or before the first run, of the open one."""
         if output := self._panel_area.output:
             program = (self._runs.timeline.recording or self._runs).program
             output.set_program(program.name if program else "")
 
     def show(self) -> None:
-        """Pass on the telemetry since the last call; keep trace and output at the instant in view."""
+        """Pass on the telemetry since the last call; show trace and output up to the instant in view."""
         self._send_rows()
         if self._feed is not None:
             if self._feed.begin_again() and self._panel_area.chart:

@@ -13,7 +13,7 @@ _Stamp = tuple[int, int, int]
 
 
 def _stamp(path: Path) -> _Stamp | None:
-    """Return values of a file that tell two versions of it apart; None if there is no file."""
+    """Return a value that changes when a file changes; None if there is no file."""
     try:
         status = os.stat(path)
     except (OSError, ValueError):
@@ -23,24 +23,24 @@ def _stamp(path: Path) -> _Stamp | None:
 
 
 class FileWatch:
-    """Detects changed files. A check costs one `stat` per file; nothing is read."""
+    """Detects changed files, by one `stat` per file at each check; it reads no file."""
 
     def __init__(self) -> None:
         self._known: dict[Path, _Stamp | None] = {}
 
     def follow(self, paths: Iterable[Path]) -> None:
-        """Watch these files and no others; files already watched keep their state."""
+        """Watch these files and no others; a file that is watched already keeps its last known state."""
         self._known = {
             path: self._known[path] if path in self._known else _stamp(path) for path in paths
         }
 
     def note(self, path: Path) -> None:
-        """Accept the current version of a file: the app itself changed it."""
+        """Store the present state of a file that the app itself has written, so that it does not count as changed."""
         if path in self._known:
             self._known[path] = _stamp(path)
 
     def changed(self) -> list[Path]:
-        """Return the files that are new or changed since the last call. A deleted file may come back."""
+        """Return the files that were made or changed since the last call; deleted ones are not in it."""
         changed_paths = []
         for path, known in self._known.items():
             now = _stamp(path)

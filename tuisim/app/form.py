@@ -64,7 +64,7 @@ class Choice(_Control):
 
     @dataclass
     class Stepped(Message):
-        """Posted when the user asks for another choice, some steps further on."""
+        """Posted when the user asks for the choice `by` steps after the present one."""
 
         choice: Choice
         by: int
@@ -76,7 +76,7 @@ class Choice(_Control):
         self.post_message(self.Stepped(self, by))
 
     def on_click(self, event: events.Click) -> None:
-        """Ask for the previous choice at the left end, else for the next."""
+        """Ask for the previous choice if the left end was clicked, else for the next one."""
         event.stop()
         self.action_step(-1 if event.x == 0 else 1)
 
@@ -94,13 +94,13 @@ class FormPanel(Vertical):
     """The last line while there is no error."""
 
     def say(self, wrong: str) -> None:
-        """Show an error; empty removes it."""
+        """Show an error in the last line; an empty text removes it."""
         self.query_one("#message", Static).update(wrong or self.USE)
         self.set_class(bool(wrong), "-wrong")
 
     @on(Input.Changed)
     def _take_back(self, event: Input.Changed) -> None:
-        """Remove the error of a value that is another one now."""
+        """Remove the error when the user edits the wrong value."""
         event.stop()
         if self.has_class("-wrong"):
             event.input.remove_class("wrong")
@@ -120,16 +120,16 @@ class EntryPanel(FormPanel):
             self._apply(event.widget)
 
     def _apply(self, entry: Input) -> None:
-        """Apply the value of a field, or say why it is invalid."""
+        """Apply the value of a field, or show why it is invalid."""
 
 
 class Row(Vertical):
-    """One row of a form.
+    """One row of a form: a label and a field, or a choice of words.
 
     Args:
         field: Id of the edited field, which identifies the row.
         label: Its label; empty gives the field the whole width.
-        chosen: Whether it is a choice instead of a text field.
+        chosen: Whether it has a choice instead of a text field.
     """
 
     DEFAULT_CSS = """
@@ -142,7 +142,7 @@ class Row(Vertical):
 
     @dataclass
     class Entered(Message):
-        """Posted when the user has typed a value, or asks for another choice."""
+        """Posted when the user has typed a value into the row, or asks for another choice."""
 
         row: Row
         text: str
@@ -218,13 +218,13 @@ class Row(Vertical):
 
 
 class NumberInput(Input):
-    """A text field for a number, which takes no other characters."""
+    """A text field for a number, which accepts no other characters."""
 
     def __init__(self, value: str = "", *, id: str) -> None:  # noqa: A002 (as every widget's)
         super().__init__(value, id=id, compact=True, select_on_focus=True, restrict=r"[-+0-9.,]*")
 
     def on_key(self, event: events.Key) -> None:
-        """When a letter is pressed, which the field does not take, say how to leave the field."""
+        """If a letter is pressed, which the field does not accept, show how to leave the field."""
         if event.character and event.character.isalpha() and isinstance(self.app, ActionHost):
             self.app.say("This field takes a number: escape leaves it, and letters are keys again")
 
@@ -234,7 +234,7 @@ LONG_STEP = 10
 
 
 class Slider(_Control):
-    """One row with a knob on a bar.
+    """One row with a bar and a knob, which sets a number from 0.
 
     Args:
         maximum: The number at the right end.
@@ -278,11 +278,11 @@ class Slider(_Control):
         """The digits of a number that is being typed."""
 
     def validate_value(self, value: int) -> int:
-        """Return the nearest possible number."""
+        """Return the number nearest to `value` that the slider can have."""
         return min(max(value, 0), self.maximum)
 
     def on_key(self, event: events.Key) -> None:
-        """Take a number that is typed digit by digit; enter, another key or the end of the focus ends it."""
+        """Set the number that the user types digit by digit; enter, another key or the loss of the focus ends it."""
         if event.character and event.character.isdecimal() and event.character.isascii():
             event.stop()
             event.prevent_default()

@@ -34,7 +34,9 @@ _SHARE = 0.1
 
 
 class GoalsController:
-    """The goals that are open in the app. While there are none, or their panel is closed, nothing is judged.
+    """The goals that are open in the app, and the judgements of the run in view by them.
+
+    While no goals are open, or their panel is hidden, nothing is judged.
 
     Args:
         app: Shows errors.
@@ -74,15 +76,15 @@ class GoalsController:
 
     @property
     def judged(self) -> tuple[Recording | None, tuple[Judgement, ...]]:
-        """The run that was judged last, and the judgements; empty while there are none."""
+        """The run that was judged last, and its judgements; None and () while there are none."""
         return (self._recording, self._judgements) if self._judgements else (None, ())
 
     def open(self, file: GoalsFile | None, shows: bool = True) -> None:
-        """Open the goals of another task, or of none; its world must have been loaded already.
+        """Open the goals of another task; the world of the task must be loaded already.
 
         Args:
-            file: The goals.
-            shows: Whether to open their panel.
+            file: The goals; None for a world without goals.
+            shows: Whether to show their panel.
         """
         recording = self._run_controller.timeline.recording
         self._earlier = None if recording is None or self.is_of_task(recording) else recording
@@ -92,13 +94,13 @@ class GoalsController:
         self.change(file)
 
     def is_of_task(self, recording: Recording) -> bool:
-        """Return whether a run had the mat and the start pose of the next run."""
+        """Return whether a run had the mat and the start pose that the next run has."""
         was = recording.spec.world
         now = self._run_controller.next_run.spec.world
         return (was.background, was.start) == (now.background, now.start)
 
     def change(self, file: GoalsFile | None) -> None:
-        """Replace the goals by others of the same task; the run in view is judged again."""
+        """Replace the goals by changed ones of the same task, and judge the run in view again."""
         self.file = file
         self._forget()
 
@@ -109,7 +111,7 @@ class GoalsController:
         self.show()
 
     def show(self) -> None:
-        """Update the panel, which may have just been mounted."""
+        """Show the goals and judgements in the goals panel."""
         panel = self._panel_area.goals
         if panel is None:
             return
@@ -174,9 +176,9 @@ class GoalsController:
 def _judge_run(
     goals: Sequence[Goal], folder: Path, live: bool, field: Field | None
 ) -> tuple[tuple[Judgement, ...], float] | None:
-    """Return the judgements of a run, and the seconds that they took; None if a live run ended meanwhile.
+    """Return the judgements of a run, and the seconds that judging took; None if a live run ended meanwhile.
 
-    The run is loaded anew, as the app goes on reading its own views of the recording.
+    The run is loaded from its folder: the app continues to read its own views of the recording.
     """
     from tuisim.tasks.goals.judge import judge
 

@@ -35,13 +35,17 @@ class LabHost(ActionHost, TerminalApp):
         self.notify(self.fill_keys(text), timeout=inf)
 
     def offer_undo(self, undo: Callable[[], None] | None) -> None:
-        """Let the undo key call a function until a run starts or another change can be undone; None withdraws it."""
+        """Let the undo key call a function, until a run starts or another change can be undone.
+
+        Args:
+            undo: The function; None for nothing to undo.
+        """
         self.undo = undo
         self.handle_situation_change()
 
     @abstractmethod
     def handle_situation_change(self) -> None:
-        """Update the footer: other keys may be available."""
+        """Update the footer, because other keys may be available."""
 
     @abstractmethod
     def draw(self, force: bool = False) -> bool:
@@ -53,15 +57,15 @@ class LabHost(ActionHost, TerminalApp):
 
     @abstractmethod
     def start_run(self, paused: bool = False) -> bool:
-        """Start the program, as soon as the mat is ready. Return whether it has started.
+        """Start the program, or let it start when the mat is ready. Return whether it has started.
 
         Args:
-            paused: Pause it at its first line.
+            paused: Whether the program pauses at its first line.
         """
 
     @abstractmethod
     def show_mat(self, pixels: Pixels | None) -> None:
-        """Show the image of the mat that has been prepared; None if it is shown already."""
+        """Show the image of the prepared mat; None if the world panel shows it already."""
 
     @abstractmethod
     def show_next_run(self) -> None:
@@ -73,4 +77,9 @@ class LabHost(ActionHost, TerminalApp):
 
     @abstractmethod
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
-        """Prepare the panels for another run; one that has ended already has last words, and the line of its error."""
+        """Prepare the panels for another run.
+
+        Args:
+            last_words: How the run ended, if it has ended already.
+            error_line: The line at which it ended with an error, 0 for none.
+        """

@@ -27,7 +27,7 @@ class StoredBreaks:
 
 
 def load_kept(program: str) -> StoredBreaks:
-    """Return what is stored for a program; empty if there is nothing or it cannot be read.
+    """Return the stored breakpoints and watches of a program; none if nothing is stored or it cannot be read.
 
     Args:
         program: Its path, or its name if it is in no file.
@@ -61,7 +61,13 @@ def keep(program: str, stored: StoredBreaks) -> None:
 
 
 def follow_edit(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:
-    """Move breakpoints along with their lines after one edit of the text; those on deleted lines are dropped."""
+    """Return breakpoints moved along with their lines after one edit of the text, without those on deleted lines.
+
+    Args:
+        breaks: The breakpoints before the edit.
+        before: The text before the edit.
+        now: The text after it.
+    """
     old, new = source_lines(before), source_lines(now)
     shift = len(new) - len(old)
     if not shift:

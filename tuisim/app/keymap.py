@@ -44,11 +44,11 @@ _HOW = "a character such as x or ?, or a name such as f5, ctrl+x, shift+f5, page
 
 
 def key_of(text: str, at: Location) -> str:
-    """Return a key in Textual's notation.
+    """Return Textual's notation of a key.
 
     Args:
-        text: As the user writes it: a character, or a name with modifiers, such as `ctrl+x`.
-        at: Where it is written.
+        text: The key as the user writes it: a character, or a name with modifiers, such as `ctrl+x`.
+        at: File and entry in which it is written, for errors.
 
     Raises:
         ConfigError: there is no such key, or it has a meaning that cannot be changed.
@@ -71,7 +71,7 @@ def key_of(text: str, at: Location) -> str:
 def apply_keys(
     actions: Mapping[str, Action[Host, Now]], config: UserConfig
 ) -> dict[str, Action[Host, Now]]:
-    """Return a table of keys in which the user's own replace the usual ones.
+    """Return the table of actions in which the user's own keys replace the usual ones.
 
     Raises:
         ConfigError: an id or a key does not exist, or a key belongs to two actions.
@@ -109,7 +109,7 @@ def _check_clashes(
 
 
 def check_theme(config: UserConfig) -> None:
-    """Check the name of the theme.
+    """Check that the theme in the user's settings exists.
 
     Raises:
         ConfigError: there is no such theme.

@@ -34,7 +34,7 @@ _ROOMY_ROWS = 33
 
 
 class LessonController:
-    """The lesson that is open in the app, if any.
+    """The lesson that is open in the app, if any: its session, its panel, and its step beside a log.
 
     Args:
         app: Shows notices.
@@ -71,7 +71,7 @@ class LessonController:
 
     @property
     def lesson(self) -> Lesson | None:
-        """The lesson that is open."""
+        """The lesson that is open; None if none is."""
         return self.session.lesson if self.session is not None else None
 
     @property
@@ -92,13 +92,13 @@ class LessonController:
         return (*answer, "hint", "lesson-menu")
 
     def begin(self) -> None:
-        """Begin with the lesson that was opened at the start."""
+        """Show the lesson with which the app was started, if there is one."""
         if self.session is not None:
             self._goals.judges_always = True
             self._enter(self.session)
 
     def open(self, name: str) -> None:
-        """Open another lesson, given by name; errors are shown."""
+        """Open another lesson, given by its name; show an error if that fails."""
         try:
             lesson = load_lesson(find_lesson(name, self.folder))
             self._load(lesson)
@@ -136,7 +136,10 @@ class LessonController:
             self._loader.open_run(run)
 
     def _choose_panels(self, lesson: Lesson) -> dict[str, bool | None]:
-        """Return which panels to show or hide: the lesson gets the side column, in a high area with the readings."""
+        """Return which panels a lesson shows (True), hides (False) or leaves to the size of the terminal (None).
+
+        The lesson fills the side column; in a high area the readings stay there.
+        """
         beside = [info.id for info in PANELS.values() if info.place is PanelPlace.SIDE]
         usual: dict[str, None] = {}
         if self._panel_area.size.height >= _ROOMY_ROWS:
@@ -161,7 +164,7 @@ class LessonController:
         self._app.handle_situation_change()
 
     def list_lessons(self) -> list[Lesson]:
-        """Return all lessons that can be read, in their order."""
+        """Return all lessons that can be read, in the order in which they are to be done."""
         lessons = []
         for path in find_lesson_paths(self.folder).values():
             try:
@@ -172,7 +175,7 @@ class LessonController:
 
     @property
     def next_name(self) -> str:
-        """The name of the lesson after this one; empty if there is none."""
+        """The name of the lesson after the open one; empty if there is none."""
         names = list(find_lesson_paths(self.folder))
         if self.lesson is None or self.lesson.name not in names:
             return ""
@@ -192,10 +195,10 @@ class LessonController:
     # What the student does
 
     def answer(self, text: str) -> None:
-        """Check a typed answer.
+        """Check a typed answer to the question of the step.
 
         Raises:
-            TuisimError: it is wrong.
+            TuisimError: the answer is wrong.
         """
         if self.session is not None:
             change = Change.SHOW
@@ -222,13 +225,13 @@ class LessonController:
             )
 
     def skip_step(self) -> None:
-        """Leave the step undone and go on to the next."""
+        """Go on to the next step; the present one stays undone."""
         if self.session is not None and (step := self.session.skip_step()):
             self._continue_session(self.session)
             self._app.say(f"Skipped: {step.title}. Start over to do it again")
 
     def restart_lesson(self) -> None:
-        """Forget the progress on the lesson, and begin with its program again; the student's program is kept aside."""
+        """Delete the progress of the lesson, and begin with its program; a copy of the student's program is stored."""
         session = self.session
         if session is None:
             return
@@ -241,7 +244,7 @@ class LessonController:
         self._continue_session(session)
 
     def show_former_step(self) -> None:
-        """Turn back to the step before, and let the arrow keys turn the pages."""
+        """Show the page of the previous step; the arrow keys then turn the pages."""
         self._panel_area.request({"lesson": True})
         self._app.call_after_refresh(self._turn_back)
 
@@ -251,12 +254,12 @@ class LessonController:
             panel.action_turn(-1)
 
     def note_export(self, path: Path) -> None:
-        """Note that the log was exported to a file."""
+        """Note that the student has exported the log to a file, which a step may require."""
         if self.session is not None:
             self._follow(self.session.take_export(path.name))
 
     def update(self) -> None:
-        """Check the step by what has happened; never blocks."""
+        """Check whether the step is done by what the student has done so far; never blocks."""
         session = self.session
         if session is None or session.step is None:
             return
@@ -269,7 +272,7 @@ class LessonController:
         self._follow(Change.SHOW if change is Change.NONE and session.attempt.elsewhere else change)
 
     def _look(self) -> Sight:
-        """Return what the student sees."""
+        """Return what a step is checked by: visible panels, the run in view, its judgements, the debugger's state."""
         runs = self._run_controller
         view = self._debugger.view
         panels = {panel for panel in SEEABLE if self._panel_area.is_shown(panel)}
@@ -296,7 +299,10 @@ class LessonController:
         )
 
     def _follow(self, change: Change) -> None:
-        """Go on to the next step, or save the session, try other worlds and update the panel, as a change requires."""
+        """Act on a change of the session: go on to the next step, or save the session and update the panel.
+
+        A change may also require to try the program in other worlds, which is done in the background.
+        """
         session = self.session
         if session is None or change is Change.NONE:
             return
@@ -347,13 +353,13 @@ class LessonController:
     # The panel
 
     def show(self) -> None:
-        """Update the panel, which may have just been mounted."""
+        """Show the lesson in its panel."""
         for panel in (self._panel_area.lesson, self._beside):
             if panel is not None:
                 panel.show_lesson(self.view())
 
     def build_log_panel(self) -> LessonPanel | None:
-        """Return a panel with the step for a log that is opened above the app; None if no lesson is open."""
+        """Return a panel with the step of the lesson, to be shown beside a log; None if no lesson is open."""
         if self.session is None:
             return None
         from tuisim.app.panels.lesson import LessonPanel
@@ -364,11 +370,11 @@ class LessonController:
         return self._beside
 
     def log_closed(self) -> None:
-        """Forget the panel beside the log, which has been closed."""
+        """Note that the log beside which the step was shown has been closed."""
         self._beside = None
 
     def view(self) -> LessonView:
-        """Return the content of the panel."""
+        """Return the content of the lesson panel."""
         from tuisim.app.render.lesson import LessonView
 
         session = self.session

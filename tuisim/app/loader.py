@@ -79,7 +79,7 @@ class Loader:
         """Files that changed during the run."""
 
     def begin(self) -> None:
-        """Register what the command line has opened, and watch those files."""
+        """Store the settings of the files that the command line has opened, and watch these files."""
         program = self._run_controller.program
         try:
             if self.world_file is not None:
@@ -109,17 +109,17 @@ class Loader:
         )
 
     def prepare_mat_again(self) -> None:
-        """Prepare the mat once more if that has failed."""
+        """Prepare the mat again if that has failed before."""
         if not self.is_preparing:
             self.prepare_mat()
 
     def tell_waiting(self) -> None:
-        """Say that a run waits for the mat, if it still does."""
+        """Show a notice that a run waits for the mat, if the mat is still not prepared."""
         if not self.mat_is_ready:
             self._app.say(SOON)
 
     def _restore_mat(self, spec: RunSpec, error: TuisimError) -> None:
-        """Report the error in a mat, and restore the previous mat."""
+        """Show the error in a mat, and return to the previous mat."""
         self.is_preparing = False
         self._app.complain(error)
         run_controller = self._run_controller
@@ -143,7 +143,7 @@ class Loader:
             self._app.show_mat(None if same_picture else mat.pixels)
 
     def lay_out(self, plan: NextRun, program: Program | None, mat: Mat) -> None:
-        """Set a plan and a program together with their mat, which must have been prepared already."""
+        """Set the plan of the next run, its program, and its mat, which must have been prepared for the plan."""
         self._run_controller.mat = mat
         self._good = plan, mat
         # A program that is open already keeps the settings noted from its cell.
@@ -155,7 +155,14 @@ class Loader:
     # What the user chooses
 
     def try_change(self, make: Callable[[NextRun], NextRun]) -> bool:
-        """Change the plan, or report the error; the robot stays where it is. Return whether the plan was changed."""
+        """Change the plan of the next run, or show the error; the robot stays where it is.
+
+        Args:
+            make: Returns the changed plan.
+
+        Returns:
+            Whether the plan was changed.
+        """
         try:
             self.set_next_run(self.change(make))
         except TuisimError as error:
@@ -164,17 +171,20 @@ class Loader:
         return True
 
     def change(self, make: Callable[[NextRun], NextRun]) -> NextRun:
-        """Return the plan with a change applied.
+        """Change the plan of the next run, and return it.
+
+        Args:
+            make: Returns the changed plan.
 
         Raises:
-            TuisimError: there is a run, or the change is impossible.
+            TuisimError: a run is live, or the change is impossible.
         """
         if self._run_controller.in_run:
             raise TuisimError(self._app.fill_keys(NOT_NOW))
         return make(self._run_controller.next_run)
 
     def set_next_run(self, plan: NextRun) -> None:
-        """Set a plan with the same start; the robot stays where it is."""
+        """Set a plan of the next run that has the same start pose; the robot stays where it is."""
         if plan.robot != self._run_controller.next_run.robot:
             for note in plan.robot.notes:
                 self._app.say(note)
@@ -182,7 +192,7 @@ class Loader:
         self._finish_loading()
 
     def change_mat(self, name: str) -> None:
-        """Change the mat; the robot goes to its start."""
+        """Change the mat of the next run, given by name or path; the robot goes to the start pose of that mat."""
         try:
             self._load(
                 plans.change_mat(self._run_controller.next_run, name), self._run_controller.program
@@ -191,7 +201,7 @@ class Loader:
             self._app.complain(error)
 
     def open_file(self, path: str) -> None:
-        """Open a program with the world that it asks for, or a world with the program and the goals that it names.
+        """Open a program with the world in its magic line, or a world file with the program and goals that it names.
 
         Args:
             path: The file, or the name of an example program.
@@ -211,7 +221,7 @@ class Loader:
         self.tell(decided)
 
     def _open_source(self, source: ProgramSource) -> Decided:
-        """Open a program with what its magic line asks for; return what its source decides."""
+        """Open a program in the world of its magic line; return the settings that the text of the program decides."""
         program, magic = _split_source(source)
         source = drop_wrong_mat(source, self._run_controller.next_run.settings["mats"])
         plan = self._run_controller.next_run
@@ -225,7 +235,7 @@ class Loader:
         return decided
 
     def tell(self, decided: Decided) -> None:
-        """Say in notices what the source of a program has decided, and what the brick would refuse in it."""
+        """Show notices of what the text of a program has decided, and of what the brick would refuse in it."""
         if decided.brief:
             ways = (
                 "{robot} shows it"
@@ -274,7 +284,7 @@ class Loader:
         self.tell(decided)
 
     def _read_world(self, path: Path) -> tuple[str | None, GoalsFile | None]:
-        """Read a world file and remember its settings. Return the path of its program, and its goals, if any."""
+        """Read a world file and store its settings; return the path of its program and its goals, None without them."""
         from tuisim.tasks.goals.files import load_task
 
         world, goals = load_task(path, self._run_controller.next_run.settings["mats"])
@@ -303,7 +313,7 @@ class Loader:
     # Stored runs
 
     def open_run(self, run: str | StoredRun) -> None:
-        """Show a stored run, given as an object or by number or id; errors are shown to the user."""
+        """Show a stored run, given as an object, by number or by id; show an error if it cannot be read."""
         if self._run_controller.in_run:
             self._app.say(NOT_NOW)
             return
@@ -352,11 +362,11 @@ class Loader:
         self._watch.follow(dict.fromkeys(paths))
 
     def note_saved(self, path: Path) -> None:
-        """Note that the app itself wrote a file, so that the change is not reported."""
+        """Note that the app itself has written a file, so that it is not reloaded as changed."""
         self._watch.note(path)
 
     def note_saved_world(self, path: Path) -> None:
-        """Note that the world was written to a file; watch that file from now on."""
+        """Note that the app has written the world to a file, and watch that file from now on."""
         try:
             self._read_world(path)
         except TuisimError as error:
@@ -365,7 +375,7 @@ class Loader:
         self._watch.note(path)
 
     def check_files(self, conflicts: Callable[[Path], bool]) -> None:
-        """Reload the files that have changed on disk; during a run, when it ends.
+        """Reload the watched files that have changed on disk; while a run is live, wait for its end.
 
         Args:
             conflicts: Returns whether a file has unsaved edits, so that it is not reloaded now.
@@ -384,7 +394,7 @@ class Loader:
                 self.reload(path)
 
     def reload(self, path: Path) -> None:
-        """Read a file again that has changed on disk, and apply it; errors are shown."""
+        """Read a changed file again and apply it, with a notice; show an error if that fails."""
         try:
             known = self._read_again(path)
         except TuisimError as error:
@@ -394,7 +404,7 @@ class Loader:
             self._app.say(f"{path.name} changed on disk: reloaded")
 
     def _read_again(self, path: Path) -> bool:
-        """Read a file again. Return whether it is still in use."""
+        """Read a changed file again and apply it. Return whether the app still uses the file."""
         plan = self._run_controller.next_run
         program = self._run_controller.program
         if program and program.path and Path(program.path) == path:
@@ -441,12 +451,12 @@ class Loader:
         self._apply_program(build_program(text, Path(path) if path else None, name))
 
     def take_cell(self, source: ProgramSource | None, settings: Mapping[str, Any]) -> None:
-        """Take the world and the program of a notebook's cell. Not during a run.
+        """Apply the world and the program of a notebook's cell. Not during a run.
 
-        A setting that the cell only repeats keeps the value that the user has given it since.
+        A setting that has the same value as in the previous cell keeps the value that the user has given it since.
 
         Args:
-            source: The program; None leaves the one that is open.
+            source: The program; None if the cell has none.
             settings: The settings of the world, by path.
 
         Raises:
@@ -473,7 +483,7 @@ class Loader:
         self._open_source(build_program(text, None, name))
 
     def _apply_program(self, source: ProgramSource) -> None:
-        """Apply another text of the open program, with the changes in its magic line, and in the robot it needs."""
+        """Apply a changed text of the open program, with changes in its magic line and in the robot that it needs."""
         new, magic = _split_source(source)
         program = self._run_controller.program
         as_said = (
@@ -507,13 +517,13 @@ class Loader:
         source: ProgramSource | None = None,
         gone: Iterable[str] = (),
     ) -> None:
-        """Apply changed settings of a file; unchanged ones keep what the user has set since.
+        """Apply the changed settings of a file; for the others, the user's own changes stay.
 
         Args:
             differences: The new values.
             program: The program from now on.
-            source: The same, if its text has changed.
-            gone: The settings that it no longer has.
+            source: The program with its magic line, if its text has changed.
+            gone: The settings that the file no longer has.
         """
         plan = plans.apply_choices(self._run_controller.next_run, differences)
         decided = Decided()
@@ -534,14 +544,14 @@ def _read_program(path: str) -> ProgramSource:
 
 
 def _split_source(source: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
-    """Return a program with the settings of its magic line."""
+    """Return a program, and the settings of its magic line by path."""
     return source.program, source.options
 
 
 def _plan_in_world(
     source: ProgramSource | None, magic: Mapping[str, Any], world: Mapping[str, Any]
 ) -> tuple[NextRun, Decided]:
-    """Return the plan of a program in a world, which replaces all earlier choices, and what the program decides."""
+    """Return the plan of a program in a world, without earlier choices, and what the text of the program decides."""
     free = find_free_paths(merge_settings(magic, world))
     plan = plans.apply_choices(
         plans.apply_choices(plans.build_plan(Settings(), free), magic), world
@@ -550,7 +560,7 @@ def _plan_in_world(
 
 
 def _find_program_path(word: str) -> str:
-    """Return the path of a program that a world file names: a path, or the name of an example."""
+    """Return the path of the program that a world file names by its path, or as an example."""
     from tuisim.programs.program_file import list_programs
 
     examples = {name: path for name, path, _ in list_programs()}
@@ -570,7 +580,7 @@ def _list_panels(magic: Mapping[str, Any]) -> dict[str, bool]:
 
 
 def _find_differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings of a file that have changed; removed ones get their default."""
+    """Return the settings of a file that differ from those before; a removed one has its default."""
     bare = Settings()
     removed = {path: bare[path] for path in before.keys() - now.keys() if path in plans.WORLD_PATHS}
     return removed | {
@@ -579,7 +589,7 @@ def _find_differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict
 
 
 def program_of(run: StoredRun) -> Program:
-    """Return the program of a run as it was then; with its file only if that still has the same text."""
+    """Return the program of a stored run as it was then; it has a path only if that file still has the same text."""
     from tuisim.programs.program_file import read_program
 
     stored = run.program
@@ -593,7 +603,7 @@ def program_of(run: StoredRun) -> Program:
 
 
 def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | None]:
-    """Return a run with its mat, or with a blank one and the reason for that. Reads both."""
+    """Load a run and its mat; if that mat is missing, return a blank one and the error."""
     run = RunStore().load_run(word) if isinstance(word, str) else word
     if not run.telemetry.count:
         raise LogError(

@@ -20,7 +20,7 @@ BUSY = "the app runs a program: S in it, or its button Stop, stops that"
 
 
 def do_asked(context: ActionContext, asked: Mapping[str, Any]) -> None:
-    """Do what the server of the page asks for.
+    """Do what the web server of the page requests.
 
     Args:
         context: The parts of the app.
@@ -78,8 +78,10 @@ def _take_cell(
 
 
 def _choose_run_options(context: ActionContext, speed: float | None) -> RunOptions:
-    """Return how a cell's program runs, with the limits that it has without the app: as fast as possible, unless the
-    cell or the user of the app has set a speed."""
+    """Return the speed and the limits for the program of a cell: the limits are those of a cell without the app.
+
+    The speed is that of the cell, else the one that the user of the app has set, else as fast as possible.
+    """
     runs = context.runs
     if speed:
         runs.speed = speed

@@ -38,7 +38,7 @@ NEW_NAME = "new.py"
 
 
 class Document:
-    """The open program.
+    """The open program: its edited text, its file, and whether the text can run.
 
     Args:
         app: Shows notices and dialogs.
@@ -86,21 +86,25 @@ class Document:
     # The open program
 
     def begin(self, asks: bool) -> None:
-        """Show what is open; if `asks`, offer to restore a draft of a new program."""
+        """Show the open program at the start of the app.
+
+        Args:
+            asks: Whether to offer to restore the unsaved text of a new program, if there is no open one.
+        """
         self.show_program()
         self.open_at_mistake()
         if asks and self._program is None and (draft := find_draft("")):
             self._offer(draft)
 
     def open_at_mistake(self) -> None:
-        """Show the line of the mistake in the program that has been opened, if there is one."""
+        """If the opened program has a mistake, show the line of the mistake."""
         words = self.go_to_mistake() if self._program else ""
         # The frame of a narrow panel has no room for all of it.
         if words and (output := self._panel_area.output):
             output.note(f"— {words}")
 
     def show_program(self) -> None:
-        """Show the open program, which may have changed."""
+        """Show the next program to run in the code panel; another one, or a changed text, is loaded."""
         program = self._run_controller.program
         if program is not self._program:
             same = program is not None and self._program is not None and program.path == self._path
@@ -138,7 +142,11 @@ class Document:
                 self._offer(draft)
 
     def _parse_text(self, text: str | None = None) -> str | None:
-        """Return the text as a program runs it, None if its magic line is invalid."""
+        """Return the text that would run, without its magic line; None if the magic line is invalid.
+
+        Args:
+            text: A text as edited; None for the text in the editor.
+        """
         from tuisim.programs.program_file import parse_program
 
         try:
@@ -147,7 +155,7 @@ class Document:
             return None
 
     def show(self) -> None:
-        """Update the code panel."""
+        """Show the text and its state in the code panel."""
         if code := self._panel_area.code:
             code.set_program(self._name, self._text, self._path or self._name)
             code.set_title(self._name, self.dirty)
@@ -165,7 +173,7 @@ class Document:
             self._app.call_after_refresh(self._panel_area.code.go_to_error)
 
     def run_changed(self) -> None:
-        """Pass the text of the run in view to the code panel."""
+        """Give the code panel the text of the run in view, so that it can show differences."""
         code = self._panel_area.code
         recording = self._run_controller.timeline.recording
         if recording is None:
@@ -182,11 +190,11 @@ class Document:
             code.set_running(None)
 
     def mark_failure(self, line: int, words: str = "") -> None:
-        """Mark the line of the current run's text at which it ended with an error; 0 for none.
+        """Mark the line at which the current run ended with an error.
 
         Args:
-            line: From 1.
-            words: What went wrong; with them, the code is opened there.
+            line: From 1, in the text of the run; 0 for no error.
+            words: What went wrong; with them, the code panel is opened at the line.
         """
         self._error_line, self._error_words = line, words
         self._seeks_error = bool(line and words)
@@ -205,7 +213,7 @@ class Document:
     # Editing
 
     def handle_edit(self, text: str) -> None:
-        """Handle an edit in the code panel."""
+        """Take over the text that the user has just edited in the code panel."""
         self._text = text
         self._error_line = 0
         if code := self._panel_area.code:
@@ -215,7 +223,7 @@ class Document:
             self._app.set_timer(DRAFT_DELAY_S, self.save_draft)
 
     def save_draft(self) -> None:
-        """Store unsaved text as a draft, or drop the draft if all is saved."""
+        """Store unsaved text as a draft; if all is saved, delete the draft."""
         if not self._draft_pending:
             return
         self._draft_pending = False
@@ -251,7 +259,7 @@ class Document:
             self.show()
 
     def restore(self, draft: Draft) -> None:
-        """Open a program with its unsaved text."""
+        """Open the program of a draft, with the unsaved text of the draft."""
         if draft.path:
             self._restored = draft.path
             self._loader.open_file(draft.path)
@@ -262,7 +270,7 @@ class Document:
             self.show()
 
     def run_when_saved(self, do: Callable[[], None]) -> None:
-        """Call a function that discards the text; with unsaved changes, only after a question."""
+        """Call a function that replaces the text; if there are unsaved changes, ask the user first."""
         if not self.dirty:
             do()
             return
@@ -309,10 +317,10 @@ class Document:
         return is_applied or self._apply_text()
 
     def go_to_mistake(self) -> str:
-        """Show the line because of which the text cannot run.
+        """If the text cannot run, show the line of its mistake.
 
         Returns:
-            Why it cannot; empty if it can, or if the run in view ran this text, which knows more.
+            Why the text cannot run; empty if it can, or if the run in view ran this text, since its error says more.
         """
         self.run_changed()
         is_run = self._ran is not None and self._ran[1] == self._text
@@ -342,7 +350,7 @@ class Document:
         )
 
     def _find_mistake(self) -> Mistake | None:
-        """Return the mistake in the text, and mark its line."""
+        """Return the mistake because of which the text cannot run, and mark its line; None if there is none."""
         from tuisim.programs.program_file import find_mistake
 
         mistake = find_mistake(
@@ -361,7 +369,7 @@ class Document:
         return True
 
     def start_new(self, text: str) -> None:
-        """Start a new program with this text, and type at its end."""
+        """Open a new program with a text, and start typing at its end."""
         draft = find_draft("")
         self._open_new(text)
         if draft:
@@ -379,7 +387,7 @@ class Document:
             self._text = text
 
     def write_mat(self, mat: str) -> None:
-        """Write a mat into the magic line, and save the program unless it has other unsaved changes."""
+        """Write the name of a mat into the magic line; then save the program, unless it had unsaved changes before."""
         from tuisim.programs.program_file import replace_mat
 
         was_dirty = self.dirty
@@ -396,7 +404,10 @@ class Document:
 
     @property
     def named_mat(self) -> str | None:
-        """The mat in the magic line of a program that may be written, empty for none; None without such a line."""
+        """The mat that the magic line of a program names, empty if it names none.
+
+        None if the program has no magic line, or must not be written.
+        """
         from tuisim.programs.program_file import find_magic
 
         if not self._text or (self._path and is_protected(Path(self._path))):
@@ -410,10 +421,10 @@ class Document:
     # Saving
 
     def save(self, then: Callable[[], None] = lambda: None) -> None:
-        """Save the program to its file; ask for a file if it has none.
+        """Save the program to its file; if it has none, ask for a file.
 
         Args:
-            then: Called after it was saved.
+            then: Called after the program was saved.
         """
         if self._program is None:
             self._app.say("No program to save: {open} opens one")
@@ -434,14 +445,14 @@ class Document:
         )
 
     def run_with_file(self, do: Callable[[Path], None]) -> None:
-        """Call a function with the file of the program, which is saved before if necessary."""
+        """Save the program if necessary, then call a function with the path of its file."""
         if self._has_own_file and not self.dirty:
             do(Path(self._path))
         else:
             self.save(lambda: do(Path(self._path)))
 
     def save_own(self) -> None:
-        """Save the text to its file without a question, if it is a file of the student's own."""
+        """Save the text without a question if it has unsaved changes and its file is the student's own."""
         if self.dirty and self._has_own_file and self._try_write(Path(self._path)):
             self._mark_saved(Path(self._path))
 
@@ -480,7 +491,7 @@ class Document:
         write_text(path, self._text, self._form)
 
     def _finish_save(self, path: Path, then: Callable[[], None]) -> None:
-        """Note that the text was saved to a file, and report whether it can run."""
+        """Note that the text was saved to a file, and show a notice, also of a mistake in it; then call `then`."""
         moved = str(path) != self._path
         self._mark_saved(path)
         mistake = self._find_mistake()
@@ -497,7 +508,11 @@ class Document:
     # Changes of the file on disk
 
     def check_conflict(self, path: Path) -> bool:
-        """Return whether a file that changed on disk has unsaved edits here; if so, ask which version to keep."""
+        """If a file that changed on disk has unsaved edits in the app, ask which version to keep.
+
+        Returns:
+            Whether it has unsaved edits.
+        """
         if not self.dirty or Path(self._path) != path:
             return False
         if not self._asking:

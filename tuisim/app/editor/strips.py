@@ -8,7 +8,7 @@ from textual.strip import Strip
 
 
 def highlight_strip(strip: Strip, base: Style, lit: Style) -> Strip:
-    """Return a row with the highlight's background in place of the panel's; that of a cursor or a selection stays."""
+    """Return a row of text with the background of a highlight; a cursor or a selection keeps its own background."""
     background = Style(bgcolor=lit.bgcolor)
     pieces = ((piece.text, piece.style or base) for piece in strip)
     segments = [
@@ -19,5 +19,5 @@ def highlight_strip(strip: Strip, base: Style, lit: Style) -> Strip:
 
 
 def cut_strip(strip: Strip, width: int, style: Style) -> Strip:
-    """Return a row that is too long, or is to give way, with a mark that more follows."""
+    """Return a row of text cut to `width` cells, with an ellipsis in place of the rest."""
     return Strip.join([strip.crop(0, width - 1), Strip([Segment("…", style)], 1)])

@@ -31,7 +31,7 @@ _CLOSING = {quote: re.compile(rf"(?:[^\\]|\\.)*?{quote}") for quote in ('"""', "
 
 
 def find_spans(line: str, before: str = "") -> tuple[list[Span], str]:
-    """Return the coloured parts of a line, and the state after it.
+    """Return the coloured parts of a line of Python, and the quotes of a string that goes on in the next line.
 
     Args:
         line: Without its line end.
@@ -78,17 +78,17 @@ def find_spans(line: str, before: str = "") -> tuple[list[Span], str]:
 
 
 class Colouring:
-    """The states before each line of a text that is edited."""
+    """Finds the colours of a text that is edited; it stores for each line the string in which the line begins."""
 
     def __init__(self) -> None:
         self._before: list[str] = [""]
 
     def forget_line(self, line: int) -> None:
-        """Invalidate a line, from 0, and the lines below."""
+        """Note that a line, from 0, was edited: the colours of the lines from it on are computed again."""
         del self._before[line + 1 :]
 
     def color_line(self, lines: Sequence[str], line: int) -> list[Span]:
-        """Return the coloured parts of one line, from 0."""
+        """Return the coloured parts of one line of the text, from 0."""
         states = self._before
         while len(states) <= line:
             above = lines[len(states) - 1]

@@ -26,7 +26,7 @@ from tuisim.programs.program_file import MAX_PROGRAM_BYTES
 
 @dataclass(frozen=True, slots=True)
 class TextFormat:
-    """The format of a file besides its text."""
+    """The encoding and the line ends of a program file, with which its text is written back."""
 
     encoding: str = "utf-8"
     """Python's name of the encoding; `utf-8` also for a file with a byte order mark."""
@@ -99,7 +99,7 @@ def _is_declared(encoding: str, text: str) -> bool:
 
 
 def is_protected(path: Path) -> bool:
-    """Return whether a program must not be overwritten: it is an example, or read-only."""
+    """Return whether the app must not write to a program's file: it is an example, or read-only."""
     examples = programs_folder().resolve()
     return path.resolve().parent == examples or (
         os.path.exists(path) and not os.access(path, os.W_OK)
@@ -111,7 +111,7 @@ FOLDER = "drafts"
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """The unsaved text of a program."""
+    """A stored text of a program with its unsaved changes."""
 
     path: str
     """Absolute path of the program; empty for a new one without a file."""
@@ -121,7 +121,12 @@ class Draft:
 
 
 def find_program_data(folder: str, path: str) -> Path:
-    """Return the file, in a folder of the app's data, that belongs to a program, given by its path or name."""
+    """Return the path of the file about a program in a folder of the app's data; it need not exist.
+
+    Args:
+        folder: Name of the folder.
+        path: Path of the program, or its name if it has no file.
+    """
     return (
         session_folder()
         / folder
@@ -176,12 +181,12 @@ def _read_draft(file: Path) -> Draft | None:
 
 
 def drop_draft(path: str) -> None:
-    """Delete the draft of a program; one that cannot be deleted is offered again."""
+    """Delete the draft of a program; if it cannot be deleted, it stays and will be offered again."""
     # The folder may be read-only by now; the text itself is safe.
     with suppress(OSError):
         find_program_data(FOLDER, _locate(path)).unlink(missing_ok=True)
 
 
 def _locate(path: str) -> str:
-    """Return the absolute path of a program, which other folders' programs of that name do not have."""
+    """Return the absolute path of a program, which tells it apart from programs of the same name in other folders."""
     return path and os.path.abspath(path)

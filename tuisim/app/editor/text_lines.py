@@ -50,12 +50,15 @@ def _outdent_line(line: str) -> str:
 
 
 def count_deletable_blanks(before: str) -> int:
-    """Return how many blanks backspace deletes at once after `before`: one level of indentation, else 0."""
+    """Return how many blanks backspace deletes behind the text `before`: one level of indentation.
+
+    It is 0 if `before` is not only indentation.
+    """
     return (len(before) - 1) % len(INDENT) + 1 if before and not before.strip(" ") else 0
 
 
 def toggle_comments(lines: Sequence[str]) -> list[str]:
-    """Return lines as comments, or uncommented if all of them are comments."""
+    """Return lines as comments; if all of them are comments, return them uncommented."""
     full = [line for line in lines if line.strip()]
     if full and all(line.lstrip().startswith("#") for line in full):
         return [re.sub(r"^(\s*)# ?", r"\1", line) for line in lines]
@@ -96,7 +99,7 @@ MAX_COMPARED = 400
 
 
 class LineMap:
-    """The lines that two texts have in common, in the same order. Lines count from 1; 0 is none.
+    """A map between the lines of the running text and those of the shown text, from 1; 0 stands for no line.
 
     Args:
         run: Lines of the running text.
@@ -123,9 +126,9 @@ class LineMap:
             )
 
     def find_shown_line(self, line: int) -> int:
-        """Return the line of the text shown for a line of the running text."""
+        """Return the line of the shown text that is a line of the running text; 0 if it was changed or deleted."""
         return self._to_shown[line] if 0 <= line < len(self._to_shown) else 0
 
     def find_run_line(self, line: int) -> int:
-        """Return the line of the running text for a line of the text shown."""
+        """Return the line of the running text that is a line of the shown text; 0 if it was changed or added."""
         return self._to_run[line] if 0 <= line < len(self._to_run) else 0

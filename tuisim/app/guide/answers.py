@@ -33,7 +33,10 @@ _SECTION, _PAGE, _TEXT = (
 
 
 class AnswerList(OptionList):
-    """The list of answers, the best one first and longest; the others are as long as leaves all in view."""
+    """The list of answers of a search; the first one, the best, has the most lines.
+
+    The others have as many lines as keep all answers visible.
+    """
 
     def __init__(self) -> None:
         super().__init__(id="answers")
@@ -41,10 +44,10 @@ class AnswerList(OptionList):
         self._asked: re.Pattern[str] | None = None
 
     def show(self, question: str, results: Sequence[SearchResult], size: Size) -> None:
-        """Show other answers, the first one highlighted.
+        """Show the answers to another question, with the first one highlighted.
 
         Args:
-            question: What was asked; its words stand out.
+            question: The user's question; its words stand out.
             results: The best one first.
             size: Columns and rows of the list.
         """
@@ -54,7 +57,7 @@ class AnswerList(OptionList):
         self.scroll_home(animate=False)
 
     def fit(self, size: Size) -> None:
-        """Draw the answers for a number of columns and rows."""
+        """Draw the answers for another size of the list, in columns and rows."""
         columns = max(size.width - _EDGES, _MIN_COLUMNS)
         index = self.highlighted
         for lines, gap in _LINES:
@@ -66,7 +69,13 @@ class AnswerList(OptionList):
         self.highlighted = index if index is not None and index < len(self._found) else None
 
     def _draw_answers(self, columns: int, lines: int, gap: int) -> Iterator[Text]:
-        """Yield the answers; a gap is below each, so that the highlight begins with it."""
+        """Yield each answer as a text with `gap` empty rows below it.
+
+        Args:
+            columns: Width.
+            lines: Most lines of an answer after the first.
+            gap: Empty rows; below, so that the highlight of an answer begins with its text.
+        """
         above = ("", "")
         for row, answer in enumerate(self._found):
             section = answer.name, answer.heading
@@ -85,7 +94,7 @@ class AnswerList(OptionList):
 
 
 def name_answer(answer: SearchResult) -> tuple[str, str]:
-    """Return the names of the section and the page of an answer; the second is empty at the beginning of a page."""
+    """Return the names of an answer's section and page; the second is empty for the beginning of a page."""
     title = load_pages()[answer.name].title
     return (answer.heading, title) if answer.heading else (title, "")
 
@@ -100,7 +109,7 @@ def _build_heading(answer: SearchResult, columns: int) -> Text:
 def _build_passage(
     answer: SearchResult, columns: int, max_rows: int, search: re.Pattern[str] | None
 ) -> Text:
-    """Return what is shown of an answer, as an item of a list."""
+    """Return the excerpt that the list shows of an answer, in at most `max_rows` rows."""
     lines = [
         Text.assemble(*line)
         for line in draw_excerpt(answer, columns - len(_ITEM), max_rows, search)

@@ -28,7 +28,7 @@ _FEW = 3
 
 
 def own_keys(widgets: Iterable[DOMNode]) -> list[KeyWord]:
-    """Return the keys that widgets themselves take, such as a field and the panel around it."""
+    """Return the keys that widgets handle themselves, such as those of a field and of the panel around it."""
     keys: dict[str, list[str]] = {}
     fields: Sequence[KeyWord] = ()
     for widget in widgets:
@@ -56,7 +56,7 @@ def _load_actions(module: str) -> Mapping[str, Action[Any, Any]]:
 
 
 def list_app_keys() -> Table:
-    """Return the keys of the app, with the user's own."""
+    """Return the table of the app's keys; where the user has chosen other keys, it has those."""
     actions = _load_actions("tuisim.app.actions.keys")
     # The app and `tuisim config` tell what is wrong.
     with suppress(ConfigError):

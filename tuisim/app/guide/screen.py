@@ -37,7 +37,7 @@ from tuisim.terminal.text_runs import Line
 
 @dataclass(frozen=True, slots=True)
 class KeyPage:
-    """The first page of the guide: how to start, and every key."""
+    """The first page of the guide: how to start, and a table of all keys."""
 
     title: str
     start: str
@@ -47,7 +47,7 @@ class KeyPage:
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """The page of the guide and the groups of keys about a panel."""
+    """The page of the guide about a panel, and the groups of keys that concern the panel."""
 
     page: str = ""
     """Empty for the page with every key."""
@@ -96,7 +96,7 @@ KEYS: Place = ("", "")
 
 
 def _build_text(lines: list[Line], matches: range = range(0)) -> Text:
-    """Return lines as a text; those that a search has found stand out."""
+    """Return lines as a text in which the lines `matches`, found by a search, stand out."""
     text = Text(no_wrap=True)
     for row, line in enumerate(lines):
         for part, style in line:
@@ -106,7 +106,7 @@ def _build_text(lines: list[Line], matches: range = range(0)) -> Text:
 
 
 class _Contents(Tree[Place | None]):
-    """The pages by part; below the page in view its sections and the pages that it leads to."""
+    """The tree of the pages by part; below the open page, its sections and the pages to which it links."""
 
     def __init__(self) -> None:
         super().__init__("", id="contents")
@@ -115,7 +115,7 @@ class _Contents(Tree[Place | None]):
         self.auto_expand = False
 
     def show_all(self, keys: str) -> None:
-        """Show the contents.
+        """Show the pages of the guide.
 
         Args:
             keys: Title of the page with the keys.
@@ -136,7 +136,7 @@ class _Contents(Tree[Place | None]):
             node.add_leaf(f"→ {load_pages()[other].title}", (other, ""))
 
     def say(self, words: str) -> None:
-        """Show words about a search in place of the contents."""
+        """Show a message about a search in place of the pages."""
         self.clear()
         self.root.add_leaf(words, None)
 
@@ -228,7 +228,7 @@ class _Page(VerticalScroll):
 
 
 class GuideScreen(Dialog[None]):
-    """The guide; `?` closes it as well.
+    """The guide; Escape or `?` closes it.
 
     Args:
         keys: The page with every key.
@@ -256,7 +256,7 @@ class GuideScreen(Dialog[None]):
         self._found: list[SearchResult] = []
 
     def can_take(self, event: events.Event) -> bool:
-        """Return whether an event can be handled now; a key that leads to the results of a search waits for them."""
+        """Return whether the guide can handle an event now; a key that needs the results of a search waits for them."""
         leads_there = isinstance(event, events.Key) and event.key in (
             "enter",
             "down",
@@ -266,7 +266,7 @@ class GuideScreen(Dialog[None]):
         return super().can_take(event) and not (leads_there and self._answered != self._question)
 
     def on_key(self, event: events.Key) -> None:
-        """Begin a question with a letter, except the one that closes the guide."""
+        """Begin a search with a typed letter; `?` closes the guide instead."""
         if event.character and event.character.isalnum() and event.key != "q":
             event.stop()
             self._search.focus()
@@ -295,7 +295,7 @@ class GuideScreen(Dialog[None]):
         self.call_after_refresh(self._contents.go_to, self.place)
 
     def ask(self, question: str) -> None:
-        """Begin with a question; to be called before the screen is shown."""
+        """Let the guide begin with the search for a question; to be called before the screen is shown."""
         self._at_first = question
 
     @property
@@ -316,12 +316,12 @@ class GuideScreen(Dialog[None]):
 
     @property
     def answers(self) -> Sequence[SearchResult]:
-        """What the search has found, the best answer first."""
+        """The results of the search, the best answer first."""
         return self._found if self._answered == self._question else []
 
     @property
     def place(self) -> Place:
-        """The page in view, and the section that was gone to."""
+        """The page in view, and the section to which the user went."""
         return self._page.place
 
     def on_resize(self, event: events.Resize) -> None:
@@ -338,7 +338,11 @@ class GuideScreen(Dialog[None]):
         self._arrange(event.widget is self._page)
 
     def _arrange(self, reading: bool) -> None:
-        """Show what there is room for beside what is being read; answers have the whole width."""
+        """Show the answers of a search, or the contents, or the page; beside a page, the contents if there is room.
+
+        Args:
+            reading: Whether the user reads a page.
+        """
         columns = self.app.size.width
         searched = bool(self._found)
         self._answers.display = searched and not reading
@@ -347,7 +351,7 @@ class GuideScreen(Dialog[None]):
         self._frame(reading)
 
     def _frame(self, reading: bool) -> None:
-        """Say in the frame where an answer is, and which keys lead on."""
+        """Show in the frame the section of the answer that is read, and the keys that work."""
         frame = self.query_one(".dialog")
         one = self._answers.chosen
         frame.border_title, frame.border_subtitle = self.TITLE_TEXT, self.HINT
@@ -360,7 +364,7 @@ class GuideScreen(Dialog[None]):
             frame.border_subtitle = "esc back to the answers · / search"
 
     def _title_of(self, one: SearchResult) -> str:
-        """Return the names of an answer's page and section, the last of them if there is no room for all."""
+        """Return the names of an answer's page and section; if there is no room for both, the section only."""
         names = [self.TITLE_TEXT, *filter(None, reversed(name_answer(one)))]
         titles = [" · ".join(names[first:]) for first in range(len(names))]
         return next(
@@ -382,7 +386,7 @@ class GuideScreen(Dialog[None]):
 
     @on(AnswerList.OptionSelected)
     def _read(self) -> None:
-        """Read the page of the highlighted answer."""
+        """Open the page of the highlighted answer."""
         if (one := self._answers.chosen) is not None:
             self.action_page()
             self._page.show((one.name, one.heading), one)
@@ -425,7 +429,7 @@ class GuideScreen(Dialog[None]):
 
     @on(Input.Submitted)
     def _open_first(self) -> None:
-        """Read the page of the best answer."""
+        """Open the page of the best answer."""
         if self._found:
             self._read()
         else:
@@ -436,20 +440,20 @@ class GuideScreen(Dialog[None]):
         self._search.select_all()
 
     def action_down(self) -> None:
-        """Go to the contents, or from the question to its second answer."""
+        """Move the focus from the field to the contents, or to the second answer of a search."""
         if self._search.has_focus and len(self._found) > 1:
             self._answers.highlighted = 1
         self.action_contents()
 
     def action_scroll_answers(self, pages: int) -> None:
-        """Go to the answers below or above those in sight, also while the question has the focus."""
+        """Scroll the answers by a number of pages, also while the field has the focus; negative scrolls up."""
         self.action_contents()
         if self._found:
             move = self._answers.action_page_down if pages > 0 else self._answers.action_page_up
             move()  # type: ignore[no-untyped-call]
 
     def action_contents(self) -> None:
-        """Go to the contents, or to the answers."""
+        """Move the focus to the answers of a search; without them, to the contents."""
         self._arrange(reading=False)
         (self._answers if self._found else self._contents).focus()
 
@@ -466,7 +470,7 @@ class GuideScreen(Dialog[None]):
             self.action_contents()
 
     def action_leave(self) -> None:
-        """Leave the page of an answer, else the search, else the guide."""
+        """Return from an answer's page to the answers, or from a search to the contents, or close the guide."""
         if self._found and self._page.has_focus:
             self.action_contents()
         elif self._search.value:

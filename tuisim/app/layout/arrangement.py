@@ -61,7 +61,7 @@ _MIN_FILLED = 0.6
 
 
 class Preset(StrEnum):
-    """An arrangement of panels for a purpose."""
+    """A set of panels for one purpose, such as debugging, with its arrangements."""
 
     STANDARD = "standard"
     DRIVE = "drive"
@@ -70,9 +70,9 @@ class Preset(StrEnum):
 
 
 def is_low(preset: Preset, width: int, height: int) -> bool:
-    """Return whether an area is low: it has room for the world in its whole width, or one panel with long lines.
+    """Return whether an area is too low for the usual forms of a preset.
 
-    An even smaller area shows one panel only.
+    Such an area has room for the world in its whole width, or for one panel with long lines.
     """
     shows_board = (
         preset == Preset.STANDARD and classify_size(width, height + 1) != TerminalSize.SMALL
@@ -83,7 +83,7 @@ def is_low(preset: Preset, width: int, height: int) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Plan:
-    """What a preset shows."""
+    """The panels that a preset shows, and the forms in which they are arranged."""
 
     core: tuple[str, ...]
     """Panels that it is made for, the most important first."""
@@ -136,7 +136,7 @@ _PLANS: Mapping[Preset, _Plan] = {
 
 
 def find_core_panels(preset: Preset, width: int, height: int) -> tuple[str, ...]:
-    """Return the panels that a preset is made for in an area of that size; none for the standard one if not low."""
+    """Return the panels that a preset always shows in an area; the standard one has none unless the area is low."""
     plan = _PLANS[preset]
     return plan.low if is_low(preset, width, height) else plan.core
 
@@ -144,11 +144,11 @@ def find_core_panels(preset: Preset, width: int, height: int) -> tuple[str, ...]
 def choose_panels(
     preset: Preset, switched: Mapping[str, bool], width: int, height: int
 ) -> tuple[list[str], list[str]]:
-    """Return the panels to show, by priority, and those for what space is left.
+    """Return the panels to show, the most important first, and panels that fill the rest of the area.
 
     Args:
         preset: The arrangement.
-        switched: Panels that the user has shown or hidden, the latest last.
+        switched: Panels that the user has shown (True) or hidden, the latest last.
         width: Columns of the area.
         height: Rows of the area.
     """
@@ -184,7 +184,7 @@ _READ_FIRST = ("code", "chart", "arrays")
 
 
 def _gives_way(panel: str, switched: Mapping[str, bool], width: int) -> bool:
-    """Return whether a panel leaves its room to others: to code and variables in a narrow terminal, to a lesson."""
+    """Return whether a panel stays hidden in favour of others, such as code and variables in a narrow terminal."""
     is_narrow = width < _MIN_CODE_COLS
     match panel:
         case "code":
@@ -200,7 +200,10 @@ def _gives_way(panel: str, switched: Mapping[str, bool], width: int) -> bool:
 def _fit_panels(
     form: Form, panels: Sequence[str], fill: Sequence[str], width: int, height: int
 ) -> list[str]:
-    """Return the panels that fit: the wanted ones with what they need, the others where all are shown well."""
+    """Return the panels that fit into an area.
+
+    Each of `panels` needs its minimum size; one of `fill` fits only if all panels are still shown well.
+    """
     fitting: list[str] = []
     for panel in panels:
         node = form([*fitting, panel], width, height)
@@ -228,7 +231,7 @@ def measure_mat(box: PanelBox) -> float:
 
 
 def _is_filled(layout: PanelLayout, share: float) -> bool:
-    """Return whether the mat fills this share of the world's panel."""
+    """Return whether the mat fills at least a share of the world panel's area."""
     box = layout.boxes.get("world")
     return box is None or measure_mat(box) >= share * (box.width - EDGES) * (box.height - EDGES)
 
@@ -248,17 +251,17 @@ def arrange(
     fill: Sequence[str] = (),
     preset: Preset = Preset.STANDARD,
 ) -> PanelLayout:
-    """Place panels on a screen, in the form in which the world is largest.
+    """Return the boxes of panels on a screen, in the form in which the world is largest.
 
     Args:
         panels: Ids, the most wanted first.
         width: Columns.
         height: Rows.
-        fill: Panels for what space is left.
-        preset: Which forms there are.
+        fill: Ids of panels that fill the rest of the screen.
+        preset: The preset, which decides between which forms to choose.
 
     Returns:
-        Boxes that fill the screen without overlap; panels that found no room are left out.
+        Boxes that fill the screen without overlap, without the panels that do not fit.
     """
     if is_single(width, height):
         panels, left_out = panels[:1], tuple(panels[1:])
@@ -283,7 +286,7 @@ _STEPPED = ("world", "instrumentation", "debug", "output", "code")
 
 
 def _is_cramped(width: int, height: int) -> bool:
-    """Return whether code and variables find room neither below a world in the whole width nor beside it."""
+    """Return whether an area has too little room for code and variables, both beside the world and below it."""
     fits_below = is_tall(width, height) and sum(count_tight_rows(_STEPPED, width)) <= height
     return width < _MIN_CODE_COLS and not fits_below
 
@@ -291,7 +294,7 @@ def _is_cramped(width: int, height: int) -> bool:
 def _score_forms(
     panels: Sequence[str], fill: Sequence[str], preset: Preset, width: int, height: int
 ) -> Iterator[tuple[tuple[int, float], Node]]:
-    """Yield the tree in each form, and how good that is."""
+    """Yield the score and the tree of the panels in each possible form; the higher the score, the better the form."""
     plan = _PLANS[preset]
     is_standard = preset == Preset.STANDARD
     is_cramped = is_standard and "debug" in panels and _is_cramped(width, height)
@@ -317,7 +320,7 @@ def _score_forms(
 
 
 def stack_panels(upper: str, lower: str, width: int, height: int) -> PanelLayout:
-    """Place two panels one above the other; the upper one is a little higher."""
+    """Return the boxes of two panels, one above the other; the upper one is a little higher."""
     rows = height * 11 // 20
     boxes = {upper: PanelBox(0, 0, width, rows), lower: PanelBox(0, rows, width, height - rows)}
     return PanelLayout(boxes, wanted=(upper, lower))
@@ -326,7 +329,7 @@ def stack_panels(upper: str, lower: str, width: int, height: int) -> PanelLayout
 def arrange_beside_world(
     panel: str, panels: Sequence[str], width: int, height: int
 ) -> PanelLayout | None:
-    """Place a panel beside the world, with others below that as far as they fit; None where there is no room.
+    """Return boxes with a panel beside the world, and as many others below the world as fit; None if it does not fit.
 
     Args:
         panel: The one that gets most of the width.
@@ -360,12 +363,14 @@ def make_room(
     size: tuple[int, int],
     preset: Preset = Preset.STANDARD,
 ) -> list[str]:
-    """Return the panels to show so that one has room: all of them, else without those beside it, else it alone.
+    """Return the panels to show so that one panel gets a minimum size.
+
+    They are all panels, or if it is too small with these, all but those beside it, or it alone.
 
     Args:
         panel: The one that needs room.
         panels: Ids, the most wanted first.
-        min_size: Columns and rows that are room enough.
+        min_size: Minimum columns and rows of `panel`.
         size: Columns and rows of the screen.
         preset: The arrangement.
     """
@@ -383,7 +388,7 @@ _NAME = "layout"
 
 @dataclass
 class KeptLayout:
-    """The arrangement for a size of the terminal."""
+    """The preset and the shown panels that are stored for a size of the terminal."""
 
     preset: Preset = Preset.STANDARD
     asked: dict[str, bool] = field(default_factory=dict)
@@ -408,7 +413,7 @@ def load_layout(size: TerminalSize) -> KeptLayout:
 
 
 def save_layout(size: TerminalSize, layout: KeptLayout) -> None:
-    """Keep an arrangement; without a writable folder it lasts until the app ends."""
+    """Store an arrangement for a size of the terminal; if the folder cannot be written, it lasts until the app ends."""
     # A list: the order counts, and the file sorts the keys of tables.
     panels = [[panel, on] for panel, on in layout.asked.items()]
     with suppress(OSError):

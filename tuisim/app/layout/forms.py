@@ -73,7 +73,7 @@ def is_single(width: int, height: int) -> bool:
 
 
 def is_tall(width: int, height: int) -> bool:
-    """Return whether an area looks higher than wide; a row counts as 1.6 columns."""
+    """Return whether an area of columns and rows looks higher than wide; a row is as high as 1.6 columns are wide."""
     return height * 1.6 >= width
 
 
@@ -92,12 +92,18 @@ def measure_side(width: int, panels: Sequence[str] = ()) -> int:
 
 
 def select_panels(panels: Sequence[str], where: PanelPlace) -> list[str]:
-    """Return the panels of an area of the screen."""
+    """Return those of some panels that belong in one area of the screen, in the order of `PANELS`."""
     return [info.id for info in PANELS.values() if info.place == where and info.id in panels]
 
 
 def _build_stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], width: int) -> Node:
-    """Return columns of stacked panels; those in `fixed` get that many columns, the others the rest."""
+    """Return columns of stacked panels as a node.
+
+    Args:
+        columns: The panels of each column, from the top.
+        fixed: Widths of some columns, by index; the others share the rest.
+        width: Width of all columns.
+    """
     nodes = [join_nodes(Axis.ROWS, column) for column in columns if column]
     free = [index for index in range(len(nodes)) if index not in fixed]
     if not free or len(nodes) == 1:
@@ -112,9 +118,9 @@ def _build_stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], wi
 
 
 def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
-    """Return the bottom strip, none without panels: as many columns as fit, each with one panel or a few stacked ones.
+    """Return the columns of the bottom strip, each a panel or a few stacked ones; none without panels.
 
-    Code that would be narrow has the whole width, above the others, if all of them are high enough.
+    If code would be narrow and the strip is high enough, the code has the whole width, above the others.
     """
     if not panels:
         return []
@@ -137,7 +143,7 @@ def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
 
 
 def _needs_stack(panels: Sequence[str], width: int, height: int) -> bool:
-    """Return whether lines of code are whole beside a chart above the output, but not beside these two side by side."""
+    """Return whether chart and output must be stacked beside the code, so that lines of code are visible as a whole."""
     beside = _LINE_COLS + _CHART_COLS + PANELS["output"].min_cols
     return (
         set(panels) == {"output", "code", "chart"}
@@ -147,14 +153,14 @@ def _needs_stack(panels: Sequence[str], width: int, height: int) -> bool:
 
 
 def _build_output_stack(width: int) -> Node:
-    """Return code beside the chart, with the output below that."""
+    """Return a node with the code beside the chart, and the output below the chart."""
     code = max(_LINE_COLS, width - _CHART_COLS) / width
     stack = Split(Axis.ROWS, ("chart", "output"), least=_STACKED_ROWS)
     return join_nodes(Axis.COLUMNS, ["code", stack], shares=(code, 1 - code))
 
 
 def _find_strip_shares(stacks: Sequence[Node], width: int) -> list[float]:
-    """Return the shares of the width in a strip where code would leave little to the chart; none for the usual ones."""
+    """Return the shares of a strip's width that leave enough to a chart beside code; none for the usual shares."""
     if not {"chart", "code"}.issubset(stacks) or not {"chart", "code", "output"}.issuperset(stacks):
         return []
     columns = {"chart": _CHART_COLS, "output": PANELS["output"].min_cols}
@@ -167,7 +173,7 @@ def _find_strip_shares(stacks: Sequence[Node], width: int) -> list[float]:
 
 
 def _split_side(side: Sequence[str], height: int) -> tuple[list[str], list[str]]:
-    """Return the panels of the side column, and those that leave it because a lesson needs its rows."""
+    """Return the panels that stay in the side column, and those that must leave it because a lesson needs its rows."""
     side_panels: list[str] = []
     for panel in side:
         rows = sum(PANELS[one].fair_rows for one in (*side_panels, panel))
@@ -178,9 +184,9 @@ def _split_side(side: Sequence[str], height: int) -> tuple[list[str], list[str]]
 
 
 def build_wide(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return the world above the bottom strip, and a column beside both.
+    """Return a node with the world above the bottom strip, and a column beside both.
 
-    With a lesson in the column, other panels move from there to the strip if it has room for them.
+    If a lesson is in the column, other panels move from there to the strip as far as they fit.
     """
     side, strip, main = (
         select_panels(panels, where)
@@ -225,7 +231,10 @@ _MAX_EMPTY_ROWS = 3
 
 
 def build_board(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return the world with readings beside it above a strip with the chart; else, or without room, the wide form."""
+    """Return a node with the world and the readings side by side, above a strip with the chart.
+
+    If there is no room for that, or another set of panels, return that of `build_wide`.
+    """
     side = select_panels(panels, PanelPlace.SIDE)
     main = select_panels(panels, PanelPlace.MAIN)
     roomy = [panel for panel in ("code", "brick") if panel in panels]
@@ -253,12 +262,12 @@ def build_board(panels: Sequence[str], width: int, height: int) -> Node:
 
 
 def _find_strip_rows(height: int) -> int:
-    """Return the rows of the strip below the board with code in it."""
+    """Return the height in rows of a strip with code below the board, in an area of `height` rows."""
     return _CODE_STRIP_ROWS if height >= 3 * _STRIP_ROWS else _LOW_CODE_STRIP_ROWS
 
 
 def _build_board_strip(roomy: Sequence[str], has_output: bool, height: int) -> Node:
-    """Return the chart with the output beside it, or below it if there are panels that need the width."""
+    """Return a node with the chart and the output side by side; beside other panels, they are stacked."""
     if not roomy:
         parts = ["chart", "output"] if has_output else ["chart"]
         return join_nodes(Axis.COLUMNS, parts, shares=(_CHART_SHARE, 1 - _CHART_SHARE))
@@ -280,7 +289,7 @@ _TIGHT_ROWS: Mapping[str, int] = {
 
 
 def count_tight_rows(panels: Sequence[str], width: int) -> list[int]:
-    """Return the rows in which each panel is read on a narrow and high screen."""
+    """Return for each panel the rows that it needs to be read in a narrow and high area."""
     return [
         compute_ideal_rows(width)
         if panel == "world"
@@ -290,7 +299,7 @@ def count_tight_rows(panels: Sequence[str], width: int) -> list[int]:
 
 
 def _build_column(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return panels one above the other, each with the rows that it takes to be read, if there are so many."""
+    """Return a node with stacked panels, each with at least the rows that it needs to be read, if they fit."""
     tight = count_tight_rows(panels, width)
     if len(panels) == 1 or sum(tight) > height:
         return join_nodes(Axis.ROWS, panels)
@@ -298,7 +307,7 @@ def _build_column(panels: Sequence[str], width: int, height: int) -> Node:
 
 
 def build_below(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return the world in the whole width, and everything else in columns below it."""
+    """Return a node with the world in the whole width, and all other panels in columns below it."""
     side, strip, main = (
         select_panels(panels, where)
         for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN)
@@ -348,7 +357,10 @@ _FAIR_ROWS = 22
 
 
 def build_low(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return the world in the whole width, or above a panel that needs it; readings and output below or beside it."""
+    """Return a node for a low area: the world in the whole width, or above a panel that needs the width.
+
+    Readings and output are below the world or beside it.
+    """
     roomy = [panel for panel in _ROOMY if panel in panels]
     beside = [
         panel for panel in (*select_panels(panels, PanelPlace.SIDE), "output") if panel in panels
@@ -382,18 +394,18 @@ def build_low(panels: Sequence[str], width: int, height: int) -> Node:
 
 
 def _find_roomy_rows(roomy: Sequence[str], beside: Sequence[str], height: int) -> int:
-    """Return the rows of the panels that get the whole width, below the world with others beside it."""
+    """Return the rows for the panels in the whole width, below the world and the panels beside that."""
     fair = max(_sum_fair_rows(roomy), height // 2)
     return max(fair - _MAX_YIELDED_ROWS, min(fair, height - sum(_list_read_rows(beside))))
 
 
 def _list_read_rows(panels: Sequence[str]) -> tuple[int, ...]:
-    """Return the rows of each panel beside a small world; the readings get a row more than they need, for the pose."""
+    """Return the height in rows of each panel beside a small world: its minimum, for the readings one row more."""
     return tuple(PANELS[panel].min_rows + (panel == "instrumentation") for panel in panels)
 
 
 def _stack_readings(panels: Sequence[str], height: int) -> Node:
-    """Return stacked panels; if there is room, the readings get a row for the pose."""
+    """Return a node with stacked panels; if there is room, the readings get a further row for the pose."""
     column = join_nodes(Axis.ROWS, panels)
     if isinstance(column, str) or count_min_rows(column) >= height:
         return column
@@ -401,7 +413,7 @@ def _stack_readings(panels: Sequence[str], height: int) -> Node:
 
 
 def _build_line(panels: Sequence[str], width: int) -> Node:
-    """Return output and readings side by side, the output where notices appear."""
+    """Return a node with the output and the readings side by side; the output is at the left, where notices appear."""
     share = max(1 / 2, min(_READINGS_COLS, width - _TEXT_COLS) / width)
     order = [panel for panel in ("output", "instrumentation") if panel in panels]
     return join_nodes(Axis.COLUMNS, order, shares=(1 - share, share))
@@ -412,12 +424,12 @@ def _sum_fair_rows(panels: Sequence[str]) -> int:
 
 
 def build_halves(first: Sequence[str], second: Sequence[str], share: float) -> Form:
-    """Return the form with two columns of these panels, in this order; further panels go below them.
+    """Return a form with two columns; panels that are in neither column go below them.
 
     Args:
-        first: Panels of the left column.
-        second: Panels of the right column.
-        share: Of the width, for the left column; 0 gives the right one the width of the side column.
+        first: Panels of the left column, from the top.
+        second: Panels of the right column, from the top.
+        share: The left column's share of the width; 0 gives the right one the width of the side column.
     """
 
     def build_form(panels: Sequence[str], width: int, height: int) -> Node:
@@ -449,7 +461,7 @@ def build_halves(first: Sequence[str], second: Sequence[str], share: float) -> F
 
 
 def _pair_panels(panels: Sequence[str], width: int) -> list[Node]:
-    """Return stacked panels, with small ones that follow each other side by side if there is room."""
+    """Return the parts of a stack of panels, in which small neighbours are side by side if there is room."""
     nodes: list[Node] = []
     for panel in panels:
         last = nodes[-1] if nodes else None

@@ -29,7 +29,7 @@ class Axis(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Split:
-    """A part of the screen that is divided; its parts are panels or divided again."""
+    """A node of the tree: a part of the screen that is divided into panels or further splits, along an axis."""
 
     axis: Axis
     parts: tuple[Node, ...]
@@ -45,7 +45,7 @@ Node = str | Split
 
 @dataclass(frozen=True, slots=True)
 class PanelBox:
-    """The box of a panel, in cells from the upper left corner."""
+    """The position and the size of a panel, in cells from the upper left corner."""
 
     x: int
     y: int
@@ -64,7 +64,7 @@ class PanelLayout:
     """Panels that get rows first, the most wanted first; the world is before them."""
 
     def rank(self, node: Node) -> int:
-        """Return the rank of a node when rows are given out: the lower the earlier, -1 for the world."""
+        """Return the rank of a node when rows are divided: lower ranks get theirs first; -1 is the world."""
         panels = list_panels(node)
         ranks = [self.wanted.index(panel) for panel in panels if panel in self.wanted]
         return -1 if "world" in panels else min(ranks, default=len(self.wanted))
@@ -86,7 +86,13 @@ def compute_ideal_columns(rows: int) -> int:
 
 
 def join_nodes(axis: Axis, parts: Sequence[Node], shares: Sequence[float] = ()) -> Node:
-    """Return parts as one node; a single part stays as it is."""
+    """Return nodes side by side or above each other as one node; a single node is returned as it is.
+
+    Args:
+        axis: The direction.
+        parts: The nodes.
+        shares: Their shares of the extent; none for the usual ones.
+    """
     if len(parts) == 1:
         return parts[0]
     if axis == Axis.COLUMNS and not shares:
@@ -96,7 +102,7 @@ def join_nodes(axis: Axis, parts: Sequence[Node], shares: Sequence[float] = ()) 
 
 
 def list_panels(node: Node) -> tuple[str, ...]:
-    """Return the panels in a node."""
+    """Return the ids of the panels in a node."""
     return (
         (node,)
         if isinstance(node, str)
@@ -113,7 +119,7 @@ def _can_grow(node: Node) -> bool:
 
 
 def count_min_columns(node: Node) -> int:
-    """Return the columns that a node needs at least."""
+    """Return the minimum width of a node, in columns."""
     if isinstance(node, str):
         return PANELS[node].min_cols
     needed = [count_min_columns(part) for part in node.parts]
@@ -121,7 +127,7 @@ def count_min_columns(node: Node) -> int:
 
 
 def count_min_rows(node: Node) -> int:
-    """Return the rows that a node needs at least."""
+    """Return the minimum height of a node, in rows."""
     if isinstance(node, str):
         return PANELS[node].min_rows
     needed = _list_min_rows(node)
@@ -134,7 +140,7 @@ def _list_min_rows(split: Split) -> list[int]:
 
 
 def count_fair_rows(node: Node, width: int) -> int:
-    """Return the rows with which everything in a node is shown well."""
+    """Return the height in rows at which every panel in a node is shown well, at a width in columns."""
     return _count_wished_rows(node, width, lambda panel: PANELS[panel].fair_rows)
 
 
@@ -157,7 +163,11 @@ def _divide_columns(split: Split, width: int) -> list[int]:
 
 
 def _divide_rows(split: Split, width: int, height: int, rank: Callable[[Node], int]) -> list[int]:
-    """Return the rows of each part: what it needs; by rank, what is fair, then good; the rest to what grows most."""
+    """Return the height in rows of each part of a split.
+
+    Each part gets its minimum; then, by rank, what it needs to be shown well, and still more; the rest goes to the part
+    that grows most.
+    """
     rows = _list_min_rows(split)
     spare = height - sum(rows)
     order = sorted(range(len(rows)), key=lambda index: rank(split.parts[index]))
@@ -193,12 +203,12 @@ def _divide_extent(split: Split, box: PanelBox, rank: Callable[[Node], int]) -> 
 
 
 def place(node: Node, box: PanelBox, layout: PanelLayout) -> None:
-    """Put the panels of a node into a box.
+    """Divide a box between the panels of a node.
 
     Args:
-        node: What to place.
-        box: Where; large enough for what its panels need.
-        layout: Gets the boxes.
+        node: The node.
+        box: The box, not smaller than the minimum size of the node.
+        layout: Gets the boxes of the panels.
     """
     if isinstance(node, str):
         layout.boxes[node] = box
