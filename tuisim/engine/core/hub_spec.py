@@ -18,7 +18,7 @@ class HubKind(NamedTuple):
     """The kind of motor that is usual with this hub, one of `HUB_MOTORS`."""
 
 
-HUB_PORTS = ("A", "B", "C", "D", "E", "F")
+HUB_PORTS = tuple("ABCDEF")
 HUB_MOTORS = ("large-angular", "medium-angular", "small-angular", "interactive", "technic")
 HUBS: Mapping[str, HubKind] = {
     "PrimeHub": HubKind("ABCDEF", "medium-angular"),

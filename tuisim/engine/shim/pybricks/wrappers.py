@@ -7,17 +7,13 @@ from tuisim.engine.shim.pybricks.parameters import Stop
 from tuisim.engine.shim.pybricks.tools import wait
 
 
-def _invalid_stop() -> ValueError:
-    return ValueError("Invalid Argument")
-
-
 class Motor(motor.Motor):
     """The motor of version 2.0 of Pybricks, which keeps the methods of version 1.0."""
 
     def stop(self, stop_type: Stop = Stop.COAST) -> None:
         """Stop the motor: it coasts, brakes or holds."""
         if not isinstance(stop_type, Stop):
-            raise _invalid_stop()
+            raise ValueError("Invalid Argument")
         self._rest(self.ENDINGS[stop_type])
 
     def stalled(self) -> bool:
@@ -69,4 +65,4 @@ class DriveBase(robotics.DriveBase):
             case Stop.HOLD:
                 self.straight(0)
             case _:
-                raise _invalid_stop()
+                raise ValueError("Invalid Argument")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from colorsys import rgb_to_hsv
 from math import cos, dist, radians, sin
 from typing import Any
 
@@ -13,18 +14,10 @@ MAX_DARK_VALUE = 1
 
 def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
     """Return the hue, saturation and value that the firmware computes of red, green and blue, each 0 to 1024."""
-    channels = [channel / 4 for channel in (red, green, blue)]
-    brightest = max(channels)
-    chroma = brightest - min(channels)
-    hue = 0.0
-    if chroma:
-        first = channels.index(brightest)
-        second = channels[(first + 1) % 3]
-        third = channels[(first + 2) % 3]
-        hue = 60 * (2 * first + (second - third) / chroma) % 360
-    hue = int(hue)
-    saturation = int(100 * chroma / brightest) if brightest else 0
-    value = int(101 * brightest / 256)
+    turn, purity, brightest = rgb_to_hsv(red, green, blue)
+    # Rounded first, so that 120 degrees do not become 119.
+    hue, saturation = int(round(360 * turn, 6)), int(round(100 * purity, 6))
+    value = int(101 * brightest / 1024)
     if hue >= 350:
         hue = (350 + 2 * (hue - 350)) % 360
     elif hue < 40:
@@ -37,7 +30,7 @@ def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
 def find_nearest(measured: tuple[int, int, int], colors: Sequence[Any]) -> Any:
     """Return the colour in `colors` that is nearest to a measured hue, saturation and value."""
     hue, saturation, value = measured
-    if not all(_is_ideal(color) for color in colors):
+    if any((color.s, color.v) != (100, 100) and (color.h, color.s) != (0, 0) for color in colors):
         place = _find_place(measured)
         return min(colors, key=lambda color: dist(place, _find_place((*color,))))
     is_grey = saturation <= MAX_GREY_SATURATION or value <= MAX_DARK_VALUE
@@ -45,10 +38,6 @@ def find_nearest(measured: tuple[int, int, int], colors: Sequence[Any]) -> Any:
     if alike[0].s == 0:
         return min(alike, key=lambda color: abs(color.v - value))
     return min(alike, key=lambda color: abs((color.h - hue + 180) % 360 - 180))
-
-
-def _is_ideal(color: Any) -> bool:
-    return (color.s, color.v) == (100, 100) or (color.h, color.s) == (0, 0)
 
 
 def _find_place(color: tuple[int, int, int]) -> tuple[float, float, float]:

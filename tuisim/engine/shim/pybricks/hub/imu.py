@@ -46,14 +46,9 @@ class Accelerometer(Connected):
         if top.T * front:
             raise invalid_argument()
         left = cross(top, front)
-        self._sides = {
-            Side.TOP: top,
-            Side.BOTTOM: -top,
-            Side.FRONT: front,
-            Side.BACK: -front,
-            Side.LEFT: left,
-            Side.RIGHT: -left,
-        }
+        self._sides: dict[Side, Matrix] = dict(
+            zip(Side, (top, -top, front, -front, left, -left), strict=True)
+        )
 
     def _read(self, mode: str = "GYRO-ANG") -> None:
         self.brick.read(mode, INSIDE)
@@ -116,8 +111,11 @@ class IMU(Accelerometer):
     def stationary(self) -> bool:
         """Return whether the robot is at rest, and no motor is held."""
         self._read("GYRO-RATE")
-        motors = self.brick.session.sim.motors
-        return abs(self._rate_dps) < STILL_DPS and all(map(_is_at_rest, motors))
+        motors: Any = self.brick.session.sim.motors
+        is_coasting = all(
+            motor.guide is None and motor.duty is None and not motor.speed_dps for motor in motors
+        )
+        return is_coasting and abs(self._rate_dps) < STILL_DPS
 
     def angular_velocity(self, axis: Matrix | None = None, calibrated: bool = True) -> Any:
         """Return the rate of turn in degrees per second about an axis; without an axis, a vector for all three."""
@@ -166,11 +164,6 @@ class IMU(Accelerometer):
         pairs = zip(given, self._settings, strict=True)
         self._settings = tuple(before if value is None else value for value, before in pairs)
         return None
-
-
-def _is_at_rest(motor: Any) -> bool:
-    """Return whether a motor coasts, and does not turn."""
-    return motor.guide is None and motor.duty is None and not motor.speed_dps
 
 
 def _along(axis: Matrix | None, values: Matrix) -> Any:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar
 
 from tuisim.engine.core.sensors import color
 from tuisim.engine.shim.brick import SENSOR_CLASS
 from tuisim.engine.shim.pybricks import ev3devices
-from tuisim.engine.shim.pybricks.brick import Connected, Waiting, no_device, whole
+from tuisim.engine.shim.pybricks.brick import Connected, Result, Waiting, no_device, whole
 from tuisim.engine.shim.pybricks.hub.colors import find_nearest, measure_hsv
 from tuisim.engine.shim.pybricks.hub.face import show_light
 from tuisim.engine.shim.pybricks.hub.parameters import Port
@@ -20,8 +20,6 @@ FARTHEST_MM = 2000
 """The distance in mm that the distance sensor reads if it hears no echo, or only one from farther away."""
 MAX_FORCE_N = 10.0
 MAX_PRESS_MM = 6.67
-
-Result = TypeVar("Result")
 
 
 class Sensor(ev3devices.Sensor):
