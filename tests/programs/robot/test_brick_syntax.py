@@ -36,6 +36,7 @@ def found(text: str) -> list[tuple[int, str]]:
         ("from collections import namedtuple", "collections"),
         ("class A:\n    @property\n    def b(self): pass", "property"),
         ("open('log.txt')", "open"),
+        ("import usys\nusys.exit()", "sys.exit"),
     ],
 )
 def test_a_refused_line_is_found(text: str, what: str) -> None:
@@ -51,6 +52,7 @@ def test_a_refused_line_is_found(text: str, what: str) -> None:
         "f(1, *a, x=1, **b)",
         "def f(a: int, *b, c=1, **d) -> int: return lambda *x: x",
         "n = 1_000",
+        "import sys\nsys.print_exception(error)\nrobot.exit()",
         "time = watch.time()\nwait(time)",
         "def open(): pass\nopen()\ngripper.open()",
         "async def f():\n    async with a: await b",

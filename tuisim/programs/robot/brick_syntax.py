@@ -13,7 +13,7 @@ from tuisim.programs.robot.course import find_definitions
 from tuisim.programs.robot.source import Module
 
 MISSING_MODULES = "array", "asyncio", "collections", "os", "threading", "time"
-MISSING = (*MISSING_MODULES, "filter", "frozenset", "open", "property")
+MISSING = (*MISSING_MODULES, "filter", "frozenset", "open", "property", "sys.exit")
 """What Pybricks 4 lacks; it refuses nothing else of what `_name_refused` tells, and Pybricks 2.0 has it."""
 
 
@@ -54,6 +54,8 @@ def _name_refused(node: ast.AST) -> str:
             return name
         case ast.Name(id="filter" | "frozenset" | "open" | "property" as name, ctx=ast.Load()):
             return name
+        case ast.Attribute(value=ast.Name(id="sys" | "usys"), attr="exit"):
+            return "sys.exit"
         case ast.JoinedStr():
             return "f-string"
         case ast.NamedExpr():

@@ -109,6 +109,19 @@ def test_a_sound_that_takes_no_time_can_be_awaited(run_on: RunOn) -> None:
     assert run_on(HEAD + text, profile=PROFILE).lines == ["done"]
 
 
+def test_a_sound_goes_on_although_its_task_is_closed(run_on: RunOn) -> None:
+    text = (
+        "from pybricks.tools import multitask, run_task\nasync def main():\n"
+        "    await ev3.speaker.beep(440, 100)\n"
+        "    await multitask(ev3.speaker.beep(880, 3000), wait(250), race=True)\nrun_task(main())"
+    )
+    done = run_on(HEAD + text, profile=PROFILE)
+    assert not done.errors
+    rows = [row for row in done.run.output.read_all_rows() if row.stream == Stream.SPEECH]
+    assert [row.time_ns // 1_000_000 for row in rows] == [0, 100, 350]
+    assert rows[-1].text == "[silence]"
+
+
 def test_buttons_of_the_remote_are_a_set(run_on: RunOn) -> None:
     text = (
         "from pybricks.ev3devices import InfraredSensor\nfrom pybricks.parameters import Port\n"

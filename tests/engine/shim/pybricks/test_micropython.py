@@ -57,6 +57,14 @@ def test_the_interpreter_has_its_name_and_still_imports(here: Command, tmp_path:
     )
 
 
+@pytest.mark.parametrize(
+    ("profile", "version"), [(PROFILE, "(1, 11, 0)"), ("pybricks4", "(1, 26, 0)")]
+)
+def test_the_interpreter_tells_another_version(run_on: RunOn, profile: str, version: str) -> None:
+    done = run_on("import pybricks, usys\nprint(usys.implementation[1])", profile=profile)
+    assert done.lines == [version], done.errors
+
+
 def test_the_compiler_knows_its_names_and_drops_annotations(here: Command, tmp_path: Path) -> None:
     (tmp_path / "helper.py").write_text(
         "SIZE: Length = const(2)\n@micropython.viper\ndef half(x: ptr8) -> Half:\n    return x // SIZE\n"

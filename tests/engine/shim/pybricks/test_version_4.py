@@ -284,6 +284,31 @@ def test_another_command_ends_the_wait_for_a_stall(base: DriveBase) -> None:
     assert base.done()
 
 
+def test_a_task_that_waits_for_a_stall_is_closed_and_the_motor_runs_on(base: DriveBase) -> None:
+    arm = Motor(Port.C)
+
+    async def main() -> None:
+        await multitask(call(arm.run_until_stalled, 200), call(wait, 250), race=True)
+
+    run_task(main())
+    assert arm.simulated.guide is None
+
+
+def test_a_motor_that_is_run_until_it_stalls_has_no_move_under_way(base: DriveBase) -> None:
+    arm = Motor(Port.C)
+
+    async def watch() -> bool:
+        await call(wait, 250)
+        return arm.done() or arm.control.done()
+
+    async def main() -> None:
+        results = await multitask(call(arm.run_until_stalled, 200), watch(), race=True)
+        assert results[1] is False
+
+    run_task(main())
+    assert arm.done()
+
+
 def test_an_error_in_a_task_closes_the_others(base: DriveBase) -> None:
     arm = Motor(Port.C)
 

@@ -116,8 +116,9 @@ def follow(motor: ServoMotor, time_ns: int, values: Values) -> None:
 
 
 def limit_duty(motor: ServoMotor, _time_ns: int, values: Values) -> None:
-    """Limit the power of the motor's current move, in hundredths of a percent; NaN removes the limit."""
+    """Make the motor's current motion seek a stall with a limited power, in hundredths of a percent; NaN: unlimited."""
     motor.control.duty_limit = _read_optional(values[0])
+    motor.control.seeks_stall = True
 
 
 def set_control(motor: ServoMotor, _time_ns: int, values: Values) -> None:

@@ -75,6 +75,7 @@ class Controller:
         "_slips",
         "_stalled_us",
         "duty_limit",
+        "seeks_stall",
         "settings",
         "settles",
         "timed",
@@ -92,6 +93,8 @@ class Controller:
         """Whether a motion for a time is done only when the motor has come to rest."""
         self.duty_limit: int | None = None
         """Highest power of the current move, in hundredths of a percent; None for that of the settings."""
+        self.seeks_stall = False
+        """Whether the motion goes on until something stops it."""
         self._goal: Segment | None = None
         """For a motion that goes on after a move: where the move would have ended, with its rate."""
         self._paused_us = 0
@@ -310,6 +313,7 @@ class Controller:
     def _begin(self, trajectory: Trajectory, *, timed: bool) -> None:
         self.trajectory = trajectory
         self.timed = timed
+        self.seeks_stall = False
         self.duty_limit = self._goal = None
         self._paused_us = self._behind_milli = self._stalled_us = 0
 
@@ -366,7 +370,7 @@ class Controller:
         if end_us is None:
             goal = self._goal
             if goal is None:
-                return is_windowed or self.trajectory is None
+                return self.trajectory is None or (is_windowed and not self.seeks_stall)
             return (milli - goal.milli) * goal.rate >= 0
         if now_us < end_us:
             return False

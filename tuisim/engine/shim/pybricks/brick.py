@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import field
 from math import nan
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.commands.calls import MAX_NUMBER, Call
@@ -38,14 +38,23 @@ Waiting = Generator[int, None, Result]
 """Something that takes time: it yields the times in microseconds until which to wait."""
 
 
-class Awaited(Generic[Result]):
-    """The awaitable object that a blocking call returns while a task runs."""
+class Awaited:
+    """The awaitable object that a blocking call returns while a task runs.
 
-    def __init__(self, waiting: Waiting[Result]) -> None:
-        self._waiting = waiting
+    Args:
+        waiting: What takes the time.
+        stop: Ends what the call has begun if the task that awaits it is closed.
+    """
 
-    def __await__(self) -> Waiting[Result]:
-        return self._waiting
+    def __init__(self, waiting: Waiting[Any], stop: Callable[[], object]) -> None:
+        self._waiting, self.stop = waiting, stop
+
+    def __await__(self) -> Waiting[Any]:
+        try:
+            return (yield from self._waiting)
+        except GeneratorExit:
+            self.stop()
+            raise
 
 
 @dataclass(slots=True)
@@ -130,18 +139,12 @@ class Brick:
         self.session.command()
         return self.session.now // 1000
 
-    def until_done(
-        self,
-        done: Callable[[int], bool],
-        control: Any,
-        stop: Callable[[], object] = lambda: None,
-    ) -> Waiting[None]:
+    def until_done(self, done: Callable[[int], bool], control: Any) -> Waiting[None]:
         """Wait until a move is done: yield the times in microseconds at which to check again.
 
         Args:
             done: Returns whether the move is done at a time in microseconds.
             control: The controller or drive base that executes the move.
-            stop: Ends the move if the task that awaits it is closed.
         """
         begin = now = self.now_us
         trajectory = control.trajectory
@@ -149,16 +152,16 @@ class Brick:
             until = max(control.end_us or 0, now + 1)
             if any(motor.blocked_ticks for motor in self.built.motors.values()):
                 until = min(until, now + BLOCKED_POLL_US)
-            try:
-                yield begin - (begin - until) // POLL_US * POLL_US
-            except GeneratorExit:
-                stop()
-                raise
+            yield begin - (begin - until) // POLL_US * POLL_US
             now = self.now_us
 
-    def finish(self, waiting: Waiting[Result]) -> Result:
-        """Block until a wait is over, and return its result; while a task runs, return an object to await."""
-        awaited: Any = Awaited(waiting)
+    def finish(self, waiting: Waiting[Result], stop: Callable[[], object] = lambda: None) -> Result:
+        """Block until a wait is over, and return its result; while a task runs, return an object to await.
+
+        Args:
+            waiting, stop: As of `Awaited`.
+        """
+        awaited: Any = Awaited(waiting, stop)
         return awaited if self.in_task else self.block(waiting)
 
     @waits_for(Wait.MOTOR)

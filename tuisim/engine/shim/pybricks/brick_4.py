@@ -14,7 +14,7 @@ from tuisim.engine.shim.pybricks.hsv_color import Color
 from tuisim.engine.shim.pybricks.speaker import TonePlayer
 from tuisim.engine.shim.pybricks.tools import wait
 from tuisim.engine.shim.sound import Loudspeaker
-from tuisim.engine.shim.tones import Heard
+from tuisim.engine.shim.tones import Heard, Tone
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
 HUES: Mapping[int, str] = {15: "RED", 45: "ORANGE", 90: "YELLOW", 180: "GREEN", 330: "", 360: "RED"}
@@ -63,9 +63,13 @@ class Speaker(TonePlayer):
         self._volume = max(0, min(100, whole(volume)))
         return None
 
-    def _play(self, heard: Heard) -> None:
-        Loudspeaker(self.brick.session).play(heard, 0)
-        return wait(heard.length_ns // MS)
+    def _play(self, heard: Heard) -> Any:
+        play = Loudspeaker(self.brick.session).play
+        play(heard, 0)
+        sounding: Any = wait(heard.length_ns // MS)
+        if sounding is not None:
+            sounding.stop = lambda: play(Heard("[silence]", 0, (Tone(0.0, 0.0),)), 0)
+        return sounding
 
 
 class System(Connected):

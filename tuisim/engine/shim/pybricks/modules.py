@@ -97,7 +97,9 @@ def _name_later(owner: str, name: str) -> str:
 
 
 def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Names:
-    """Return what each module of the library defines in a run, and set the hints for names of other versions.
+    """Return what each module of the library defines in a run.
+
+    It also sets the hints for names of other versions of the library, and the version of the interpreter.
 
     Args:
         brick: The brick.
@@ -112,6 +114,7 @@ def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Names:
     from tuisim.engine.shim.pybricks.earlier import EARLIER_MODULES, name_replacement
 
     brick.name_replacement = name_replacement
+    vars(sys.implementation)["version"] = (1, 26, 0)
     names: Names = {name: {} for name in EARLIER_MODULES}
     names |= read_version_4(hub)
     return {name: {"__getattr__": partial(refuse_name, hub, name), **names[name]} for name in names}

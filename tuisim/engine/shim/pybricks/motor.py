@@ -257,11 +257,8 @@ class Motor(DCMotor):
         motor = self.simulated
         self._follow(ending_of(self.ENDINGS, then))
         if wait:
-            return self.brick.finish(
-                self.brick.until_done(
-                    lambda now_us: self._done(now_us, call), motor.control, self.stop
-                )
-            )
+            waiting = self.brick.until_done(lambda now_us: self._done(now_us, call), motor.control)
+            return self.brick.finish(waiting, self.stop)
         return None
 
     def _done(self, now_us: int, call: str) -> bool:
@@ -300,7 +297,7 @@ class Motor(DCMotor):
         self.run(speed)
         self.tell(Call.LIMIT_DUTY, limit)
         self._follow()
-        return self.brick.finish(self._until_stalled(then))
+        return self.brick.finish(self._until_stalled(then), self.stop)
 
     def _until_stalled(self, then: Stop) -> Waiting[int]:
         motor = self.simulated

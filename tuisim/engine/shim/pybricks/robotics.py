@@ -101,7 +101,7 @@ class DriveBase(Connected):
             self.tell(Call.MOVE_BASE, distance_mm, angle_deg, ending)
         except ValueError:
             raise invalid_argument() from None
-        return self.brick.finish(self._wait_for_end(call)) if wait else None
+        return self.brick.finish(self._wait_for_end(call), self.stop) if wait else None
 
     def _wait_for_end(self, call: str) -> Waiting[None]:
         """Wait until the move of a call is over; print a message once if something blocks the wheels."""
@@ -112,7 +112,7 @@ class DriveBase(Connected):
                 self.brick.say_stalled("the wheels are", call)
             return not base.active or base.done(now_us)
 
-        return self.brick.until_done(done, base, self.stop)
+        return self.brick.until_done(done, base)
 
     def drive(
         self,

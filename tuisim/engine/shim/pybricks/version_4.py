@@ -90,6 +90,11 @@ class Motor(motor.Motor):
         ):
             DriveBase.current.stop()
 
+    def dc(self, duty: float) -> None:
+        """Run the motor at a power in percent, up to its highest voltage, without control of its speed."""
+        highest = int(self._max_mv / BATTERY_V / 10)
+        super().dc(max(-highest, min(highest, whole(duty))))
+
     _zero_deg = 0
     """The angle, as the program counts it, of the mark on the shaft, where the motor began."""
 
@@ -225,7 +230,7 @@ class DriveBase(robotics.DriveBase):
             dx, dy: How far the point is in mm, along heading 0 and to the left of that.
             then: What the motors do at the end.
         """
-        return self.brick.finish(self._move_by(whole(dx), whole(dy), then))
+        return self.brick.finish(self._move_by(whole(dx), whole(dy), then), self.stop)
 
     def _move_by(self, dx: int, dy: int, then: Stop) -> Waiting[None]:
         self.turn(round(-degrees(atan2(dy, dx))), wait=False, absolute=True)

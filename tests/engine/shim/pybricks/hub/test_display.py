@@ -56,6 +56,12 @@ def test_only_pictures_of_25_pixels_are_icons(hub: Any, icon: Any) -> None:
         hub.display.icon(icon)
 
 
+@pytest.mark.parametrize("count", [1, 256])
+def test_an_animation_has_another_number_of_icons_than_a_hub_takes(hub: Any, count: int) -> None:
+    with pytest.raises(ValueError, match="Invalid argument"):
+        hub.display.animate([[[100] * 5] * 5] * count, 100)
+
+
 def test_a_text_is_shown_character_by_character(lab: Lab, hub: Any) -> None:
     hub.display.text("Hi")
     assert lab.now == 2 * (500 + 50) * 1_000_000

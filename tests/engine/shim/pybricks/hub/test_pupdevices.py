@@ -287,6 +287,18 @@ def test_a_motor_that_stands_at_full_power_is_stalled() -> None:
     assert not motor.stalled()
 
 
+@pytest.mark.parametrize(("kind", "percent"), [("small-angular", 75), ("medium-angular", 100)])
+def test_a_motor_gets_more_than_its_highest_voltage(kind: str, percent: int) -> None:
+    Lab(MotorLaw.PYBRICKS_4, {"A": kind}, hub="PrimeHub")
+    ports: Any = Port
+    motor: Any = Motor(ports.A)
+    motor.dc(-100)
+    assert motor.simulated.duty == -100 * percent
+    motor.settings(4000)
+    motor.dc(60)
+    assert motor.simulated.duty == 5000
+
+
 def test_ambient_light_is_grey(run_on: RunOn) -> None:
     text = (
         "from pybricks.hubs import PrimeHub\nfrom pybricks.parameters import Color, Port\n"

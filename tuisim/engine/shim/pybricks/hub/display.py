@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, ClassVar
 
 from tuisim.engine.runs.brick_state import SIDE_PIXELS
@@ -16,9 +16,10 @@ from tuisim.engine.shim.pybricks.tools import wait, wait_until
 
 LAST = SIDE_PIXELS - 1
 MAX_NUMBER = 99
+MAX_FRAMES = 255
 POLL_MS = 10
-TURNS: Mapping[Side, int] = {Side.TOP: 0, Side.RIGHT: 1, Side.BOTTOM: 2, Side.LEFT: 3}
-"""By how many quarters a picture is turned clockwise on the matrix, by the side that is up."""
+TURNS = Side.TOP, Side.RIGHT, Side.BOTTOM, Side.LEFT
+"""The sides that can be up, by the number of quarters by which a picture is then turned clockwise on the matrix."""
 
 
 def _spread_bits(bits: int) -> Pixels:
@@ -71,7 +72,7 @@ class Display(Connected):
     def _draw(self, pixels: Pixels) -> None:
         self._pixels = pixels
         rows = _split_rows(pixels)
-        for _ in range(TURNS[self._up]):
+        for _ in range(TURNS.index(self._up)):
             rows = [*zip(*reversed(rows), strict=True)]
         show_pixels([value for row in rows for value in row])
 
@@ -103,7 +104,10 @@ class Display(Connected):
 
     def animate(self, icons: Iterable[Any], interval: int) -> None:
         """Show pictures one after another, each for `interval` ms, in the background."""
-        self._animation.play(self._draw, [(_read_icon(icon), interval) for icon in icons])
+        frames = [(_read_icon(icon), interval) for icon in icons]
+        if not 2 <= len(frames) <= MAX_FRAMES:
+            raise invalid_argument()
+        self._animation.play(self._draw, frames)
 
     def char(self, char: str) -> None:
         """Show a character on the matrix of lights."""
