@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find the first tick at which all conditions are true."""
+    """Return the first tick of a span in which all comparisons of a condition are true, or why there is none."""
     import numpy as np
 
     ticks = span.ticks
@@ -58,7 +58,10 @@ def _refuse(text: str, comparison: ValueCondition, error: ConfigError | ValueErr
 
 
 def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> str:
-    """Return how near a column came to the number of its comparison, to end a sentence; empty for other conditions."""
+    """Return how near a column came to the number that it is compared with, to end a sentence.
+
+    It is empty without a number.
+    """
     import numpy as np
 
     if comparison.source is not ValueSource.COLUMN or comparison.is_momentary:
@@ -69,7 +72,7 @@ def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: Evid
 
 
 def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when conditions were first violated; with a share, whether they were true for too little of the time."""
+    """Return when comparisons of a condition were first false or, with a share, if they were false for too long."""
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -107,7 +110,7 @@ def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan)
 
 
 def _check_samples(named: ValueCondition, evidence: Evidence) -> tuple[Array, Array]:
-    """Return for each tick whether a condition is true of all samples in it, and whether it has any."""
+    """Return for each tick whether a comparison is true of all its samples, and whether it has any samples."""
     import numpy as np
 
     seen = evidence.find_true_rows(replace(named, sign=Operator.SEEN, value=""))
@@ -133,7 +136,7 @@ def _measure_gaps_mm(records: Array, evidence: Evidence) -> Array:
 
 
 def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when something happened once too often, or at the end of a span that it happened too seldom."""
+    """Return when something happened once too often or, at the end of a span, that it happened too seldom."""
     comparison = condition.condition
     try:
         named = resolve_column(comparison, evidence.spec)
@@ -157,7 +160,7 @@ def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceS
 def _find_moments(
     named: ValueCondition, evidence: Evidence, span: EvidenceSpan
 ) -> list[EvidencePoint]:
-    """Return each moment in a span at which a condition came true; for lines and samples, each that meets it."""
+    """Return each moment in a span at which a comparison became true; for lines and samples, each one that meets it."""
     import numpy as np
 
     if named.source is not ValueSource.COLUMN:

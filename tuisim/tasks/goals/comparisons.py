@@ -28,7 +28,7 @@ from tuisim.tasks.goals.condition import (
 
 @dataclass(frozen=True, slots=True)
 class WhenCondition(Condition):
-    """Conditions on the recording are true, all in the same tick."""
+    """A condition of a goal: comparisons with columns or output of the run are all true in one tick."""
 
     SHORT: ClassVar[str] = "comparisons"
 
@@ -42,12 +42,16 @@ class WhenCondition(Condition):
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
-        """The comparisons, parsed."""
+        """The texts of the comparisons, parsed."""
         return tuple(_parse_comparison(text, "") for text in self.comparisons)
 
 
 def _parse_comparison(text: str, key: str) -> ValueCondition:
-    """Return a comparison, parsed.
+    """Return the comparison in a text.
+
+    Args:
+        text: Such as `left_speed_deg_s > 100`.
+        key: The key of the text, for errors.
 
     Raises:
         ConfigError: the text is not a comparison, or its regular expression is wrong.
@@ -66,7 +70,7 @@ def _parse_comparison(text: str, key: str) -> ValueCondition:
 
 @dataclass(frozen=True, slots=True)
 class KeepCondition(Condition):
-    """Conditions on the recording stay true, for a share of the time."""
+    """A condition of a goal: comparisons with columns or output of the run stay true, perhaps for a share of it."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
     SHORT: ClassVar[str] = "comparisons"
@@ -94,13 +98,13 @@ class KeepCondition(Condition):
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
-        """The comparisons, parsed."""
+        """The texts of the comparisons, parsed."""
         return tuple(_parse_comparison(text, "") for text in self.comparisons)
 
 
 @dataclass(frozen=True, slots=True)
 class CountCondition(Condition):
-    """Something happens a number of times: a comparison becomes true, or lines or samples are printed."""
+    """A condition of a goal: a comparison becomes true, or lines or samples are printed, a number of times."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
 
@@ -118,13 +122,13 @@ class CountCondition(Condition):
 
     @property
     def condition(self) -> ValueCondition:
-        """The text `of`, parsed."""
+        """The comparison in the key `of`, parsed."""
         return _parse_comparison(self.of, "")
 
 
 @dataclass(frozen=True, slots=True)
 class StructureCondition(Condition):
-    """The program's text has a structure, such as a loop or few lines."""
+    """A condition of a goal: the program's text has a structure, such as a loop or few lines."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.FIXED
     SHORT: ClassVar[str] = "comparisons"
@@ -156,5 +160,5 @@ class StructureCondition(Condition):
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
-        """The comparisons, parsed."""
+        """The texts of the comparisons, parsed."""
         return tuple(condition for text in self.comparisons if (condition := parse_condition(text)))

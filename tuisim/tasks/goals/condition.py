@@ -31,11 +31,11 @@ Number = Annotated[float, Meta(ge=-1e15, le=1e15)]
 
 
 class UnjudgedError(Exception):
-    """It is not known whether a condition is met; the error's text says why, without a full stop."""
+    """A condition cannot be judged; the error's text says why, without a full stop."""
 
 
 class ConditionKind(StrEnum):
-    """When a condition is decided."""
+    """At which moment of a run a condition is decided."""
 
     REACHED = "reached"
     """Met as soon as it is true once; missed if that never happens."""
@@ -59,7 +59,11 @@ WINDOWED = (ConditionKind.REACHED, ConditionKind.HELD)
 
 
 def check_count(entries: tuple[object, ...], key: str) -> None:
-    """Check the number of entries in a list.
+    """Check the number of entries in a list of a goals file.
+
+    Args:
+        entries: The list.
+        key: The key of the list, for the error.
 
     Raises:
         ConfigError: there are none, or too many.
@@ -70,7 +74,7 @@ def check_count(entries: tuple[object, ...], key: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What a goal asks of a run."""
+    """The base class of what a goal can require of a run, such as that the robot reaches a place."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = ""

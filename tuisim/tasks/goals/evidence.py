@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """When a condition was reached or, if it must hold, violated."""
+    """When a condition was met or, if it must stay true, was first violated; or why it was not met."""
 
     moment: EvidencePoint | None = None
     """None: not up to now."""
@@ -56,7 +56,10 @@ def format_distance(distance_mm: float) -> str:
 
 
 def share_words(share: float) -> str:
-    """Return a share for a sentence, such as `45 %`; rounded down, so that it names none that was not reached."""
+    """Return a share from 0 to 1 for a sentence, such as `45 %`.
+
+    Rounded down, so that it names none that was not reached.
+    """
     return f"{int(share * 1000) / 10:g} %"
 
 
@@ -68,7 +71,7 @@ JudgedRun: TypeAlias = "StoredRun | RunHandle"
 
 
 class EvidencePoint(NamedTuple):
-    """An instant of a run: after a tick is complete (row -1), or when a row of output is written."""
+    """A moment of a run: after a tick is complete (row -1), or when a row of output is written."""
 
     tick: int
     row: int = -1
@@ -83,7 +86,7 @@ START = EvidencePoint(-1, -1)
 
 @dataclass(frozen=True, slots=True)
 class EvidenceSpan:
-    """The part of a run in which a condition counts."""
+    """The part of a run in which a condition is judged."""
 
     first_tick: int
     end_tick: int
@@ -97,12 +100,12 @@ class EvidenceSpan:
 
     @property
     def ticks(self) -> slice:
-        """The ticks as a slice of the recording."""
+        """The ticks of the span, as a slice of the telemetry."""
         return slice(self.first_tick, max(self.first_tick, self.end_tick))
 
 
 class Evidence:
-    """What a run has recorded so far, by which goals are judged.
+    """The recording of a run so far, by which goals are judged.
 
     Args:
         run: The run.
@@ -130,7 +133,10 @@ class Evidence:
 
     @cached_property
     def falsified(self) -> str:
-        """What the program has falsified, a sentence without a full stop; empty if its recording can be trusted."""
+        """How the program has falsified its recording, a sentence without a full stop.
+
+        It is empty if the recording can be trusted.
+        """
         return self.end.summary if self.end is not None and self.end.end is End.FALSIFIED else ""
 
     @property
@@ -140,12 +146,12 @@ class Evidence:
 
     @cached_property
     def times_s(self) -> Array:
-        """When each tick is due, shape (n,)."""
+        """The simulated time of each tick in seconds, shape (n,)."""
         return tick_times_s(self.records, self.spec)
 
     @cached_property
     def rows(self) -> list[OutputRow]:
-        """The rows that the program printed or read, in order, up to `MAX_ROWS`."""
+        """The lines that the program printed or read as input, in order, up to `MAX_ROWS`."""
         streams = (Stream.STDOUT, Stream.STDERR, Stream.INPUT, Stream.DATA)
         return list(
             islice((row for row in self._run.output.rows() if row.stream in streams), MAX_ROWS)
@@ -162,7 +168,7 @@ class Evidence:
 
     @cached_property
     def samples(self) -> list[tuple[int, Sample]]:
-        """The samples, each with the index of its row."""
+        """The samples that the program printed, each with the index of its row in `rows`."""
         return [
             (number, sample)
             for number, row in enumerate(self.rows)
@@ -180,10 +186,10 @@ class Evidence:
         return ticks
 
     def search(self, pattern: str) -> Search:
-        """Return the search for a regular expression in the lines that the program printed.
+        """Return a function that searches a line for a regular expression.
 
         Raises:
-            UnjudgedError: it cannot be searched for.
+            UnjudgedError: the expression cannot be searched for within a time limit.
         """
         key = f"search {pattern}"
         if key not in self.memo:
@@ -193,7 +199,7 @@ class Evidence:
 
     @cached_property
     def brick_rows(self) -> list[OutputRow]:
-        """The rows of what the brick showed and played, in order, up to `MAX_ROWS`."""
+        """The texts that the brick displayed and the sounds that it played, as rows in order, up to `MAX_ROWS`."""
         return list(
             islice(
                 (row for row in self._run.output.rows() if row.stream in BRICK_STREAMS), MAX_ROWS
@@ -218,12 +224,12 @@ class Evidence:
         return values
 
     def held(self, condition: ValueCondition) -> Array:
-        """Return whether a condition is true in each tick; one on printed lines is true where such a line was printed.
+        """Return whether a comparison is true in each tick; one with printed lines is true in ticks with such a line.
 
         Raises:
-            ValueError: what it compares with is no number.
+            ValueError: the comparison needs a number and has another value.
             UnjudgedError: its regular expression takes too long.
-            LogError, ConfigError: as `column`.
+            LogError, ConfigError: as for `column`.
         """
         import numpy as np
 
@@ -239,10 +245,10 @@ class Evidence:
         )
 
     def find_true_rows(self, condition: ValueCondition) -> list[int]:
-        """Return the indices of the rows for which a condition on printed lines is true.
+        """Return the indices of the rows for which a comparison with printed lines is true.
 
         Raises:
-            ValueError: what it compares with is no number.
+            ValueError: the comparison needs a number and has another value.
             UnjudgedError: its regular expression takes too long.
         """
         if condition.source is ValueSource.PRINT:
@@ -271,17 +277,20 @@ class Evidence:
 
     @cached_property
     def end_s(self) -> float:
-        """The time up to which the run is known."""
+        """The simulated time in seconds up to which the run is recorded."""
         newest = float(self.times_s[-1]) if len(self.records) else 0.0
         return max(newest, self.end.time_ns / NS_PER_S) if self.end else newest
 
     @property
     def last(self) -> EvidencePoint:
-        """The newest moment, after everything in the recording."""
+        """The moment at the end of the recording so far."""
         return EvidencePoint(len(self.records) - 1, len(self.rows), self.end_s)
 
     def find_moment(self, time_s: float) -> EvidencePoint | None:
-        """Return the moment after everything up to a time; None if the recording does not go beyond that time."""
+        """Return the moment after all ticks and rows up to a time.
+
+        It is None if the recording does not go beyond that time.
+        """
         if time_s >= self.end_s:
             return None
         tick = bisect_right(self.times_s, time_s) - 1
@@ -289,7 +298,7 @@ class Evidence:
         return EvidencePoint(tick, row, time_s)
 
     def find_earlier_moment(self, time_s: float) -> EvidencePoint | None:
-        """Return the moment just before a time; None if the recording does not go that far."""
+        """Return the moment just before a time; None if the recording ends before it."""
         if time_s > self.end_s:
             return None
         tick = bisect_left(self.times_s, time_s) - 1
@@ -298,7 +307,10 @@ class Evidence:
         )
 
     def span(self, start: EvidencePoint, stop: EvidencePoint | None) -> EvidenceSpan:
-        """Return the part of the run between two moments, without both; `stop` is None for the end of the recording."""
+        """Return the part of the run between two moments, without both.
+
+        If `stop` is None, up to the end of the recording.
+        """
         end = self.last if stop is None else stop
         return EvidenceSpan(
             first_tick=start.tick + 1,
@@ -315,7 +327,7 @@ class Evidence:
         )
 
     def time_s(self, moment: EvidencePoint) -> float:
-        """Return the simulated time of a moment."""
+        """Return the simulated time of a moment in seconds."""
         if moment.time_s >= 0:
             return moment.time_s
         if moment.row >= 0:
@@ -325,14 +337,14 @@ class Evidence:
         return float(self.times_s[min(max(moment.tick, 0), len(self.records) - 1)])
 
     def place_mm(self, tick: int) -> tuple[float, float]:
-        """Return where the robot is when a tick is complete."""
+        """Return x and y of the robot at the end of a tick."""
         if not len(self.records):
             return self.spec.world.start.x_mm, self.spec.world.start.y_mm
         record = self.records[min(max(tick, 0), len(self.records) - 1)]
         return float(record["x_mm"]), float(record["y_mm"])
 
     def line(self, moment: EvidencePoint) -> int:
-        """Return the program's line that ran at a moment; 0 if there is none."""
+        """Return the number of the program's line that ran at a moment; 0 if none did."""
         if moment.row >= 0 and moment.time_s < 0:
             return self.rows[moment.row].line
         if moment == self.last and self.end is not None and self.end.error_line:
@@ -345,16 +357,21 @@ class Evidence:
 
 
 def find_ticks(rows: Array, hz: int) -> Array:
-    """Return the tick at which each of some readings was taken; `hz` is ticks per second."""
+    """Return the tick in which each of some readings was taken.
+
+    Args:
+        rows: Readings.
+        hz: Ticks per second.
+    """
     seconds, rest_ns = divmod(rows["time_ns"], NS_PER_S)
     ticks: Array = seconds * hz + rest_ns * hz // NS_PER_S
     return ticks
 
 
 def find_motion_line(records: Array, index: int) -> int:
-    """Return the program's line of the last tick up to an index that moved the robot, else of the first after it.
+    """Return the program's line in the last tick up to an index that moved the robot, else in the first after it.
 
-    The lines of ticks in which the robot stands still do not count. 0, if it never moved.
+    If the robot never moved, the line is 0.
     """
     import numpy as np
 

@@ -49,7 +49,7 @@ _LIMITS = ("before", "after", "until")
 
 @dataclass(frozen=True, slots=True)
 class GoalsFile:
-    """A task: what a goals file contains."""
+    """The contents of a goals file: a task with its goals, settings and worlds."""
 
     path: Path
     title: str
@@ -66,7 +66,7 @@ class GoalsFile:
 
     @property
     def presses(self) -> Mapping[str, Any]:
-        """The setting `press`, if the file has it: it holds in every world."""
+        """The setting `press` of the file, which applies in every world; empty if the file does not set it."""
         return {path: value for path, value in self.settings.items() if path == "press"}
 
     @property
@@ -83,7 +83,7 @@ class GoalsFile:
 
     @property
     def every_goal(self) -> tuple[Goal, ...]:
-        """The goals of the first world, and those that only other worlds have."""
+        """The goals of all worlds, each name once: those of the first world, then those that only other worlds have."""
         goals_by_name = {
             goal.name: replace(goal, hidden=goal.hidden or world.hidden)
             for world in reversed(self.worlds)
@@ -94,13 +94,13 @@ class GoalsFile:
 
 
 def load_goals(path: Path | str) -> GoalsFile:
-    """Read a goals file, and the world and the pictures that it names.
+    """Read a goals file, with the world file and the pictures that it names.
 
     Args:
         path: The file, or one of `list_example_names`.
 
     Raises:
-        ConfigError: it, or a file that it names, cannot be read or is wrong; the error names file, line and key.
+        ConfigError: a file cannot be read or is wrong; the error names file, line and key.
     """
     task = load_task(path)[1]
     if task is None:
@@ -110,14 +110,14 @@ def load_goals(path: Path | str) -> GoalsFile:
 
 
 def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, GoalsFile | None]:
-    """Read a world file, with its goals if it has any.
+    """Read a world file; return its world, and its goals, or None if it has none.
 
     Args:
         path: The file, or one of `list_example_names`.
-        mats: A folder of mats, unless the file names one.
+        mats: A folder in which the mat is searched for if the file names no folder of mats.
 
     Raises:
-        ConfigError: it, or a file that it names, cannot be read or is wrong; the error names file, line and key.
+        ConfigError: a file cannot be read or is wrong; the error names file, line and key.
     """
     path = _find_file(user_path(path))
     if not is_world_name(path.name):
@@ -157,7 +157,7 @@ def list_example_names() -> list[str]:
 
 
 def read_title(path: Path) -> str:
-    """Return the title of a goals file, whose other keys are not checked; empty if it has none.
+    """Return the title of a goals file without checking its other keys; empty if it has none.
 
     Raises:
         ConfigError: the file cannot be read.
@@ -167,7 +167,7 @@ def read_title(path: Path) -> str:
 
 
 def list_examples() -> list[Path]:
-    """Return the files of the examples, by name.
+    """Return the paths of the example goals files, sorted by name.
 
     Raises:
         ConfigError: there is no folder of programs.
@@ -176,7 +176,7 @@ def list_examples() -> list[Path]:
 
 
 def _find_file(path: Path) -> Path:
-    """Return the file of an example if a path is its name and no such file exists; otherwise the path."""
+    """Return the goals file of an example if the path is the example's name and no such file exists; else the path."""
     if path.parent != Path() or os.path.exists(path):
         return path
     name = path.name.removesuffix(_EXAMPLE)
@@ -184,7 +184,10 @@ def _find_file(path: Path) -> Path:
 
 
 def _build_goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
-    """Return the task in a file, together with the one of the world file that it names; None if it has no goals."""
+    """Return the task in a parsed goals file, with the goals of the world file that it names.
+
+    It is None if neither has goals.
+    """
     location = Location(str(path))
     base = load_task(path.parent / user_path(data["world"]))[1] if "world" in data else None
     if base is None and "goal" not in data:
@@ -242,10 +245,13 @@ def _parse_others(
 def parse_goals(
     data: object, location: Location, folder: Path, beside: Sequence[Goal] = ()
 ) -> tuple[Goal, ...]:
-    """Return the goals in a list of tables; the files that they name are in a folder.
+    """Return the goals in a list of tables; names of files in them are relative to `folder`.
 
     Args:
-        beside: Goals that they may refer to, and replace.
+        data: The list.
+        location: Its place, for errors.
+        folder: The folder of the goals file.
+        beside: Goals of the first world, to which these may refer; one of the same name is replaced.
 
     Raises:
         ConfigError: a goal is wrong; the error names its key.
@@ -380,7 +386,7 @@ def _check_limits(goal: Goal, location: Location) -> None:
 
 
 def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
-    """Raise ConfigError for two goals of one name, and for references to a goal that does not exist or in a circle."""
+    """Raise ConfigError if two goals have one name, or a goal refers to a missing one or, in a circle, to itself."""
     by_name: dict[str, Goal] = {}
     for goal, location in zip(goals, places, strict=True):
         if goal.name in by_name:
@@ -405,7 +411,7 @@ def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
 
 
 def _find_reference(goal: Goal, name: str, location: Location) -> Location:
-    """Return the location of the key in which a goal refers to another; the goal's if no key of it does."""
+    """Return the location of the key in which a goal refers to another goal; that of the goal itself if no key does."""
     limits = (limit for limit in _LIMITS if getattr(goal, limit) == name)
     combined = (
         key
@@ -424,8 +430,9 @@ def _find_circle(
 
     Args:
         name: The goal.
-        above: The goals that have led to it.
-        checked: Goals that lead to no circle; more are added.
+        goals: All goals, by name.
+        above: The goals whose references have led to it.
+        checked: Goals from which no circle can be reached; the function adds to it.
     """
     if name in above:
         return (*above[above.index(name) :], name)
@@ -444,10 +451,11 @@ _STEP = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
 
 
 def find_key_line(text: str, key: str) -> int:
-    """Return the line, from 1, at which a value of a valid TOML text begins.
+    """Return the line, from 1, at which the value of a key begins in a valid TOML text.
 
     Args:
-        key: Its path, such as `goal[2].reach.x_mm`, where entries count from 1. If there is no such value, the line
+        text: The TOML.
+        key: The key's path, such as `goal[2].reach.x_mm`, where entries count from 1. If there is no such key, the line
             of the innermost table around it is returned; 1 if there is none.
     """
     lines = text.split("\n")
@@ -460,7 +468,10 @@ def find_key_line(text: str, key: str) -> int:
     ends = [*starts, len(lines)]
 
     def begun(count: int) -> bool:
-        """Return whether the value begins in the first `count` statements; one that is cut off is read to its end."""
+        """Return whether the first `count` statements contain the key.
+
+        A statement that is cut off is read to its end.
+        """
         while (parsed := _parse_lines(lines[: ends[count]])) is None:
             count += 1
         return _has(parsed, path)
@@ -486,7 +497,7 @@ def _has(data: Any, path: list[int | str]) -> bool:
 
 
 def build_runs(worlds: Sequence[TrialWorld]) -> list[RunSpec]:
-    """Return a run in each world, with all columns that runs with its robot can have."""
+    """Return the specification of a run in each world, with all columns that runs with its robot can have."""
     chosen = [world.settings.get("robot", DEFAULT_ROBOT) for world in worlds]
     robots = [
         chosen_robot if isinstance(chosen_robot, RobotChoice) else choose_robot(chosen_robot)

@@ -59,7 +59,7 @@ if TYPE_CHECKING:
 
 
 def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find out at the end of a span whether the drawing is near the picture."""
+    """Return whether, at the end of a span, the pen's drawing is near enough to the picture, or how it differs."""
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -93,7 +93,7 @@ def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan)
 
 
 def _sample_strokes(records: Array, pen: PenSpec, condition: DrawCondition) -> tuple[Array, Array]:
-    """Return points on what the pen drew, shape (n, 2) in mm, at most a cell apart, and the tick of each."""
+    """Return points of the pen's lines, at most a cell apart: x and y in mm, shape (n, 2), and their ticks."""
     import numpy as np
 
     down = (records["flags"] & FLAG_PEN_DOWN) != 0
@@ -128,7 +128,7 @@ def _find_calls(
 
 
 def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find out whether the program has each of the calls."""
+    """Return whether the program's text has each of a condition's calls, or which call is missing."""
     calls = _find_calls(condition, evidence)
     if isinstance(calls, Finding):
         return calls
@@ -139,7 +139,7 @@ def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -
 
 
 def find_avoided(condition: AvoidCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find out whether the program has none of the calls."""
+    """Return whether the program's text has none of a condition's calls, or where it has one."""
     calls = _find_calls(condition, evidence)
     if isinstance(calls, Finding):
         return calls
@@ -153,7 +153,7 @@ def find_avoided(condition: AvoidCondition, evidence: Evidence, span: EvidenceSp
 def find_structure(
     condition: StructureCondition, evidence: Evidence, span: EvidenceSpan
 ) -> Finding:
-    """Find out whether a program is made as it should be."""
+    """Return whether a program's counts, such as that of its loops, meet a condition's comparisons, or which do not."""
     try:
         for comparison in condition.conditions:
             count = read_facts(evidence.program).count_structure(comparison.name)
@@ -204,7 +204,7 @@ class _Outcome:
 def judge(
     goals: Sequence[Goal], run: JudgedRun, field: Field | None = None
 ) -> tuple[Judgement, ...]:
-    """Judge goals on the recording of a run. Blocks while it is read, and unpacked if it is packed.
+    """Judge goals on the recording of a run. Blocks while the recording is read and, if it is packed, unpacked.
 
     Args:
         goals: Goals as `load_goals` returns them; their names are unique.
@@ -249,7 +249,12 @@ class _Judge:
         return self._evidence.line(outcome.moment) if outcome.line is None else outcome.line
 
     def _find_outcome(self, name: str, if_missed: str = "") -> _Outcome:
-        """Return the outcome of a goal; if it is missed and `if_missed` is not empty, with that as its reason."""
+        """Return the outcome of a goal.
+
+        Args:
+            name: The goal.
+            if_missed: The reason in the outcome if the goal is missed; "" for the goal's own reason.
+        """
         if name not in self._goals:
             raise ConfigError(f"there is no goal {name!r}")
         if name not in self._outcomes:
@@ -294,7 +299,7 @@ class _Judge:
         return outcomes[0] if len(outcomes) == 1 else _pick_deciding(outcomes, GoalState.MISSED)
 
     def _judge_part(self, condition: Condition, goal: Goal, start: EvidencePoint) -> _Outcome:
-        """Return the outcome of one condition of a goal, judged on what happens after `start`."""
+        """Return the outcome of one condition of a goal, judged on the part of the run after `start`."""
         if isinstance(condition, AllOf | AnyOf | NoneOf):
             return self._judge_combined(condition, goal)
         stop = self._stop(goal, condition.KIND, start)
@@ -319,10 +324,12 @@ class _Judge:
     def _stop(
         self, goal: Goal, kind: ConditionKind, start: EvidencePoint = START
     ) -> EvidencePoint | None:
-        """Return the first limit up to which a goal's conditions of a kind count; None if none has been reached.
+        """Return the earliest reached limit of a goal for conditions of a kind; None if no limit has been reached.
 
         Args:
-            start: The moment after which they count.
+            goal: The goal, with limits such as `before`.
+            kind: The kind of the conditions.
+            start: The moment from which `within_s` is measured.
         """
         stops = []
         for limit in (getattr(goal, limit) for limit in goal.limits(kind) if limit != "after"):
@@ -339,7 +346,7 @@ class _Judge:
         return _Outcome(GoalState.UNKNOWN, self._evidence.last, reason)
 
     def _judge_missing(self, reason: str) -> _Outcome:
-        """Return the outcome of a condition that was not met: open while the run goes on, then missed."""
+        """Return the outcome of a condition that is not met: open while the run goes on, missed after its end."""
         if not self._evidence.ended:
             return _Outcome(GoalState.OPEN, reason="")
         return _Outcome(GoalState.MISSED, self._evidence.last, reason)
@@ -393,7 +400,7 @@ class _Judge:
 
 
 def _invert(name: str, outcome: _Outcome) -> _Outcome:
-    """Return the outcome of `none`: met if the goal is missed, and the other way round."""
+    """Return the outcome of a goal in `none`: met if that goal is missed, and missed if it is met."""
     match outcome.state:
         case GoalState.MET:
             return replace(
@@ -410,9 +417,9 @@ def _invert(name: str, outcome: _Outcome) -> _Outcome:
 
 
 def _pick_deciding(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
-    """Return the outcome of a combination: the first part with the deciding state, else the last one to be decided.
+    """Return which of several outcomes decides their combination: the earliest with the state `deciding`.
 
-    Without a deciding part, one that is open or not known makes the combination so, too.
+    Without one, it is an open or unknown outcome; if all have the other state, the latest.
     """
     decided = [part for part in parts if part.state is deciding]
     if decided:
@@ -425,9 +432,10 @@ def _pick_deciding(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
 
 
 def _explain_lateness(goal: Goal, reason: str) -> str:
-    """Return why a goal was not met, with the limit before which it should have been.
+    """Return in a sentence that a goal was not met before its limit, and why.
 
     Args:
+        goal: The goal, with `before` or `within_s`.
         reason: What was missing at the limit; may be empty.
     """
     if goal.before is None:

@@ -17,7 +17,7 @@ GOAL = "goal_"
 
 
 class GoalState(StrEnum):
-    """State of a goal at an instant of a run."""
+    """The state of a goal at an instant of a run."""
 
     OPEN = "open"
     MET = "met"
@@ -28,7 +28,7 @@ class GoalState(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """A change of a goal's state, and where the robot was then."""
+    """A change of a goal's state, with the time and the robot's position."""
 
     tick: int
     time_s: float
@@ -39,7 +39,7 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """How a run did on a goal."""
+    """Whether a run has met a goal, with when, where and why."""
 
     goal: Goal
     changes: tuple[Change, ...]
@@ -53,7 +53,7 @@ class Judgement:
 
     @property
     def state(self) -> GoalState:
-        """The state at the end of the recording."""
+        """The goal's state at the end of the recording."""
         return self.changes[-1].state if self.changes else GoalState.OPEN
 
     @property
@@ -65,17 +65,17 @@ class Judgement:
 
     @property
     def event(self) -> Change | None:
-        """When and where the goal was decided, or what met it happened; None while the goal is open."""
+        """When and where the goal was met, or else missed; None while the goal is open."""
         return self.happened or (self.changes[-1] if self.changes else None)
 
     def at(self, tick: int) -> GoalState:
-        """Return the state when a tick was complete."""
+        """Return the goal's state at the end of a tick."""
         known = [change.state for change in self.changes if change.tick <= tick]
         return known[-1] if known else GoalState.OPEN
 
 
 def compute_points(judgements: Iterable[Judgement]) -> float:
-    """Return the sum of the points of the goals that are met, never less than 0; NaN if one cannot be judged."""
+    """Return the sum of the points of the goals that are met, at least 0; NaN if a goal cannot be judged."""
     counts = (GoalState.MET, GoalState.UNKNOWN)
     return sum_points(
         math.nan if each.state is GoalState.UNKNOWN and each.goal.points else each.goal.points
@@ -85,16 +85,17 @@ def compute_points(judgements: Iterable[Judgement]) -> float:
 
 
 def sum_points(met: Iterable[float]) -> float:
-    """Return the sum of the points of goals that are met, some of which may be negative; never less than 0.
+    """Return the sum of points, some of which may be negative; at least 0, and NaN if some points are NaN (unknown).
 
-    NaN stands for points that are not known, and makes the sum NaN.
+    Args:
+        met: The points of the goals that are met.
     """
     # In this order: `max(0.0, nan)` would be 0.
     return max(math.fsum(met), 0.0)
 
 
 def compute_max_points(goals: Iterable[Goal]) -> float:
-    """Return the points of a run that meets every goal with positive points, and no other."""
+    """Return the points of a run that meets every goal with positive points and no goal with negative ones."""
     return math.fsum(goal.points for goal in goals if goal.points > 0)
 
 

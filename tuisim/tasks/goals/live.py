@@ -59,7 +59,7 @@ class LiveGoals:
         self._open = {each.goal.name for each in self._judge() if not each.is_good}
 
     def judge(self) -> tuple[float, bool]:
-        """Return the points, and whether each goal that was not met at the beginning is met, or missed for good."""
+        """Return the points, and whether each goal that was not met at the beginning is now met or lost."""
         judgements = self._judge()
         ends = [
             each.is_good or self._is_lost(each)
@@ -69,7 +69,7 @@ class LiveGoals:
         return compute_points(judgements), bool(ends) and all(ends)
 
     def _is_lost(self, judgement: Judgement) -> bool:
-        """Return whether a goal was missed before the end, and not only because the simulation ends."""
+        """Return whether a goal was missed before the end of the simulation, so that it cannot be met later."""
         return judgement.state is GoalState.MISSED and judgement.changes[-1].tick < self._run.tick
 
 
@@ -77,7 +77,7 @@ def check_goals(goals: Sequence[Goal]) -> None:
     """Check that goals can be judged without a program.
 
     Raises:
-        ConfigError: one is about a program.
+        ConfigError: a goal is about a program.
     """
     for goal in goals:
         if any(map(needs_program, goal.parts)):

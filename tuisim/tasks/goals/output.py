@@ -43,7 +43,7 @@ _MAX_TRIED = 1000
 def _describe_pattern(pattern: str) -> str:
     """Return a verb phrase for a line that must match a pattern, such as `matches 'done'`.
 
-    It is `says what the goal needs` if the pattern has a lookaround.
+    For a pattern with a lookaround, it is `says what the goal needs`.
     """
     words = re.sub(r"\(\?i\)|\\b|[\^$]", "", pattern)
     if words == re.escape(words).replace("\\ ", " "):
@@ -61,7 +61,7 @@ def _quote(text: str) -> str:
 
 
 def _list_printed(evidence: Evidence, span: EvidenceSpan) -> list[tuple[int, OutputRow]]:
-    """Return the printed lines of a span, each with its index."""
+    """Return the printed lines of a span, each with the index of its row."""
     rows = evidence.rows[span.first_row : span.end_row]
     return [
         (index, row)
@@ -71,7 +71,7 @@ def _list_printed(evidence: Evidence, span: EvidenceSpan) -> list[tuple[int, Out
 
 
 def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when the last of the lines was printed."""
+    """Return when the last of a condition's lines was printed, or which line is missing or wrong."""
     rows = _list_printed(evidence, span)
     next_place = 0
     last = -1
@@ -115,7 +115,7 @@ def _check_once(
     span: EvidenceSpan,
     evidence: Evidence,
 ) -> Finding | None:
-    """Return why lines that must come only once do not meet a condition so far; None if they do."""
+    """Return why lines that must be printed only once do not meet the condition so far; None if they do."""
     searches = list(map(evidence.search, condition.lines))
     fits = [(row, sum(search(row.text) for search in searches)) for _, row in rows]
     if several := [row for row, count in fits if count > 1]:
@@ -133,7 +133,7 @@ def _check_once(
 def _find_repeated_line(
     condition: PrintCondition, rows: list[OutputRow], evidence: Evidence
 ) -> Finding:
-    """Return the first of the rows that matches the same pattern as one before it."""
+    """Return that a line was printed twice: the first of the rows that matches the same pattern as an earlier row."""
     seen: set[str] = set()
     for row in rows:
         pattern = next(pattern for pattern in condition.lines if evidence.search(pattern)(row.text))
@@ -152,11 +152,14 @@ def _find_repeated_line(
 def _explain_fault(
     condition: PrintCondition, count: int, row: OutputRow, since: int, evidence: Evidence
 ) -> str:
-    """Return why a line that matches does not count, in a sentence; empty if it does.
+    """Return in a sentence why a line that matches its pattern is not accepted, such as its place; empty if it is.
 
     Args:
+        condition: The condition with the patterns.
         count: Index of the pattern.
+        row: The line.
         since: Tick at which the line for the pattern before was printed; -1 if there is none.
+        evidence: The recording.
     """
     when = f"{_quote(row.text)} was printed at {row.time_ns / NS_PER_S:.2f} s"
     if fault := _describe_wrong_place(condition, count, row.tick, evidence):
@@ -175,7 +178,7 @@ def _explain_fault(
 
 
 def _speed_mm_s(tick: int, evidence: Evidence) -> float:
-    """Return the lowest speed of the robot during the ticks that a stop may take, from a tick on."""
+    """Return the lowest speed of the robot in mm/s in the `_STOP_TICKS` ticks from a tick on, which a stop may take."""
     ticks = range(max(0, tick), min(tick + _STOP_TICKS, len(evidence.records)))
     return min(
         (_measure_speed_mm_s(first, then, evidence) for first, then in pairwise(ticks)), default=0.0
@@ -190,7 +193,10 @@ def _measure_speed_mm_s(first: int, then: int, evidence: Evidence) -> float:
 def _describe_wrong_place(
     condition: PrintCondition | LogCondition, count: int, tick: int, evidence: Evidence
 ) -> str:
-    """Return where the robot was at a tick and where it must be, to end a sentence; empty if it was there."""
+    """Return where the robot was at a tick and where it must be, to end a sentence.
+
+    It is empty if it was in the right place.
+    """
     place = select_place(condition, count)
     x_mm, y_mm = evidence.place_mm(tick)
     position = {"x_mm": x_mm, "y_mm": y_mm}
@@ -216,7 +222,7 @@ def _explain_missing_line(
 
 
 def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when the samples of a variable had taken all levels."""
+    """Return when the samples of a variable had had all levels of a condition, or which level is missing."""
     samples = [
         (number, sample)
         for number, sample in evidence.samples
@@ -262,14 +268,17 @@ def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan)
 
 
 def _report_printed(moment: EvidencePoint, line: int, once: bool, evidence: Evidence) -> Finding:
-    """Return that the lines were printed; with `once`, the end of the run decides, since none may come again."""
+    """Return that all lines were printed.
+
+    With `once`, only the end of the run decides this, as a line may be repeated.
+    """
     return (
         Finding(evidence.last, line=line, happened=moment) if once else Finding(moment, line=line)
     )
 
 
 def _find_gap(condition: LogCondition, samples: list[Sample], evidence: Evidence) -> Finding | None:
-    """Return the first two samples between which the robot drove too far; None if there are none."""
+    """Return the first two samples between which the robot drove too far; None if there are no such samples."""
     for before, after in pairwise(samples):
         way_mm = math.dist(evidence.place_mm(before.tick), evidence.place_mm(after.tick))
         if way_mm > condition.apart_mm:
@@ -284,7 +293,7 @@ def _find_gap(condition: LogCondition, samples: list[Sample], evidence: Evidence
 def _explain_unmeasured(
     condition: LogCondition, count: int, sample: Sample, evidence: Evidence
 ) -> str:
-    """Return why a sample near its level does not count, in a sentence; empty if it does."""
+    """Return in a sentence why a sample near its level is not accepted; empty if it is."""
     value = f"{sample.name}: {sample.value:.6g} was printed at {sample.time_ns / NS_PER_S:.2f} s"
     if condition.counts:
         printed = bisect_right(evidence.list_sample_ticks(condition.counts), sample.tick)
@@ -320,12 +329,15 @@ def _find_missing_level(
     last: int,
     evidence: Evidence,
 ) -> Finding:
-    """Return which level is missing, the one after the first `count`, and why.
+    """Return which level of a condition is missing, and why.
 
     Args:
+        condition: The condition with the levels.
+        count: How many levels the samples have had: the next one is missing.
         samples: All samples of the variable, with the indices of their rows.
         start: Index of the first sample that could have that level.
         last: Index of the sample with the level before; -1 for none.
+        evidence: The recording.
     """
     rest = [sample for _, sample in samples[start:]]
     nearest = min(
@@ -347,7 +359,14 @@ def _is_near(sample: Sample, level: float, condition: LogCondition) -> bool:
 def _explain_missing_level(
     condition: LogCondition, count: int, nearest: Sample | None, evidence: Evidence
 ) -> str:
-    """Return why a level is missing, the one after the first `count`; `nearest` is the sample that came nearest."""
+    """Return in a sentence why a level is missing.
+
+    Args:
+        condition: The condition with the levels.
+        count: Index of the missing level.
+        nearest: The sample that came nearest to it; None without samples.
+        evidence: The recording.
+    """
     name = condition.name
     levels = condition.levels
     if not any(sample.name == name for _, sample in evidence.samples):
@@ -372,7 +391,10 @@ def _explain_missing_level(
 
 
 def _explain_form_fault(name: str, evidence: Evidence) -> str:
-    """Return why a line with the name and a number is not a sample, as a further sentence; empty without a line."""
+    """Return why a printed line with the name and a number is not a sample, to follow a sentence.
+
+    It is empty without such a line.
+    """
     like = re.compile(rf"(?:.*\W)?{re.escape(name)}\s*(?:[:=]\s*)?[+-]?\.?\d").match
     row = next(
         (row for row in evidence.rows if row.stream == Stream.STDOUT and like(row.text)), None
@@ -384,7 +406,7 @@ def _explain_form_fault(name: str, evidence: Evidence) -> str:
 
 
 def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when the last of the turns was complete."""
+    """Return when the last turn of a dialogue was complete, or what is missing."""
     rows = evidence.rows[: span.end_row]
     questions = [index for index, row in enumerate(rows) if row.stream == Stream.INPUT]
     known = dict(zip(questions, evidence.answers, strict=False))
@@ -417,10 +439,12 @@ def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: Eviden
 
 
 def _find_prompt(text: str, answer: str, typed: str | None) -> str | None:
-    """Return the prompt in a row of input, which the answer follows; None if the row has another answer.
+    """Return the prompt in a row of input, before the answer; None if the row has another answer.
 
     Args:
-        typed: The answer, if it is known.
+        text: The row: prompt and answer.
+        answer: The answer of the turn.
+        typed: What was typed; None if it is not known.
     """
     if not text.endswith(answer) or (typed is not None and typed != answer):
         return None
@@ -434,10 +458,14 @@ def _find_prompt(text: str, answer: str, typed: str | None) -> str | None:
 def _find_reply(
     turn: DialogueTurn, prompt: str, rows: list[OutputRow], span: range, evidence: Evidence
 ) -> tuple[int | None, str]:
-    """Return the row that completes a turn, None without one, and what is wrong with the question or the reply.
+    """Return the index of the row that completes a turn, or None, and what is wrong with the question or the reply.
 
     Args:
-        span: The rows of the turn, from the question to the next one.
+        turn: The turn of the dialogue.
+        prompt: The program's question.
+        rows: All rows.
+        span: Indices of the rows of the turn, from the question to the next one.
+        evidence: The recording.
     """
     if turn.prompt and not build_search(turn.prompt)(prompt):
         return (
@@ -471,7 +499,7 @@ def _explain_missing_question(number: int, turn: DialogueTurn, question_count: i
 
 
 def find_finish(condition: FinishCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when the program finished without an error."""
+    """Return when the program finished without an error, or why it did not."""
     if not span.over:
         return Finding(
             None, "The program was still running.", evidence.line(span.stop or evidence.last)

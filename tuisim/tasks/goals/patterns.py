@@ -19,10 +19,10 @@ LIMIT_S = 2.0
 
 
 def build_search(pattern: str) -> Search:
-    """Return a function that tells whether a regular expression is found in a text.
+    """Return a function that returns whether a regular expression matches anywhere in a text.
 
     Raises:
-        UnjudgedError: the engine that has a limit of time does not know the expression.
+        UnjudgedError: the regex engine with a time limit does not support the expression.
     """
     # Imported on demand: most goals have no regular expression.
     import regex

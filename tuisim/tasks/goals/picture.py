@@ -35,7 +35,7 @@ _MAX_POINTS_TOGETHER = 4096
 
 @dataclass(frozen=True, slots=True)
 class PictureTable:
-    """The keys of the condition `draw` in a file: an image, or lines."""
+    """The keys of the condition `draw` in a goals file, which give the picture as an image or as lines."""
 
     within_mm: Annotated[float, Meta(ge=1, le=500)] = 15.0
     share: Share = 0.9
@@ -62,7 +62,7 @@ class PictureTable:
 
 
 def draw_from_table(table: PictureTable, folder: Path) -> DrawCondition:
-    """Return the condition with its picture; an image is read relative to a folder.
+    """Return the condition `draw` with its picture; the path of an image is relative to `folder`.
 
     Raises:
         ConfigError: the image cannot be read, or has nothing dark in it.
@@ -102,12 +102,12 @@ def _sample_lines(lines: Sequence[Sequence[tuple[float, float]]], step_mm: float
 
 
 def compute_cell_mm(within_mm: float) -> float:
-    """Return the side of the cells in which pictures are compared with a tolerance."""
+    """Return the side in mm of the square cells in which pictures are compared with a tolerance."""
     return max(1.0, within_mm / 8)
 
 
 def _count_cells(within_mm: float) -> tuple[int, int]:
-    """Return the number of columns and rows of cells."""
+    """Return the number of columns and rows of the field's cells, for a tolerance."""
     side = compute_cell_mm(within_mm)
     return math.ceil(FIELD_WIDTH_MM / side), math.ceil(FIELD_HEIGHT_MM / side)
 
@@ -122,14 +122,19 @@ def _number_cells(points: Array, within_mm: float) -> Array:
 
 
 def list_cells(condition: DrawCondition) -> Array:
-    """Return the indices of the picture's cells, ascending, shape (n,)."""
+    """Return the indices of the cells with the picture's lines, ascending, shape (n,)."""
     import numpy as np
 
     return np.frombuffer(condition.picture, "<i4")
 
 
 def compute_centres_mm(numbers: Array, within_mm: float) -> Array:
-    """Return the centres of cells, shape (n, 2)."""
+    """Return the centres of cells in mm, shape (n, 2).
+
+    Args:
+        numbers: Indices of the cells.
+        within_mm: The tolerance, which determines the size of the cells.
+    """
     import numpy as np
 
     cols, _ = _count_cells(within_mm)
@@ -144,7 +149,7 @@ def compare(cells: Array, points: Array, within_mm: float) -> tuple[Array, Array
     Args:
         cells: Indices of the picture's cells, shape (n,).
         points: Points of the drawing in mm, shape (m, 2); they may be off the field.
-        within_mm: How far they may be apart.
+        within_mm: The largest distance at which a point and a cell match.
 
     Returns:
         For each cell whether a point is near it, shape (n,), and for each point whether a cell is, shape (m,).

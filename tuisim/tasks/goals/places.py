@@ -37,7 +37,7 @@ _WALLS = ("the left wall", "the right wall", "the lower wall", "the upper wall")
 
 
 def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when the robot was at a place and heading."""
+    """Return when the robot was at a condition's place and heading, or how near it came."""
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -74,12 +74,14 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
 
 
 def _find_arrivals(there: Array) -> Array:
-    """Return for each tick at which the robot is there the index at which it arrived; 0 if it was there from the start.
+    """Return for each tick at the place the index of the tick at which the robot arrived.
 
-    At the other ticks the values mean nothing.
+    It is 0 if it was there from the start.
+
+    The values at other ticks have no meaning.
 
     Args:
-        there: Whether the robot is there, shape (n,).
+        there: Whether the robot is at the place, at each tick, shape (n,).
     """
     import numpy as np
 
@@ -120,7 +122,7 @@ def _describe_miss(
 
 
 def _describe_side(condition: ReachCondition, record: Any) -> str:
-    """Return on which side of a line the robot is, such as `left of`; `from` for a point."""
+    """Return on which side of a condition's place the robot is, such as `left of` a line; for a point `from`."""
     if condition.x_mm is None:
         return "below" if record["y_mm"] < condition.y_mm else "above"
     if condition.y_mm is None:
@@ -137,7 +139,7 @@ def _place_words(condition: ReachCondition) -> str:
 
 
 def find_pass(condition: PassCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when the robot had passed the last of the places."""
+    """Return when the robot had passed all places of a condition, or which it missed."""
     records = evidence.records[span.ticks]
     first = span.first_tick
     if not len(records):
@@ -166,7 +168,7 @@ def find_pass(condition: PassCondition, evidence: Evidence, span: EvidenceSpan) 
 
 
 def _measure_way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
-    """Return the least distance of the robot from a place during each tick."""
+    """Return the least distance in mm of the robot from a place during each tick."""
     import numpy as np
 
     x, y = records["x_mm"] - x_mm, records["y_mm"] - y_mm
@@ -182,7 +184,7 @@ def _measure_way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
 
 
 def find_left(condition: InsideCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when the robot left an area."""
+    """Return when the robot left an area in which it must stay."""
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -195,7 +197,7 @@ def find_left(condition: InsideCondition, evidence: Evidence, span: EvidenceSpan
 
 
 def find_entered(condition: OutsideCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when the robot entered an area."""
+    """Return when the robot entered an area that it must stay out of."""
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -265,7 +267,7 @@ def _find_inside(area: AreaCondition, x_mm: Array, y_mm: Array) -> Array:
 
 
 def _measure_circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec) -> Array:
-    """Return the distance of the robot's body from the centre of a circle, at every tick."""
+    """Return the distance in mm of the robot's body from the centre of a circle, at every tick."""
     import numpy as np
 
     outline = build_outline(robot)
@@ -280,7 +282,7 @@ def _measure_circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec
 
 
 def find_touch(condition: TouchNothingCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when the robot touched an obstacle or a wall, or came too near to one."""
+    """Return when the robot touched an obstacle or a wall, or came too near to one."""
     world = evidence.spec.world
     robot = evidence.spec.robot
     walls = world.walls and condition.walls
@@ -309,13 +311,15 @@ def find_touch(condition: TouchNothingCondition, evidence: Evidence, span: Evide
 def _find_first_contact(
     records: Array, solids: Solids, gap_mm: float, *, forgiven: bool
 ) -> tuple[int, int] | None:
-    """Return the first index at which a gap is below `gap_mm`, and the number of the gap; None if there is none.
+    """Return the first index at which the robot is too near to something, and the index of that in `solids`; else None.
 
-    Ticks during which the robot cannot have got so near are skipped.
+    Ticks during which the robot cannot have come so near are skipped.
 
     Args:
-        solids: Obstacles and walls; each has a gap to the robot.
-        forgiven: Whether a gap that is too small at the start counts only after it has been larger.
+        records: Telemetry.
+        solids: Obstacles and walls.
+        gap_mm: A smaller distance is too near.
+        forgiven: Whether something that is too near at the start counts only after the robot has been farther away.
     """
     import numpy as np
 

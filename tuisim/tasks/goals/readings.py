@@ -53,7 +53,7 @@ def describe_ranges(place: Mapping[str, Range]) -> str:
 
 
 def read_ticks(reading: Reading, evidence: Evidence) -> Array:
-    """Return the ticks in which the program took readings of a kind, in ascending order."""
+    """Return the ticks in which the program read sensors or motors of a kind, in ascending order."""
     import numpy as np
 
     name = f"ticks with {reading}"
@@ -64,10 +64,10 @@ def read_ticks(reading: Reading, evidence: Evidence) -> Array:
 
 
 def _find_readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
-    """Return tick and source line of each reading of a kind that the program took, in ascending order.
+    """Return tick and source line of each time that the program read a sensor or motor of a kind, in ascending order.
 
     Raises:
-        UnjudgedError: they are not all recorded.
+        UnjudgedError: the readings are not all recorded.
     """
     name = f"{reading} is read"
     if name not in evidence.memo:
@@ -82,7 +82,7 @@ def _find_readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
 
 
 def filter_ticks(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
-    """Return the ticks at which the robot was in the ranges of `select_place`."""
+    """Return those of some ticks at which the robot was in the ranges of `select_place`."""
     for key, (low, high) in place.items():
         values = evidence.records[key][ticks]
         ticks = ticks[(values >= low) & (values <= high)]
@@ -90,17 +90,17 @@ def filter_ticks(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -
 
 
 def describe_place(tick: int, place: Mapping[str, Range], evidence: Evidence) -> str:
-    """Return where the robot was at a tick along the axes of `select_place`, for a sentence."""
+    """Return where the robot was at a tick along the axes that `select_place` limits, for a sentence."""
     position = dict(zip(("x_mm", "y_mm"), evidence.place_mm(tick), strict=True))
     return " and ".join(f"{key[0]} = {position[key]:.0f} mm" for key in place)
 
 
 def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
-    """Return whether a level of light is what a colour sensor measured in one of some ticks.
+    """Return whether a level of light equals what a colour sensor measured in any of some ticks.
 
     Args:
         value: The level: of red or of all channels in percent, or of red from 0 to 255.
-        ticks: Ticks in which the program read a colour sensor, of `read_ticks`.
+        ticks: Ticks in which the program read a colour sensor, from `read_ticks`.
         evidence: The recording.
     """
     import numpy as np
@@ -128,7 +128,7 @@ def _compute_light(records: Array, evidence: Evidence) -> Array:
 
 
 def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when the program had taken enough readings."""
+    """Return when the program had taken as many readings as a condition needs, or how many are missing."""
     noun = NOUNS[condition.reading]
     every, lines = _find_readings(condition.reading, evidence)
     ticks = every[(every >= span.first_tick) & (every < span.end_tick)]
@@ -146,7 +146,7 @@ def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) 
 
 
 def find_off_line(condition: FollowCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find out at the end of a span whether the robot was on a line for too small a share of the time."""
+    """Return whether, by the end of a span, the robot was on a line for too small a share of the time."""
     import numpy as np
 
     named = {sensor.name: sensor for sensor in evidence.spec.robot.color_sensors}
@@ -183,7 +183,10 @@ def find_off_line(condition: FollowCondition, evidence: Evidence, span: Evidence
 
 
 def _compute_light_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:
-    """Return the light of the mat's pixel under a point of the robot, at every tick; off the mat, that of the floor."""
+    """Return the light in percent of the mat's pixel under a point of the robot, at every tick.
+
+    Off the mat, of the floor.
+    """
     import numpy as np
 
     mat = evidence.mat
@@ -202,7 +205,7 @@ def _compute_light_percent(records: Array, x_mm: float, y_mm: float, evidence: E
 def _compute_reflected_percent(
     records: Array, sensor: ColorSensorSpec, evidence: Evidence
 ) -> Array:
-    """Return what `reflected_light_intensity_pc` would be without noise, at every tick."""
+    """Return what a colour sensor's `reflected_light_intensity_pc` would be without noise, at every tick."""
     from tuisim.engine.runs.sensor_arrays import measure_quiet_color
 
     red, *_ = measure_quiet_color(records, sensor, evidence.spec, evidence.mat).values()
@@ -222,7 +225,7 @@ def _is_line(condition: FollowCondition, percent: Array) -> Array:
 
 
 def _find_longest_gap(on_line: Array) -> int:
-    """Return the index at which the longest time off the line begins."""
+    """Return the index at which the longest stretch of ticks off the line begins."""
     import numpy as np
 
     edges = np.flatnonzero(np.diff(np.concatenate(([True], on_line, [True])).astype("i1")))

@@ -52,7 +52,7 @@ class BodyPart(StrEnum):
 
 
 class Reading(StrEnum):
-    """The kinds of readings that a goal can ask for."""
+    """What a goal can require the program to read: a kind of sensor, or a motor."""
 
     COLOR = "color"
     ULTRASONIC = "ultrasonic"
@@ -79,9 +79,10 @@ def _check_ranges(condition: PrintCondition | LogCondition | ReadCondition, coun
 def select_place(
     condition: PrintCondition | LogCondition | ReadCondition, count: int = 0
 ) -> dict[str, Range]:
-    """Return where the robot must be for a line or level: ranges by `x_mm` and `y_mm`; empty for anywhere.
+    """Return where the robot must be for a line, level or reading: ranges by `x_mm` and `y_mm`; empty for anywhere.
 
     Args:
+        condition: The condition with the places.
         count: Index of the line or level.
     """
     places = {key: getattr(condition, key) for key in ("x_mm", "y_mm")}
@@ -143,7 +144,7 @@ class AreaCondition(Condition):
 
     @property
     def box_mm(self) -> tuple[float, float, float, float]:
-        """Left, lower, right and upper edge."""
+        """The edges of the rectangle, or of the square around the circle: left, lower, right and upper, in mm."""
         if self.radius_mm is not None:
             radius = self.radius_mm
             return self.x_mm - radius, self.y_mm - radius, self.x_mm + radius, self.y_mm + radius
@@ -171,7 +172,10 @@ class OutsideCondition(AreaCondition):
 
 @dataclass(frozen=True, slots=True)
 class TouchNothingCondition(Condition):
-    """The robot touches no obstacle and no wall; one that it touches at the start counts after it has moved away."""
+    """The robot touches no obstacle and no wall.
+
+    One that it touches at the start only counts after it has moved away.
+    """
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
 
@@ -189,7 +193,7 @@ class TouchNothingCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class PassCondition(Condition):
-    """The robot passes places."""
+    """The robot passes each of some places."""
 
     SHORT: ClassVar[str] = "places_mm"
 
@@ -204,7 +208,7 @@ class PassCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class FollowCondition(Condition):
-    """A part of the robot is on a line for a share of the time. Noise and the pen's marks do not count."""
+    """A point of the robot is on a line of the mat for a share of the time. Noise and the pen's marks do not matter."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
     SHORT: ClassVar[str] = "sensors"
@@ -241,7 +245,7 @@ class DrawCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class PrintCondition(Condition):
-    """The program prints lines."""
+    """The program prints lines that match patterns."""
 
     SHORT: ClassVar[str] = "lines"
 
@@ -304,7 +308,7 @@ class LogCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class ReadCondition(Condition):
-    """The program takes readings."""
+    """The program reads a sensor or motor at least a number of times."""
 
     reading: Reading
     times: Annotated[int, Meta(ge=1, le=1_000_000)] = 1
@@ -324,7 +328,7 @@ class FinishCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class CallsCondition(Condition):
-    """Calls in the program's text, such as `tank_drive.on_for_rotations` or `time.sleep`, by whatever name."""
+    """Calls in the program's text, such as `tank_drive.on_for_rotations` or `time.sleep`, also under another name."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.FIXED
     SHORT: ClassVar[str] = "calls"
@@ -360,7 +364,7 @@ class AvoidCondition(CallsCondition):
 
 @dataclass(frozen=True, slots=True)
 class DialogueTurn:
-    """An answer to `input()`, and what the program prints next."""
+    """One turn of a dialogue: an answer to `input()`, and what the program prints next."""
 
     answer: str
     prompt: str = ""
@@ -371,7 +375,7 @@ class DialogueTurn:
 
 @dataclass(frozen=True, slots=True)
 class DialogueCondition(Condition):
-    """The program asks, is given answers, and replies."""
+    """The program asks questions with `input()` and replies to the answers."""
 
     SHORT: ClassVar[str] = "turns"
 
@@ -386,7 +390,7 @@ class DialogueCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class Combination(Condition):
-    """Other goals, by name."""
+    """The base class of conditions that combine other goals, which they name."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.COMBINED
     SHORT: ClassVar[str] = "goals"
@@ -399,22 +403,22 @@ class Combination(Condition):
 
 @dataclass(frozen=True, slots=True)
 class AllOf(Combination):
-    """All of the goals are met."""
+    """All of the named goals are met."""
 
 
 @dataclass(frozen=True, slots=True)
 class AnyOf(Combination):
-    """At least one of the goals is met."""
+    """At least one of the named goals is met."""
 
 
 @dataclass(frozen=True, slots=True)
 class NoneOf(Combination):
-    """None of the goals is met."""
+    """None of the named goals is met."""
 
 
 @dataclass(frozen=True, slots=True)
 class Together(Condition):
-    """Several conditions of one goal, which must all be met: in a file, several keys of a goal."""
+    """Several conditions of one goal, all of which must be met; in a goals file, several keys of a goal."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.COMBINED
 
@@ -478,11 +482,11 @@ class Goal:
 
     @property
     def parts(self) -> tuple[Condition, ...]:
-        """The conditions, usually one."""
+        """The conditions of the goal, usually one."""
         return (
             self.condition.conditions if isinstance(self.condition, Together) else (self.condition,)
         )
 
     def limits(self, kind: ConditionKind) -> tuple[str, ...]:
-        """Return which of `before`, `after` and `until` the goal has, of those that apply to conditions of a kind."""
+        """Return which of the keys `before`, `after` and `until` the goal sets and conditions of a kind use."""
         return tuple(limit for limit in LIMITS[kind] if getattr(self, limit) is not None)

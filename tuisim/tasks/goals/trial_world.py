@@ -37,7 +37,7 @@ GoalReader = Callable[[object, Location, Path], tuple[Goal, ...]]
 
 @dataclass(frozen=True, slots=True)
 class TrialWorld:
-    """A world in which a program is tried. A program that fits only one of several worlds fails in the others."""
+    """A world in which a student's program is tried; several worlds expose a program that fits only one of them."""
 
     where: str
     """How it differs from the first one, for the student, such as `from 10 cm farther back`; empty for the first."""
@@ -66,12 +66,16 @@ class TrialWorld:
         )
 
     def select_goals(self, goals: Sequence[Goal]) -> tuple[Goal, ...]:
-        """Return the goals of this world: `own_goals`, and those of the first world that these do not replace."""
+        """Return the goals of this world: `own_goals`, and those of the first world whose names are not among them.
+
+        Args:
+            goals: The goals of the first world.
+        """
         own = {goal.name: goal for goal in self.own_goals}
         return (*(own.pop(goal.name, goal) for goal in goals), *own.values())
 
     def beside(self, first: TrialWorld) -> TrialWorld:
-        """Return this world completed by the first one: with the settings, goals and inputs that it does not change."""
+        """Return this world with the settings, goals and inputs of the first world where it has none of its own."""
         return replace(
             self,
             settings={**first.settings, **self.settings},
@@ -89,18 +93,18 @@ def parse_other_worlds(
     *,
     of_task: bool = False,
 ) -> tuple[TrialWorld, ...]:
-    """Return the other worlds in a list of tables.
+    """Return the worlds in a list of tables, in which programs are tried after the first world.
 
     Args:
         data: The list of tables.
         goals: Names of the goals that count in a world whose table names none; in a lesson, only if it defines none.
         location: The place of the list in the file.
-        path: The file, for the files that a world names.
+        path: The file; names of files in a world are relative to it.
         read_goals: Reads the goals of a table.
         of_task: Whether the worlds are those of a task, which may be hidden, not of a lesson.
 
     Raises:
-        ConfigError: one is wrong; the error names its key.
+        ConfigError: a table is wrong; the error names its key.
     """
     others: list[TrialWorld] = []
     for entry, place in files.entries(
@@ -136,7 +140,7 @@ def parse_other_worlds(
 
 
 def check_names(names: Sequence[str], known: Collection[str], location: Location) -> None:
-    """Check the key `goals` of a table.
+    """Check the names of goals in the key `goals` of a world's table.
 
     Raises:
         ConfigError: one of the names is not known.
