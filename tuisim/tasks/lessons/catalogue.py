@@ -123,7 +123,7 @@ tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 500 / (3.14159 *
 
 
 def write_skeleton(path: Path) -> None:
-    """Write a lesson to start from.
+    """Write a new lesson file with an example of each part, for an author to change.
 
     Raises:
         ConfigError: the name is wrong, the file exists, or it cannot be written.
@@ -146,15 +146,17 @@ _TEXTS = Path(__file__).resolve().parent / "texts"
 
 
 def find_shipped_paths() -> dict[str, Path]:
-    """Return the files of tuisim's own lessons by name, in their order."""
+    """Return the files of tuisim's own lessons by name, in the order of the list."""
     return _find_folder_paths(_TEXTS)
 
 
 def find_lesson_paths(folder: Path | str | None = None) -> dict[str, Path]:
-    """Return the files of all lessons by name: tuisim's own, then those of the folder, which may replace some.
+    """Return the files of all lessons by name: tuisim's own, then those of a folder.
+
+    One of the same name replaces tuisim's.
 
     Args:
-        folder: A folder of own lessons; None for that in `TUISIM_LESSONS`, if any.
+        folder: The folder; None for that in the environment variable `TUISIM_LESSONS`, if it is set.
 
     Raises:
         ConfigError: the folder does not exist, or has no lessons.
@@ -184,10 +186,10 @@ def _find_folder_paths(folder: Path) -> dict[str, Path]:
 
 
 def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[str] = ()) -> Path:
-    """Return the file of a lesson, given by name, by its number in the list, or by path.
+    """Return the file of a lesson.
 
     Args:
-        word: Its name, number or path.
+        word: The lesson's name, its number in the list, or the path of its file.
         folder: As for `find_lesson_paths`.
         others: Other words that the error may propose.
 
@@ -214,10 +216,10 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
 
 
 def find_telling(lesson: Path, library: Library, folder: Path | str | None = None) -> Path:
-    """Return the file of a lesson's version for a library.
+    """Return the file of the version of a lesson for a library; `folder` is as for `find_lesson_paths`.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: there is no such version.
     """
     paths = find_lesson_paths(folder)
     name = get_lesson_name(lesson)

@@ -23,7 +23,7 @@ from tuisim.tasks.lessons.spec import (
 
 @dataclass(frozen=True, slots=True)
 class JudgedRun:
-    """A run has met goals; the event comes again when the run has met more."""
+    """Event: a run has met goals. It comes again when the run has met more."""
 
     run_id: str
     seed: int
@@ -35,7 +35,7 @@ class JudgedRun:
 
 @dataclass(frozen=True, slots=True)
 class TriedElsewhere:
-    """The program of a run was tried in another world."""
+    """Event: the program of a run was tried in another world."""
 
     run_id: str
     where: str
@@ -46,7 +46,7 @@ class TriedElsewhere:
 
 @dataclass(frozen=True, slots=True)
 class Typed:
-    """A student has typed an answer. At their defaults, the fields meet all that the question needs."""
+    """Event: a student has typed an answer. With default values, everything that the question requires is fulfilled."""
 
     text: str
     x_mm: float | None = None
@@ -61,28 +61,28 @@ class Typed:
 
 @dataclass(frozen=True, slots=True)
 class ExpressionWatched:
-    """A paused program has shown the value of a watch."""
+    """Event: a paused program has shown the value of an expression that the student watches."""
 
     expression: str
 
 
 @dataclass(frozen=True, slots=True)
 class BreakMet:
-    """A run has stopped at a breakpoint."""
+    """Event: a run has stopped at a breakpoint."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Exported:
-    """A log was written to a file."""
+    """Event: a log was exported to a file."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class Noted:
-    """The run in view has a note."""
+    """Event: the run in view has a note."""
 
     text: str
     level: float | None = None
@@ -91,14 +91,14 @@ class Noted:
 
 @dataclass(frozen=True, slots=True)
 class Visited:
-    """A past instant is in view."""
+    """Event: the app shows a past instant of a run."""
 
     time_s: float
 
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A panel is on the screen."""
+    """Event: a panel is on the screen."""
 
     panel: str
     paused: bool = True
@@ -123,7 +123,7 @@ _OTHER_LENGTHS = frozenset({"m", "dm", "cm", "in", "inch", "inches"})
 
 
 def is_met(check: Check, events: Sequence[Event]) -> bool:
-    """Return whether what a student has done since a step began passes its check."""
+    """Return whether the events since a step of a lesson began pass the step's check."""
     match check:
         case RunCheck():
             return count_good_runs(check, events) >= check.times
@@ -161,7 +161,7 @@ def is_met(check: Check, events: Sequence[Event]) -> bool:
 
 
 def count_good_runs(check: RunCheck, events: Sequence[Event]) -> int:
-    """Return how many runs have passed a check so far."""
+    """Return how many runs have passed a check so far, including its other worlds."""
     passed = {
         (event.run_id, other.where)
         for event in events
@@ -179,7 +179,7 @@ def count_good_runs(check: RunCheck, events: Sequence[Event]) -> int:
 
 
 def find_passed_runs(check: RunCheck, events: Sequence[Event]) -> list[JudgedRun]:
-    """Return the runs that have met the goals of a check; how their programs do in other worlds does not matter."""
+    """Return the runs that have met the goals of a check, whatever their programs do in other worlds."""
     runs = [event for event in events if isinstance(event, JudgedRun)]
     return [
         run for run in runs if set(check.goals) <= run.met and (run.from_start or check.anywhere)
@@ -199,7 +199,7 @@ def is_right(question: QuestionCheck, text: str) -> bool:
 
 
 def explain_unready(question: QuestionCheck, event: Typed) -> str:
-    """Return in a sentence what must happen before an answer counts; empty if that has happened."""
+    """Return in a sentence what a student must do before a typed answer is checked; empty if nothing."""
     if question.run and not event.has_run:
         return "Run the program first: the question is about that run."
     if event.printed is not None and not any(
@@ -216,7 +216,7 @@ def explain_unready(question: QuestionCheck, event: Typed) -> str:
 
 
 def describe_form(question: QuestionCheck, text: str) -> str:
-    """Return in words what form an answer must have; empty if the text has it."""
+    """Return in words which form an answer must have, such as a number; empty if the text has that form."""
     if isinstance(question.answer, int | float):
         match = _NUMBER.match(text.replace(",", "."))
         if match is None:
@@ -263,7 +263,7 @@ def _is_noted(check: NoteCheck, event: Noted) -> bool:
 
 
 def note_fault(check: NoteCheck, event: Noted) -> str:
-    """Return in a sentence why a note does not pass; empty if it does."""
+    """Return in a sentence why a student's note does not pass a check; empty if it does."""
     if _is_noted(check, event):
         return ""
     note = f"Your note “{event.text}” is on"
@@ -306,10 +306,14 @@ def parse_event(check: Check, text: str) -> Event:
 
 
 def build_model_event(check: Check, model: str) -> Event:
-    """Return an event that passes a check which is not about runs; breakpoints and notes need a `model`.
+    """Return an event that passes a check which is not about runs.
+
+    Args:
+        check: The check.
+        model: The model answer in the lesson's file; needed for breakpoints and notes, otherwise it may be empty.
 
     Raises:
-        ValueError: as for `parse_event`.
+        ValueError: the model answer is missing, or as for `parse_event`.
     """
     if model:
         return parse_event(check, model)

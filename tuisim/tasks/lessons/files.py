@@ -56,7 +56,7 @@ _CODE_FENCE = re.compile(r"^(`{3,}|~{3,})\s*(.*?)\s*$")
 
 
 class Role(StrEnum):
-    """What a block of code is for."""
+    """What a block of code in a lesson's Markdown is: a program to complete, a model answer, or a wrong program."""
 
     PROGRAM = "program"
     ANSWER = "answer"
@@ -73,7 +73,7 @@ class _Block:
 
 @dataclass(slots=True)
 class _Section:
-    """A part of the Markdown: the introduction, or a step."""
+    """A part of a lesson's Markdown: the introduction, or a step."""
 
     title: str
     line: int
@@ -89,12 +89,12 @@ class _Section:
 
 
 def get_lesson_name(path: Path) -> str:
-    """Return the name of a lesson: that of its file without suffix, and without a number for sorting."""
+    """Return the name of a lesson: the name of its file without the suffix and without the number in front."""
     return files.name_of(Path(_NUMBERED.sub("", path.name) or path.name))
 
 
 def load_lesson(path: Path | str) -> Lesson:
-    """Read a lesson.
+    """Read the file of a lesson.
 
     Raises:
         ConfigError: it cannot be read or is wrong; the error names file, line and key.
@@ -119,7 +119,11 @@ def _read(path: Path) -> str:
 
 
 def parse_lesson(text: str, path: Path) -> Lesson:
-    """Return the lesson in a text; `path` is its file, for errors, and for the files that it names.
+    """Return the lesson in a text.
+
+    Args:
+        text: The contents of a lesson's file.
+        path: The file, for errors; names of files in the lesson are relative to its folder.
 
     Raises:
         ConfigError: the text is wrong; the error names file, line and key.
@@ -133,14 +137,17 @@ def parse_lesson(text: str, path: Path) -> Lesson:
 
 
 def _split_front_matter(lines: Sequence[str], path: Path) -> tuple[str, int]:
-    """Return the TOML above the Markdown, and the index of the line that ends it."""
+    """Return the TOML above the Markdown of a lesson, and the index of the line that ends it."""
     end = _end_of_front(lines, path)
     # The line with `+++` becomes an empty one, so that the lines of the TOML keep their numbers.
     return "\n".join(["", *lines[1:end]]), end
 
 
 def _merge_told_lesson(data: Any, path: Path) -> Any:
-    """Return the TOML of a lesson; of a version for another library, merged with that of the original lesson."""
+    """Return the parsed TOML of a lesson.
+
+    If the lesson is a version of another one for another library, merged with that.
+    """
     if TELLS not in data:
         return data
     location = Location(str(path)).at(TELLS)
@@ -156,7 +163,7 @@ def _merge_told_lesson(data: Any, path: Path) -> Any:
 
 
 def _end_of_front(lines: Sequence[str], path: Path) -> int:
-    """Return the index of the line that ends the TOML above the Markdown."""
+    """Return the index of the line that ends the TOML above the Markdown of a lesson."""
     if not lines or lines[0].strip() != FENCE:
         raise ConfigError(
             f"does not begin with {FENCE}",
@@ -174,7 +181,13 @@ def _end_of_front(lines: Sequence[str], path: Path) -> int:
 
 
 def _split_sections(lines: Sequence[str], start: int, path: Path) -> list[_Section]:
-    """Cut the Markdown into the introduction and the steps, each with its blocks of code."""
+    """Return the introduction and the steps of a lesson's Markdown, each with its blocks of code.
+
+    Args:
+        lines: The lines of the lesson's file.
+        start: Index of the first line of the Markdown.
+        path: The file, for errors.
+    """
     sections = [_Section("", start + 1)]
     number = start
     while number < len(lines):
@@ -201,7 +214,14 @@ def _split_sections(lines: Sequence[str], start: int, path: Path) -> list[_Secti
 
 
 def _end_of_block(lines: Sequence[str], start: int, fence: str, path: Path) -> int:
-    """Return the index after the line that ends a block of code."""
+    """Return the index after the line that closes a block of code.
+
+    Args:
+        lines: The lines of the lesson's file.
+        start: Index of the first line in the block.
+        fence: The backticks that close it.
+        path: The file, for errors.
+    """
     for index in range(start, len(lines)):
         if lines[index].strip() == fence:
             return index + 1
@@ -223,7 +243,7 @@ def _parse_role(info: str, location: Location) -> Role | None:
 
 
 def _parse_way(word: str, role: Role, location: Location) -> Way | None:
-    """Return the way in which a block's program is wrong; None if none is given."""
+    """Return the `Way` that a word above a block of wrong code names; None if there is no word."""
     if not word:
         return None
     if role is not Role.WRONG:
@@ -266,7 +286,7 @@ def _build_lesson(data: Any, sections: Sequence[_Section], path: Path) -> Lesson
 
 
 def _parse_world(data: dict[str, Any], path: Path) -> WorldFile:
-    """Return the world in the front matter."""
+    """Return the world that the TOML of a lesson describes."""
     location = Location(str(path))
     for key in ("program", "world", "arguments", "autorun"):
         if key in data:
@@ -373,7 +393,7 @@ def _check_goals(check: Check, goals: set[str], location: Location) -> None:
 
 
 def _check_models(step: LessonStep, location: Location) -> None:
-    """Raise ConfigError if a step's model answer does not pass its check, or one of the wrong answers does."""
+    """Raise ConfigError if a step's model answer does not pass the step's check, or a wrong answer passes it."""
     if isinstance(step.check, RunCheck):
         for key in ("model", "wrong"):
             if getattr(step, key):
@@ -402,7 +422,7 @@ def _check_models(step: LessonStep, location: Location) -> None:
 
 
 def _add_answers(steps: Sequence[LessonStep], location: Location) -> tuple[LessonStep, ...]:
-    """Give each step that runs a program a model answer: its own, or the next one in the text."""
+    """Return the steps with a model answer for each that runs a program: its own, or that of the next step with one."""
     answer = ""
     completed = []
     for step in reversed(steps):
@@ -419,12 +439,17 @@ def _add_answers(steps: Sequence[LessonStep], location: Location) -> tuple[Lesso
 
 
 def build_telling_name(lesson: str, library: str) -> str:
-    """Return the name of a lesson's version for a library."""
+    """Return the name of the version of a lesson for a library."""
     return f"{lesson}-{library}"
 
 
 def merge_telling(other: Any, own: Any) -> Any:
-    """Return the TOML of a lesson's version merged with that of the original lesson; its own values take precedence."""
+    """Return the parsed TOML of a lesson merged with that of its version for another library.
+
+    Args:
+        other: The original lesson.
+        own: The version, whose values take precedence.
+    """
     match other, own:
         case dict(), dict():
             return {

@@ -26,9 +26,10 @@ _PAIR = 2
 
 
 class WholeTable(TableElement):
-    """A table whose columns are at least as wide as their longest word.
+    """A Markdown table whose columns are at least as wide as their longest word.
 
-    Where there is no room for that, each row is a list: its first cell, and below it the others with their headings.
+    If the width is too small for that, each row becomes a list: its first cell, then the other cells with their
+        headings.
     """
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
@@ -53,13 +54,20 @@ class WholeTable(TableElement):
 def _measure_column(
     console: Console, options: ConsoleOptions, column: Sequence[Text]
 ) -> Measurement:
-    """Return the widths of the longest word and of the longest text of a column, in cells."""
+    """Return the widths of the longest word and of the longest text of a table's column, in terminal cells."""
     cells = [Measurement.get(console, options, text) for text in column]
     return Measurement(max(cell.minimum for cell in cells), max(cell.maximum for cell in cells))
 
 
 def _compute_widths(columns: Sequence[Measurement], room: int) -> list[int] | None:
-    """Return the widths of columns; None if there is no room for their longest words beside each other."""
+    """Return the widths of a table's columns in terminal cells.
+
+    It is None if their longest words do not fit beside each other.
+
+    Args:
+        columns: For each column the widths of its longest word and longest text.
+        room: The width of all columns together.
+    """
     min_total = sum(column.minimum for column in columns)
     if min_total > room:
         return None
@@ -127,9 +135,9 @@ class _Markdown(Markdown):
 
 
 def render_markdown(text: str, width: int) -> list[Line]:
-    """Return Markdown as lines of at most a number of columns; lists are indented, code is coloured.
+    """Return Markdown as lines of at most `width` columns, with indented lists and coloured code.
 
-    Of several empty lines, as above and below code, there is one.
+    Several empty lines in a row, as above and below code, become one.
     """
     console = Console(
         file=io.StringIO(),
@@ -167,5 +175,5 @@ def _strip_line(line: Line) -> Line:
 
 
 def render_plain_text(text: str, width: int = 80) -> str:
-    """Return Markdown as plain text."""
+    """Return Markdown as plain text with lines of at most `width` columns."""
     return "\n".join("".join(part for part, _ in line) for line in render_markdown(text, width))

@@ -24,7 +24,7 @@ _MAX_BYTES = 4_000_000
 
 
 class StepState(StrEnum):
-    """How far a student is with a step."""
+    """Whether a student has done a step of a lesson, has skipped it, or neither."""
 
     OPEN = "open"
     DONE = "done"
@@ -33,7 +33,7 @@ class StepState(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class StepProgress:
-    """What a student has done on one step."""
+    """A student's progress on one step of a lesson."""
 
     state: StepState = StepState.OPEN
     at: str = ""
@@ -46,7 +46,7 @@ class StepProgress:
 
 @dataclass(frozen=True, slots=True)
 class LessonProgress:
-    """What a student has done on one lesson."""
+    """A student's progress on one lesson."""
 
     steps: Mapping[str, StepProgress] = field(default_factory=dict)
     """By the name of the step."""
@@ -54,15 +54,20 @@ class LessonProgress:
     """When it was last opened, in ISO 8601; empty if never."""
 
     def of(self, step: str) -> StepProgress:
-        """Return the progress on a step."""
+        """Return the progress on a step, given by its name; that of a new step if there is none."""
         return self.steps.get(step, StepProgress())
 
     def update_step(self, step: str, **changes: Any) -> LessonProgress:
-        """Return the progress with changes to a step."""
+        """Return a copy of the progress with changed attributes of a step.
+
+        Args:
+            step: The step's name.
+            **changes: New values of `StepProgress`.
+        """
         return replace(self, steps={**self.steps, step: replace(self.of(step), **changes)})
 
     def current(self, lesson: Lesson) -> int | None:
-        """Return the index of the first open step of a lesson; None if there is none."""
+        """Return the index of the first step of a lesson that is neither done nor skipped; None if there is none."""
         open_steps = (
             index
             for index, step in enumerate(lesson.steps)
@@ -75,7 +80,7 @@ class LessonProgress:
         return sum(self.of(step.name).state is StepState.DONE for step in lesson.steps)
 
     def words(self, lesson: Lesson) -> str:
-        """Return the progress on a lesson in words."""
+        """Return the progress on a lesson in words, such as `2 of 5 steps`."""
         done = self.done(lesson)
         count = len(lesson.steps)
         if done == count:
@@ -87,17 +92,17 @@ class LessonProgress:
 
 
 def format_now() -> str:
-    """Return the time in ISO 8601."""
+    """Return the present date and time in ISO 8601."""
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 def find_folder() -> Path:
-    """Return the folder with the progress and the student's programs; it may not exist yet."""
+    """Return the folder for the progress and the student's programs; it may not exist yet."""
     return home_folder() / FOLDER
 
 
 def load_progress() -> dict[str, LessonProgress]:
-    """Return the progress by the name of the lesson; empty if there is none yet.
+    """Return a student's progress by the name of the lesson; empty if no lesson was opened yet.
 
     Raises:
         ConfigError: the file is damaged.
@@ -129,7 +134,13 @@ def _step(data: Mapping[str, Any]) -> StepProgress:
 
 
 def save_progress(lesson: str, progress: LessonProgress) -> None:
-    """Store the progress on a lesson; that on other lessons is read again, since another app may have changed it.
+    """Store the progress on a lesson.
+
+    The file is read again first, as another app may have changed other lessons' progress.
+
+    Args:
+        lesson: The lesson's name.
+        progress: The student's progress on it.
 
     Raises:
         ConfigError: the file is damaged or cannot be written.
@@ -152,18 +163,19 @@ def save_progress(lesson: str, progress: LessonProgress) -> None:
 
 
 def build_program_path(lesson: Lesson) -> Path:
-    """Return the file with the student's program of a lesson; it may not exist yet."""
+    """Return the path of the student's program for a lesson; the file may not exist yet."""
     return find_folder() / f"{lesson.name}.py"
 
 
 def prepare_program(lesson: Lesson, anew: bool = False) -> Path:
-    """Return the file with the student's program of a lesson; a new file gets the lesson's program to complete.
+    """Return the file with the student's program for a lesson; if it is new, it contains the program to complete.
 
     Args:
-        anew: Whether to begin with the lesson's program again; the student's one is kept as `NAME.old.py`.
+        lesson: The lesson.
+        anew: Whether to replace an existing program by the one to complete; it is renamed to `NAME.old.py`.
 
     Raises:
-        ConfigError: it cannot be written.
+        ConfigError: the file cannot be written.
     """
     path = build_program_path(lesson)
     try:

@@ -69,7 +69,7 @@ _PAUSE_S = 10.0
 
 
 class Change(StrEnum):
-    """What must follow an event."""
+    """What the caller of a `LessonSession` must do after an event."""
 
     NONE = "none"
     SHOW = "show"
@@ -82,7 +82,7 @@ class Change(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Sight:
-    """What a student sees at a moment."""
+    """What the app shows a student at one moment."""
 
     panels: frozenset[str]
     """The panels in `SEEABLE` that are on the screen."""
@@ -103,7 +103,7 @@ class Sight:
 
 @dataclass(frozen=True, slots=True)
 class WorldTrial:
-    """The program of a good run, which is to be tried in the other worlds of its step."""
+    """The program of a run that has met a step's goals, to be tried in the other worlds of the step."""
 
     lesson: Lesson
     check: RunCheck
@@ -111,10 +111,10 @@ class WorldTrial:
     folder: Path
 
     def run(self) -> WorldJudgements:
-        """Return the judgements of the program in the other worlds; blocks while it runs.
+        """Run the program in each of the other worlds, and return the judgements; blocks meanwhile.
 
         Raises:
-            TuisimError: the run is damaged, or its magic line is wrong there.
+            TuisimError: the run is damaged, or the program's magic line is wrong in another world.
         """
         from tuisim.tasks.lessons.trial import try_elsewhere
 
@@ -123,7 +123,7 @@ class WorldTrial:
 
 @dataclass(slots=True)
 class Attempt:
-    """What a student has done since a step began."""
+    """A student's attempt at a step: what has happened since the step began."""
 
     run_before: str = ""
     """Id of the run that was in view, which does not count."""
@@ -143,13 +143,13 @@ class Attempt:
 
 
 class LessonSession:
-    """A lesson that a student does: first `resume`, then for each step `begin_step` and what the student does.
+    """A lesson that a student does: call `resume`, then for each step `begin_step` and a method for each event.
 
     Attributes:
         lesson: The lesson.
-        progress: What is done; `save` stores it.
-        done: The step that has just been done.
-        attempt: What was done since the step began.
+        progress: The student's progress; `save` stores it.
+        done: The step before, if it was done and not skipped; otherwise None.
+        attempt: What has happened since the present step began.
         story: What happened in the run that passed the last step; empty if the step was not about a run.
     """
 
@@ -163,10 +163,10 @@ class LessonSession:
         self._next_look_s = 0.0
 
     def resume(self) -> None:
-        """Go on where the student has left the lesson.
+        """Load the student's progress on the lesson.
 
         Raises:
-            ConfigError: the progress is damaged; the lesson begins anew.
+            ConfigError: the file with the progress is damaged; the lesson begins at its first step.
         """
         try:
             self.progress = load_progress().get(self.lesson.name, LessonProgress())
@@ -174,34 +174,38 @@ class LessonSession:
             self.progress = replace(self.progress, opened_at=format_now())
 
     def start_over(self) -> None:
-        """Forget the progress."""
+        """Discard the student's progress on the lesson, so that it begins at its first step."""
         self.progress = LessonProgress(opened_at=format_now())
         self.done = None
 
     def save(self) -> None:
-        """Store the progress, if it has changed.
+        """Store the student's progress if it has changed.
 
         Raises:
-            ConfigError: it cannot be written.
+            ConfigError: the file cannot be written.
         """
         if self.progress is not self._saved:
             self._saved = self.progress
             save_progress(self.lesson.name, self.progress)
 
     def begin_step(self, run_id: str) -> None:
-        """Begin the next step; the run that is in view now does not count for it."""
+        """Begin the next step of the lesson.
+
+        Args:
+            run_id: Id of the run that is in view now, which cannot pass the step.
+        """
         self.attempt = Attempt(run_id)
 
     # What is known
 
     @property
     def at(self) -> int | None:
-        """Index of the step to do; None when all are done or skipped."""
+        """Index of the step to do; None when all steps are done or skipped."""
         return self.progress.current(self.lesson)
 
     @property
     def step(self) -> LessonStep | None:
-        """The step to do; None when all are done or skipped."""
+        """The step to do; None when all steps are done or skipped."""
         return None if self.at is None else self.lesson.steps[self.at]
 
     @property
@@ -212,22 +216,22 @@ class LessonSession:
 
     @property
     def hints(self) -> int:
-        """How many hints of the step are shown."""
+        """The number of hints of the present step that are shown."""
         return self.progress.of(self.step.name).hints if self.step else 0
 
     @property
     def good_runs(self) -> int:
-        """How many runs have passed the step so far."""
+        """The number of runs that have passed the present step's check so far."""
         step = self.step
         if step is None or not isinstance(step.check, RunCheck):
             return 0
         return count_good_runs(step.check, self.attempt.events)
 
     def describe_elsewhere(self, pose: Pose, *, in_run: bool) -> str:
-        """Return why the last run does not count, in a sentence, and what to do; empty if it counts.
+        """Return why the last run does not count for the step, in a sentence, and what to do; empty if it counts.
 
         Args:
-            pose: The robot's.
+            pose: The robot's pose.
             in_run: Whether a run is going on.
         """
         elsewhere = self.attempt.elsewhere
@@ -251,10 +255,15 @@ class LessonSession:
     # What the student does
 
     def answer(self, text: str, x_mm: float, sight: Sight) -> Change:
-        """Check a typed answer; `x_mm` is where the robot stands.
+        """Check a typed answer to the present step's question; return what the caller must do.
+
+        Args:
+            text: The answer.
+            x_mm: Where the robot stands.
+            sight: What the app shows.
 
         Raises:
-            TuisimError: it is wrong, or does not count yet.
+            TuisimError: the answer is wrong, or the student must do something else first.
         """
         step = self.step
         if step is None or not isinstance(step.check, QuestionCheck):
@@ -286,23 +295,27 @@ class LessonSession:
         self.progress = self.progress.update_step(step.name, tries=tries)
 
     def show_hint(self) -> None:
-        """Show the next hint of the step; the step must have one."""
+        """Count one more hint of the present step as shown; the step must have one."""
         if self.step:
             self.progress = self.progress.update_step(self.step.name, hints=self.hints + 1)
 
     def skip_step(self) -> LessonStep | None:
-        """Leave the step undone, and return it; None if all are done or skipped."""
+        """Skip the present step, and return it; None if all steps are done or skipped."""
         step = self.step
         if step is not None:
             self._leave_step(step, StepState.SKIPPED)
         return step
 
     def take_export(self, name: str) -> Change:
-        """Note that the log was exported to a file of a name; return what follows."""
+        """Check whether an exported log passes the present step; return what the caller must do.
+
+        Args:
+            name: The name of the exported file.
+        """
         return Change.GO_ON if self._take(Exported(name)) else Change.NONE
 
     def look(self, sight: Sight) -> Change:
-        """Check whether what the student sees passes the step.
+        """Check whether what the app shows passes the present step; return what the caller must do.
 
         Raises:
             TuisimError: the notes on the run, or its recording, are damaged.
@@ -358,7 +371,14 @@ class LessonSession:
         return Change.TRY
 
     def take_trial(self, trial: WorldTrial, judged: WorldJudgements) -> Change:
-        """Note how a program did in other worlds, unless the student has gone on to another step meanwhile."""
+        """Check whether a program's results in other worlds pass the present step; return what the caller must do.
+
+        Results for a step that the student has left in the meantime are ignored.
+
+        Args:
+            trial: The program that was tried.
+            judged: Its judgements in each world.
+        """
         if self.step is None or self.step.check is not trial.check:
             return Change.NONE
         remark = ""
@@ -392,7 +412,7 @@ class LessonSession:
         return Change.SHOW if is_new else Change.NONE
 
     def _take(self, event: Event) -> bool:
-        """Add an event; return whether the step is done now."""
+        """Add an event to the attempt; return whether the present step is done now."""
         step = self.step
         events = self.attempt.events
         if step is None or event in events:
@@ -423,7 +443,7 @@ def _list_met(judgements: Sequence[Judgement]) -> frozenset[str]:
 
 
 def _list_world(spec: RunSpec) -> tuple[object, ...]:
-    """Return the values of a run that must be those of the lesson, or else the run does not count."""
+    """Return the values of a run's world that must equal the lesson's for the run to count: place, noise and drift."""
     return (*_list_place(spec.world), spec.world.noise, spec.world.drift)
 
 
@@ -433,21 +453,21 @@ def _list_place(world: WorldSpec) -> tuple[object, ...]:
 
 
 def _explain_miss(missed: Judgement) -> str:
-    """Return why a goal is missed in another world, without the numbers and words that would give the answer away."""
+    """Return why a goal is missed in another world, without numbers and words that would give the answer away."""
     if any(isinstance(part, LogCondition | PrintCondition) for part in missed.goal.parts):
         return "the program does not print the robot's readings at the places where the robot reads them."
     return missed.reason
 
 
 def _tell_start(other: TrialWorld) -> str:
-    """Return where the robot starts in another world, for a sentence; empty if it is where the lesson starts."""
+    """Return where the robot starts in another world, for a sentence; empty if the world has the lesson's start."""
     coordinates = {axis: other.settings.get(f"start.{axis}_mm") for axis in "xy"}
     places = [f"{axis} = {value:g} mm" for axis, value in coordinates.items() if value is not None]
     return f" (start {', '.join(places)})" if places else ""
 
 
 def _read_notes(folder: Path) -> Iterator[Noted]:
-    """Yield the notes on a run, each with the mean of the samples that it is about.
+    """Yield an event for each note on a run, with the mean of the samples that the note is about.
 
     Raises:
         LogError: the notes or the recording are damaged.

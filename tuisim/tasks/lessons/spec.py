@@ -40,7 +40,7 @@ def _check_panel(panel: str, key: str, known: tuple[str, ...] = SHOWABLE) -> Non
 
 
 class Way(StrEnum):
-    """A wrong way to pass a step."""
+    """A kind of wrong program or answer with which a student could try to pass a step."""
 
     LITERAL = "literal answer"
     """The program contains the answer instead of finding it out."""
@@ -52,7 +52,7 @@ class Way(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class RunCheck:
-    """Runs of the program meet goals of the lesson."""
+    """Check of a step: runs of the student's program meet goals of the lesson."""
 
     SHORT: ClassVar[str] = "goals"
     """The key that is meant if a file gives a value instead of a table."""
@@ -77,7 +77,7 @@ class RunCheck:
 
 @dataclass(frozen=True, slots=True)
 class QuestionCheck:
-    """The student types the right answer: a number, a text, or one of several choices."""
+    """Check of a step: the student types the right answer, which is a number, a text, or one of several choices."""
 
     SHORT: ClassVar[str] = ""
     EXCLUDES: ClassVar[Mapping[Way, str]] = {}
@@ -124,7 +124,7 @@ class QuestionCheck:
 
 @dataclass(frozen=True, slots=True)
 class WatchCheck:
-    """The student watches a variable or an expression while the program is paused."""
+    """Check of a step: the student watches a variable or an expression while the program is paused."""
 
     SHORT: ClassVar[str] = "expression"
     EXCLUDES: ClassVar[Mapping[Way, str]] = {
@@ -138,13 +138,13 @@ class WatchCheck:
 
     @property
     def words(self) -> str:
-        """What the student is to do."""
+        """What the student has to do, in words."""
         return f"watch {self.expression}"
 
 
 @dataclass(frozen=True, slots=True)
 class BreakCheck:
-    """A run stops at a breakpoint."""
+    """Check of a step: a run stops at a breakpoint."""
 
     SHORT: ClassVar[str] = "matches"
     EXCLUDES: ClassVar[Mapping[Way, str]] = {
@@ -162,13 +162,13 @@ class BreakCheck:
 
     @property
     def words(self) -> str:
-        """What the student is to do."""
+        """What the student has to do, in words."""
         return "let a run stop at the breakpoint"
 
 
 @dataclass(frozen=True, slots=True)
 class ExportCheck:
-    """The student exports a log."""
+    """Check of a step: the student exports a log."""
 
     SHORT: ClassVar[str] = "suffix"
     EXCLUDES: ClassVar[Mapping[Way, str]] = {
@@ -183,13 +183,13 @@ class ExportCheck:
 
     @property
     def words(self) -> str:
-        """What the student is to do."""
+        """What the student has to do, in words."""
         return f"export to a {self.suffix} file"
 
 
 @dataclass(frozen=True, slots=True)
 class NoteCheck:
-    """The student writes a note on the run, perhaps on a band with a certain level."""
+    """Check of a step: the student writes a note on the run; the step can require a band with a certain level."""
 
     SHORT: ClassVar[str] = "matches"
     EXCLUDES: ClassVar[Mapping[Way, str]] = {
@@ -208,13 +208,13 @@ class NoteCheck:
 
     @property
     def words(self) -> str:
-        """What the student is to do."""
+        """What the student has to do, in words."""
         return "write your note"
 
 
 @dataclass(frozen=True, slots=True)
 class VisitCheck:
-    """The student goes back to a past instant of a run."""
+    """Check of a step: the student goes back to a past instant of a run."""
 
     SHORT: ClassVar[str] = ""
     EXCLUDES: ClassVar[Mapping[Way, str]] = {
@@ -235,13 +235,13 @@ class VisitCheck:
 
     @property
     def words(self) -> str:
-        """What the student is to do."""
+        """What the student has to do, in words."""
         return f"go to an instant between {self.from_s:g} and {self.to_s:g} s"
 
 
 @dataclass(frozen=True, slots=True)
 class ShowCheck:
-    """A panel of the app is on the screen."""
+    """Check of a step: a panel of the app is on the screen."""
 
     SHORT: ClassVar[str] = "panel"
     EXCLUDES: ClassVar[Mapping[Way, str]] = {
@@ -285,7 +285,7 @@ CHECKS: Mapping[str, type[Check]] = {
 
 @dataclass(frozen=True, slots=True)
 class WrongProgram:
-    """A program that must not pass a step."""
+    """A program in a lesson's file that must not pass a step."""
 
     text: str
     line: int
@@ -320,7 +320,7 @@ class LessonStep:
     """The wrong ways that it does not admit, each with the reason."""
 
     def find_missing_ways(self) -> tuple[Way, ...]:
-        """Return the wrong ways that are neither tried nor excluded with a reason."""
+        """Return the wrong ways that the step neither tries with a wrong program nor excludes with a reason."""
         covered = {
             *self.excludes,
             *self.check.EXCLUDES,
@@ -344,7 +344,7 @@ class LessonStep:
 
 @dataclass(frozen=True, slots=True)
 class Lesson:
-    """The contents of a lesson's file."""
+    """A lesson, as read from its file."""
 
     name: str
     """From the file name, such as `first-run` from `01-first-run.md`."""
@@ -369,5 +369,5 @@ class Lesson:
 
     @property
     def model_answer(self) -> str:
-        """The last model answer, which appears when every step is done; empty if there is none."""
+        """The model answer of the last step with one, shown when every step is done; empty if there is none."""
         return next((step.answer for step in reversed(self.steps) if step.answer), "")

@@ -43,7 +43,13 @@ def _list_parts(judgement: Judgement) -> Iterator[str]:
 
 
 def _describe_condition(condition: Condition, event: Change, line: int) -> str:
-    """Return how a run met a condition, in words; empty for conditions that only the program's text meets."""
+    """Return in words when and where a run met a condition; empty for conditions that only the program's text decides.
+
+    Args:
+        condition: The condition.
+        event: When and where it was met.
+        line: The program's line.
+    """
     when = f"at {event.time_s:.2f} s"
     where = f"at x = {event.x_mm:.0f} mm, y = {event.y_mm:.0f} mm"
     match condition:

@@ -30,7 +30,7 @@ _Key = tuple[str, int, str]
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """A program that is tried on a step."""
+    """A program in a lesson's file, to be tried on a step."""
 
     step: LessonStep
     text: str
@@ -44,7 +44,7 @@ class Trial:
 
 
 def list_trials(lesson: Lesson) -> list[Trial]:
-    """Return the programs to be tried: each model answer as often as its step asks for, and each wrong program once."""
+    """Return a lesson's programs to try: each model answer as often as its step requires, each wrong program once."""
     trials_to_run = []
     seed = build_run_spec(merge_settings(lesson.settings)).seed
     for step in lesson.steps:
@@ -62,10 +62,17 @@ def list_trials(lesson: Lesson) -> list[Trial]:
 def build_task(
     lesson: Lesson, text: str, seed: int, index: int = 0, other: TrialWorld | None = None
 ) -> Task:
-    """Return the task to run a program in the world of a lesson, or in another world of a step, with a seed.
+    """Return the task that runs a program in the lesson's world or in another world of a step.
+
+    Args:
+        lesson: The lesson.
+        text: The program.
+        seed: The seed of the run.
+        index: Index of the task in its batch.
+        other: The other world; None for the lesson's.
 
     Raises:
-        ConfigError: its magic line, or the world, is wrong.
+        ConfigError: the program's magic line, or the world, is wrong.
     """
     source = parse_program(text, f"{lesson.name}.py")
     world_settings = {**lesson.settings, **(other.settings if other else {})}
@@ -80,10 +87,10 @@ def build_task(
 def try_elsewhere(
     lesson: Lesson, check: RunCheck, run: StoredRun
 ) -> list[tuple[TrialWorld, tuple[Judgement, ...]]]:
-    """Run the program of a run in the other worlds of a check; return the judgements in each. Blocks meanwhile.
+    """Run the program of a run in the other worlds of a check; return each world with its judgements. Blocks meanwhile.
 
     Raises:
-        ConfigError: the program's magic line is wrong there.
+        ConfigError: the program's magic line is wrong in another world.
     """
     text = run.program.text
     seed = run.spec.seed
@@ -92,10 +99,16 @@ def try_elsewhere(
 
 
 def run_model(lesson: Lesson, step: LessonStep | None) -> Recording:
-    """Run the model answer of a step, or else of the lesson, in the lesson's world; blocks. The run is not stored.
+    """Run the model answer of a step in the lesson's world, and return its recording. Blocks meanwhile.
+
+    The run is not stored.
+
+    Args:
+        lesson: The lesson.
+        step: The step; None, or one without a model answer, for the last model answer of the lesson.
 
     Raises:
-        TuisimError: it cannot run.
+        TuisimError: the program cannot run.
     """
     text = (step.answer if step else "") or lesson.model_answer
     task = build_task(lesson, text, build_run_spec(merge_settings(lesson.settings)).seed)
@@ -114,7 +127,7 @@ def run_model(lesson: Lesson, step: LessonStep | None) -> Recording:
 
 
 def find_faults(lesson: Lesson) -> list[str]:
-    """Run a lesson's programs, and return what is wrong with the lesson, each fault as a line; blocks meanwhile.
+    """Run all programs of a lesson, and return the faults of the lesson, one line each; blocks meanwhile.
 
     Raises:
         ConfigError: a program's magic line, or the world, is wrong.
@@ -131,7 +144,7 @@ def find_faults(lesson: Lesson) -> list[str]:
 
 
 def _list_worlds(trial: Trial) -> list[tuple[_Key, TrialWorld | None]]:
-    """Return the worlds in which a trial runs, each with its key; None for that of the lesson."""
+    """Return the worlds in which a trial runs, each with the key of its result; None stands for the lesson's world."""
     check = trial.step.check
     assert isinstance(check, RunCheck)
     others = [
@@ -170,7 +183,7 @@ def _find_trial_faults(
 
 
 def _find_missed(goals: Sequence[str], result: Result) -> list[str]:
-    """Return which of some goals a run has missed, each with the reason."""
+    """Return which of some goals a run has missed, each with the reason, as text."""
     by_name = {each.goal.name: each for each in result.judgements}
     return [
         f"{name}: {by_name[name].reason}"
