@@ -19,7 +19,7 @@ _GRID_MM = 4.0
 
 @dataclass(frozen=True, slots=True)
 class Miss:
-    """Where a student's run missed a goal."""
+    """A goal that a student's run missed, and where."""
 
     student: str
     goal: str
@@ -30,19 +30,19 @@ class Miss:
 
 @dataclass(frozen=True, slots=True)
 class MissesOfRun:
-    """A stored run, and where it missed goals."""
+    """A stored run with the goals that it missed."""
 
     run: StoredRun
     misses: tuple[Miss, ...]
 
     @property
     def mat(self) -> str:
-        """The mat on which the run was."""
+        """The name of the run's mat, or the path of its image."""
         return self.run.spec.world.background
 
 
 def build_class_maps(runs: Sequence[MissesOfRun]) -> list[Picture]:
-    """Return a picture of each mat on which goals were missed; the mat with the most misses first.
+    """Return a picture of each mat with the places where runs missed goals; the mat with the most misses first.
 
     A mat that can no longer be drawn is left out: the reports of the runs on it say why.
     """

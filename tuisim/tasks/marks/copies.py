@@ -39,7 +39,7 @@ _BLANK = frozenset({tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT})
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """One token of a program."""
+    """A token of a program, for the comparison of programs."""
 
     kind: str
     """The same for all names, all numbers and all texts."""
@@ -48,7 +48,7 @@ class Token:
 
 
 def list_tokens(text: str) -> Iterator[Token]:
-    """Yield the tokens of a program, up to where Python cannot read it."""
+    """Yield the tokens of a program; the last one is that before the first syntax error, if there is one."""
     try:
         for token in tokenize.generate_tokens(io.StringIO(text).readline):
             if token.type in _SKIPPED:
@@ -85,7 +85,7 @@ MAX_PAIRS = 60
 
 @dataclass(frozen=True, slots=True)
 class SimilarPair:
-    """Two programs that share passages."""
+    """Two students' programs that share passages."""
 
     names: tuple[str, str]
     share: float
@@ -96,7 +96,7 @@ class SimilarPair:
 
 @dataclass(frozen=True, slots=True)
 class SimilarGroup:
-    """Programs that differ at most in names, numbers, texts and comments."""
+    """Students' programs that differ at most in names, numbers, texts and comments."""
 
     names: tuple[str, ...]
     same: tuple[tuple[str, ...], ...]
@@ -105,7 +105,7 @@ class SimilarGroup:
 
 @dataclass(frozen=True, slots=True)
 class Similar:
-    """Which programs of a class resemble each other."""
+    """The pairs and groups of similar programs in a class."""
 
     groups: tuple[SimilarGroup, ...]
     """The largest first."""
@@ -124,7 +124,10 @@ def _read_tokens(texts: Iterable[str]) -> list[Token]:
 
 
 def _compute_prints(tokens: Sequence[Token]) -> _Prints:
-    """Return the fingerprints of a program, with their lines: the least hash of each window, the last of equal ones."""
+    """Return the fingerprints of a program, each with its lines.
+
+    A fingerprint is the least hash of a window, the last one of equal hashes.
+    """
     kinds = [token.kind for token in tokens]
     hashes = [
         zlib.crc32("\0".join(kinds[start : start + TOKENS]).encode("utf-8", "surrogatepass"))
@@ -143,11 +146,11 @@ def _compute_prints(tokens: Sequence[Token]) -> _Prints:
 def find_similar(
     programs: Mapping[str, Iterable[str]], handed_out: Collection[str] = ()
 ) -> Similar:
-    """Return which programs resemble each other.
+    """Return which programs of a class are similar.
 
     Args:
         programs: The texts of the main program and its modules, by the student's name; only `MAX_TOKENS` are compared.
-        handed_out: Texts that everybody was given, such as a skeleton: passages from them do not count.
+        handed_out: Texts that the whole class was given, such as a skeleton; passages from them are ignored.
     """
     tokens = {
         name: program_tokens
@@ -184,7 +187,7 @@ def find_similar(
 
 
 def _group_equal(contents: Mapping[str, tuple[str, ...]]) -> list[tuple[str, ...]]:
-    """Return groups of the names whose contents are equal, the largest group first."""
+    """Return groups of the names with equal contents, the largest group first."""
     groups: dict[tuple[str, ...], list[str]] = defaultdict(list)
     for name, content in contents.items():
         groups[content].append(name)
@@ -192,7 +195,7 @@ def _group_equal(contents: Mapping[str, tuple[str, ...]]) -> list[tuple[str, ...
 
 
 def _find_common(prints: Mapping[str, _Prints]) -> set[int]:
-    """Return the fingerprints that too many programs have to show a resemblance."""
+    """Return the fingerprints that are in so many programs that they do not show copying."""
     count = Counter(key for program_prints in prints.values() for key in program_prints)
     limit = max(MIN_COMMON, COMMON_SHARE * len(prints))
     return {key for key, programs in count.items() if programs > limit}

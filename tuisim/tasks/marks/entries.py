@@ -27,7 +27,7 @@ from tuisim.tasks.marks.students import Student, find_outside_option
 def build_entries(
     submissions: Sequence[Student], task: GoalsFile, options: Mapping[str, Any]
 ) -> tuple[list[RunEntry], list[Student]]:
-    """Return the students whose programs can be run, and all students.
+    """Return the students whose programs can be run, and all students, some of whom now have a problem.
 
     Args:
         submissions: The students.
@@ -35,7 +35,7 @@ def build_entries(
         options: Settings that take precedence over those of the task, by path.
 
     Raises:
-        ConfigError: the world of the goals, or an option, is wrong, or none of the programs can run by its profile.
+        ConfigError: the task's world, or an option, is wrong, or the profile fits none of the programs.
     """
     for world in task.worlds:
         build_run_spec(merge_settings(world.settings, options))
@@ -83,12 +83,12 @@ def _build_entry(
 def _resolve_settings(
     student: Student, world: TrialWorld, options: Mapping[str, Any]
 ) -> ProgramSettings:
-    """Return the settings of a student's program: of the task's world if it has one, else of the program's magic line.
+    """Return the settings of a student's program: from the task's world if it has values, else from the magic line.
 
-    If the goals name no profile, it follows from the program's library.
+    If the task names no profile, it follows from the program's library.
 
     Raises:
-        ConfigError: the line, or a file that it names, is wrong.
+        ConfigError: the magic line, or a file that it names, is wrong.
         ProfileError: the profile is one for another library.
     """
     assert student.source is not None
@@ -101,10 +101,10 @@ def _resolve_settings(
 
 
 def _check_background(spec: RunSpec) -> None:
-    """Read a mat's image that is not one of tuisim's, so that a damaged one is noticed before the runs.
+    """Read the image of a mat that is not part of tuisim, so that a damaged one is noticed before the runs.
 
     Raises:
-        ConfigError: it is no picture, or it cannot be read.
+        ConfigError: the file is not an image, or it cannot be read.
     """
     image = background(spec.world.background).image
     if not image.is_relative_to(backgrounds_folder()):
@@ -113,7 +113,7 @@ def _check_background(spec: RunSpec) -> None:
 
 
 def _describe_error(error: ConfigError, student: Student) -> str:
-    """Return the text of an error, with paths of the student's files relative to the folder."""
+    """Return the text of an error, with the paths of the student's files relative to the student's folder."""
     folder = student.path if student.path.is_dir() else student.path.parent
     text = str(error)
     for place in (os.path.abspath(folder), os.path.realpath(folder), str(folder)):

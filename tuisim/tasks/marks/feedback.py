@@ -28,7 +28,7 @@ _FORBIDDEN = frozenset('/\\:*?"<>|')
 
 
 def build_file_stems(names: Iterable[str]) -> list[str]:
-    """Return a name for the files of each student: all distinct, without characters that are odd in file names."""
+    """Return a name for each student's file, without its suffix: all distinct, and without unusual characters."""
     stems: list[str] = []
     taken: set[str] = set()
     for name in names:
@@ -51,7 +51,9 @@ def build_feedback(sheet: Sheet, row: SheetRow, source: str = "") -> str:
     """Return the feedback for one student as plain text.
 
     Args:
-        source: The text of the main program, whose lines are quoted.
+        sheet: The marks of the class.
+        row: The marks of the student.
+        source: The text of the student's main program, whose lines are quoted.
     """
     try:
         return _build_feedback(sheet, row, source)
@@ -100,7 +102,7 @@ def _describe_frequency(row: SheetRow) -> list[str]:
 
 
 def _describe_hidden(cells: Sequence[tuple[Goal, Cell]]) -> list[str]:
-    """Return the lines on hidden goals, of which a student is told only the sum of their points."""
+    """Return the lines of the feedback on hidden goals, which only give the sum of their points."""
     max_points = math.fsum(max(column.points, 0.0) for column, _ in cells)
     points = math.fsum(cell.points for _, cell in cells)
     return (
@@ -153,9 +155,13 @@ def _wrap(text: str, indent: str = "") -> str:
 
 
 def write_feedback(folder: Path, sheet: Sheet, sources: Sequence[str]) -> None:
-    """Write a file for each student into a folder, which is created if necessary; existing files are replaced.
+    """Write a file of feedback for each student into a folder, which is created if necessary.
+
+    Existing files are replaced.
 
     Args:
+        folder: The folder.
+        sheet: The marks of the class.
         sources: The text of each student's main program, in the order of the rows.
 
     Raises:

@@ -39,7 +39,7 @@ _ODD_ZIP = (
 
 
 def copy_tree(folder: Path, place: Path) -> None:
-    """Copy a folder's regular files and its links, as links, into a new folder; all copies are writable.
+    """Copy a folder's regular files, and its links as links, into a new folder, `place`; all copies are writable.
 
     Files that cannot be read are left out, as the program could not read them either.
 
@@ -66,7 +66,7 @@ def copy_tree(folder: Path, place: Path) -> None:
 
 
 def copy_file(source: Path, target: Path) -> None:
-    """Copy a regular file, without filling its holes; a file that cannot be read is left out.
+    """Copy a regular file without writing the zeros of its holes; a file that cannot be read is left out.
 
     Raises:
         LogError: the copy cannot be written.
@@ -90,7 +90,7 @@ def copy_file(source: Path, target: Path) -> None:
 
 
 def _find_data(file: BinaryIO, place: int, size: int) -> tuple[int, int]:
-    """Return where the next data after a position begin and end, in a file that may have holes."""
+    """Return the start and end of the next data after a position in a file, which may be sparse."""
     try:
         start = os.lseek(file.fileno(), place, os.SEEK_DATA)
         return start, min(os.lseek(file.fileno(), start, os.SEEK_HOLE), size)
@@ -101,6 +101,11 @@ def _find_data(file: BinaryIO, place: int, size: int) -> tuple[int, int]:
 
 def unpack_zip(path: Path, place: Path, max_bytes: int) -> None:
     """Unpack the regular files of a zip into a new folder.
+
+    Args:
+        path: The zip.
+        place: The new folder.
+        max_bytes: The largest total size of the files.
 
     Raises:
         ConfigError: it is no zip, is too large, or has links or paths out of its folder.

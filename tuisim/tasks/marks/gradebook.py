@@ -47,28 +47,28 @@ _WORKSHEET = ("Identifier", "Full name", "Last modified (grade)")
 
 @dataclass(frozen=True, slots=True)
 class Roster:
-    """The class list: who the students of a class are."""
+    """The class list: a row of cells for each student."""
 
     people: Mapping[str, Mapping[str, str]]
     """By the name of the submission: the cells of the row by the column's name in lower case."""
 
     def missing(self, names: Sequence[str]) -> list[str]:
-        """Return the names of submissions that have no row in the list."""
+        """Return those of some submissions' names that have no row in the class list."""
         return [name for name in names if name not in self.people]
 
     def absent(self, names: Sequence[str]) -> list[str]:
-        """Return the names in the list that have no submission."""
+        """Return the names in the class list that are not among the submissions' names."""
         return [name for name in self.people if name not in names]
 
 
 def read_roster(path: Path) -> Roster:
     """Read a class list: CSV with a heading, one row a student.
 
-    The column `submission` has the name of the student's file or folder; where there is none, the user name is that
+    The column `submission` has the name of the student's file or folder; without this column, the user name is that
     name. The other columns have the names that the gradebook gives them, such as `Email address` or `SIS User ID`.
 
     Raises:
-        ConfigError: it cannot be read, has no such column, or names a submission twice.
+        ConfigError: it cannot be read, has neither column, or names a submission twice.
     """
     file_name = str(path)
     data = read_bytes(
@@ -119,11 +119,15 @@ def write_gradebook(
     *,
     goals: bool,
 ) -> None:
-    """Write the marks for a gradebook; an existing file is replaced.
+    """Write the marks as a file for a gradebook to import; an existing file is replaced.
 
     Args:
+        path: The file.
+        kind: The gradebook.
+        sheet: The marks of the class.
         sources: The texts of the students' programs, in the order of the rows, which the feedback quotes.
-        goals: Whether each goal that is not hidden has a column of its own, beside the one of the total.
+        roster: The class list.
+        goals: Whether each goal that is not hidden has its own column, in addition to that of the total.
 
     Raises:
         ExportError: it cannot be written.
@@ -165,9 +169,9 @@ def write_gradebook(
 def _choose_heads(
     kind: GradebookKind, sheet: Sheet, roster: Roster
 ) -> tuple[Sequence[str], str, str]:
-    """Return the columns that say who a student is, then the names for the columns of the total and of the feedback.
+    """Return the headings of the columns that identify a student, then those of the total and of the feedback.
 
-    The total's name is empty if it is the title of the task.
+    The total's heading is empty if it is the title of the task.
     """
     has_numbers = kind is GradebookKind.MOODLE and any(kind in row.ids for row in sheet.rows)
     if has_numbers and not roster.people:

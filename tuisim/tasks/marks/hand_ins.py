@@ -25,7 +25,7 @@ _AGAIN = re.compile(r"-(\d+)(?=\.(?:py|ipynb|zip)$)", re.IGNORECASE)
 
 
 class GradebookKind(StrEnum):
-    """Whose gradebook delivers hand-ins and imports marks."""
+    """The gradebooks whose downloads of hand-ins can be read and for which marks can be written."""
 
     MOODLE = "moodle"
     CANVAS = "canvas"
@@ -44,7 +44,7 @@ class HandIn:
 
 
 def group_hand_ins(paths: Iterable[Path]) -> list[HandIn]:
-    """Return files and folders grouped by student, in their order; of several attempts only the newest."""
+    """Return the hand-ins in files and folders, one for each student; of several attempts only the newest."""
     groups: dict[tuple[GradebookKind | Path, str], list[tuple[re.Match[str], Path]]] = {}
     for path in paths:
         if (match := _MOODLE.fullmatch(path.name)) and len(_MOODLE_NUMBER.findall(path.name)) == 1:
@@ -76,7 +76,7 @@ def _join(kind: GradebookKind, id_: str, parts: list[tuple[re.Match[str], Path]]
 
 
 def gather_files(hand_in: HandIn, place: Path) -> Path:
-    """Return the file or folder of a student; several files are copied into a new folder, `place`.
+    """Return the only file or folder of a student's hand-in; several files are copied into a new folder, `place`.
 
     Raises:
         LogError, OSError: the copy cannot be written.

@@ -20,17 +20,17 @@ FOLDER = "marks"
 
 
 def build_journal_path(goals: Path) -> Path:
-    """Return the file of the journal for a goals file, named after a hash of the goals file's path."""
+    """Return the path of the journal for a goals file: its name is a hash of the goals file's path."""
     key = hashlib.sha256(bytes(goals.resolve())).hexdigest()[:32]
     return home_folder() / FOLDER / f"{key}.jsonl"
 
 
 class Journal:
-    """The outcomes of a marking so far, by a key of each run: a context manager that appends them to a file.
+    """The outcomes of a marking so far, by a key of each run: a context manager that appends new ones to a file.
 
     Args:
         path: The file.
-        resumes: Whether outcomes in the file are read; otherwise they are discarded.
+        resumes: Whether to read the outcomes in an existing file; otherwise they are discarded.
 
     Raises:
         LogError: by `__enter__` and `add`, if the file cannot be read or written.
@@ -59,7 +59,7 @@ class Journal:
             self._file.close()
 
     def add(self, key: str, outcome: Outcome) -> None:
-        """Append an outcome; it is in the file when this returns."""
+        """Append the outcome of a run to the file, and flush it."""
         assert self._file is not None
         line = json.dumps({"key": key, "outcome": asdict(outcome)}).encode() + b"\n"
         try:
@@ -69,7 +69,7 @@ class Journal:
             raise self._build_error(error) from error
 
     def _read(self) -> dict[str, Outcome]:
-        """Return the outcomes in the file, without incomplete lines that an interrupted process has left."""
+        """Return the outcomes in the file by key, without incomplete lines that an interrupted process has written."""
         outcomes = {}
         try:
             lines = self._path.read_bytes().split(b"\n")

@@ -68,10 +68,11 @@ class Override:
 def read_overrides(
     path: Path, goals: Sequence[Goal], students: Sequence[str]
 ) -> Mapping[str, Override]:
-    """Read the overrides of a class, by student.
+    """Read the file with a tutor's overrides; return them by the student's name.
 
     Args:
-        goals: The goals that have a column.
+        path: The file.
+        goals: The goals that the sheet shows.
         students: The names of the students.
 
     Raises:
@@ -92,7 +93,7 @@ def read_overrides(
 
 
 def apply_overrides(sheet: Sheet, overrides: Mapping[str, Override]) -> Sheet:
-    """Return the sheet with a tutor's overrides; what the runs have earned is kept in `earned`."""
+    """Return the sheet with a tutor's overrides; the points of the runs are still in `earned`."""
     rows = tuple(
         _override_row(row, sheet.columns, overrides[row.name]) if row.name in overrides else row
         for row in sheet.rows
@@ -126,7 +127,7 @@ GRADEBOOKS: Sequence[str] = [*GradebookKind]
 
 @dataclass(frozen=True, slots=True)
 class MarkRequest:
-    """What is to be marked, how programs run, and which files are written."""
+    """A request to mark a class: which programs, how they run, and which files to write."""
 
     task: GoalsFile
     folders: Sequence[str]
@@ -160,7 +161,10 @@ class MarkRequest:
     """A folder for what is told to each student."""
 
     def list_own_files(self) -> frozenset[Path]:
-        """Return the marking's own files, which may lie among the students': goals, lists and results; resolved."""
+        """Return the resolved paths of the marking's own files, such as goals and results.
+
+        They may be among the students' files.
+        """
         files = [self.task.path, self.roster, self.overrides, self.feedback]
         files += self.gradebooks.values()
         for target in self.exports:
@@ -169,7 +173,7 @@ class MarkRequest:
 
     @contextmanager
     def open_marking(self) -> Iterator[Marking]:
-        """Yield a marking whose hand-ins are unpacked into a folder that is removed after the block.
+        """Yield a marking in a `with` block, after which the folder with the unpacked hand-ins is removed.
 
         Raises:
             ConfigError: a folder, the class list or the overrides are wrong.
@@ -179,15 +183,15 @@ class MarkRequest:
 
 
 class Marking:
-    """A class that is marked: `read_programs`, then `run`, then `build_sheet` and `list_exports`.
+    """The marking of a class: call `read_programs`, then `run`, then `build_sheet` and `list_exports`.
 
     Attributes:
         students: In the order of the sheet; problems of their programs are known after `read_programs`.
         ignored: Names of files that are no programs.
-        left_out: Names of what nobody has handed in, such as `__MACOSX`.
+        left_out: Names of files and folders that no student has handed in, such as `__MACOSX`.
         unlisted: Names of students who are not in the class list.
         absent: Names in the class list without a submission.
-        outcomes: Those of the runs so far, by the name of the student.
+        outcomes: The outcomes of the runs so far, by the name of the student.
     """
 
     def __init__(self, request: MarkRequest, unpacked: Path) -> None:
@@ -238,7 +242,11 @@ class Marking:
         )
 
     def run(self, tell: Tell, *, isolate: bool) -> None:
-        """Run all programs, except what the journal has, until all outcomes are known.
+        """Run all programs, except runs whose outcomes are in the journal; blocks until all outcomes are known.
+
+        Args:
+            tell: Receives the progress: words, the number of runs that are done, and of all.
+            isolate: Whether programs run isolated from this machine.
 
         Raises:
             LogError: the journal cannot be read or written.
@@ -260,7 +268,7 @@ class Marking:
 
     @property
     def missing(self) -> list[tuple[str, Outcome]]:
-        """The runs that this machine could not make, each with the name of its student."""
+        """The runs that did not take place because of this machine, each with the name of its student."""
         return [
             (name, outcome)
             for name, outcomes in self.outcomes.items()
@@ -285,7 +293,7 @@ class Marking:
         return apply_overrides(self._build_sheet(self.students), self._overrides)
 
     def build_sheet_so_far(self) -> Sheet:
-        """Return the marks of the students whose programs have had all their runs."""
+        """Return the marks of the students whose programs have finished all their runs."""
         return self._build_sheet(
             [
                 student
@@ -307,7 +315,12 @@ class Marking:
         )
 
     def list_exports(self, sheet: Sheet, tell: Tell) -> Iterator[tuple[Path, Callable[[], None]]]:
-        """Yield each file or folder to be written, with the function that writes it, which may raise ExportError."""
+        """Yield the path of each file or folder to write, and a function that writes it and may raise ExportError.
+
+        Args:
+            sheet: The marks.
+            tell: Receives the progress of the reports: words, the number of reports that are written, and of all.
+        """
         request = self._request
         sources = [student.text for student in self.students]
         for target in request.exports:

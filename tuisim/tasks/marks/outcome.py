@@ -43,7 +43,7 @@ _GIVEN_UP = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class GoalOutcome:
-    """Whether one goal was met in one run."""
+    """Whether one run of a student's program met one goal."""
 
     name: str
     met: bool
@@ -60,13 +60,13 @@ class GoalOutcome:
 
     @property
     def is_good(self) -> bool:
-        """Whether the goal was met or, if it takes points off, not met; not if that is unknown."""
+        """Whether the goal was met or, if it takes points off, not met; False if that is unknown."""
         return self.met is not self.is_penalty and not self.is_unknown
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What came out of one run of a student's program, or of a seed in all worlds of the task: see `merge_worlds`."""
+    """The outcome of one run of a student's program, or of all worlds of the task with one seed: see `merge_worlds`."""
 
     seed: int
     end: str
@@ -89,19 +89,19 @@ class Outcome:
 
     @property
     def counts(self) -> bool:
-        """Whether the run counts: not if this machine could not start the program, or had no room for its recording."""
+        """Whether the run counts: False if this machine could not start the program or store its recording."""
         return bool(self.end) and self.end != End.DISK_FULL
 
     @property
     def is_in_doubt(self) -> bool:
-        """Whether the run does not count, but the program may have caused that, to get rid of a run that it loses."""
+        """Whether the run does not count, but the program may have caused that to avoid a result."""
         return self.end == End.DISK_FULL or (not self.end and self.failure.startswith(UNJUDGED))
 
     @property
     def gave_up(self) -> bool:
-        """Whether the program hung, flooded or died with nothing earned, so that further runs would only cost time.
+        """Whether the program hung, flooded or died without meeting a goal, so that further runs would only cost time.
 
-        Not if it has met a goal: it must meet the goal in the other runs, too.
+        False if it has met a goal that gives points: it must then meet the goal in the other runs, too.
         """
         return self.end in _GIVEN_UP and not any(
             goal.met and not goal.is_penalty for goal in self.goals
@@ -111,13 +111,13 @@ class Outcome:
 def build_outcome(
     result: Result, seed: int, folder: Path, world: TrialWorld | None = None
 ) -> Outcome:
-    """Return the outcome of a task.
+    """Return the outcome of a run from the result of its task.
 
     Args:
         result: The result of the task.
         seed: The seed of the task.
         folder: The folder in which the program ran; its path does not appear in the outcome.
-        world: The world of the run, only some of whose goals may count; None for the first.
+        world: The world of the run, in which only some goals may count; None for the first world.
     """
     failure = (
         "" if result.end == End.FINISHED and not result.exit_code else _describe_failure(result)
@@ -161,14 +161,14 @@ def merge_worlds(
 ) -> list[Outcome]:
     """Return for each seed one outcome of all worlds: a goal is met if it is met in every world where it counts.
 
-    A goal that takes points off is met if it is met in any. A seed is left out if one of its runs is missing or does
-    not count; all seeds are if an outcome is in doubt. If the program gave up with the first seed in a world, that
-    outcome stands for the other seeds there, too.
+    A goal that takes points off is met if it is met in any world. A seed is left out if one of its runs is missing or
+    does not count; all seeds are left out if an outcome is in doubt. If the program gave up with the first seed in a
+    world, that outcome is also used for the other seeds in this world.
 
     Args:
-        outcomes: Those of one student, in any order.
-        seeds: Those of the marking.
-        worlds: The worlds, the first one first.
+        outcomes: The outcomes of one student, in any order.
+        seeds: The seeds of the marking.
+        worlds: The names of the worlds, the first one first.
     """
     if any(outcome.is_in_doubt for outcome in outcomes):
         return []
@@ -191,7 +191,12 @@ def merge_worlds(
 
 
 def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
-    """Return one outcome of the runs with a seed in all worlds; `parts` begins with the one in the first world."""
+    """Return one outcome of the runs with a seed in all worlds.
+
+    Args:
+        seed: The seed.
+        parts: The outcomes in each world, that of the first world first.
+    """
     # Put the worlds that a student may know of before the hidden ones.
     parts = sorted(parts, key=lambda part: part.hidden)
     goals: dict[str, GoalOutcome] = {}
@@ -215,14 +220,14 @@ def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
 
 
 def _is_weightier(goal: GoalOutcome, before: GoalOutcome | None) -> bool:
-    """Return whether a goal's outcome in a world overrides the one before: a fault first, then an unknown one."""
+    """Return whether a goal's outcome in a world replaces the one before: a miss replaces any, an unknown a good."""
     if before is None or before.is_good:
         return True
     return before.is_unknown and not (goal.is_good or goal.is_unknown)
 
 
 def find_unknown_goals(outcomes: Iterable[Outcome]) -> dict[str, str]:
-    """Return the goals that could not be judged in some runs, by name, each with its reason."""
+    """Return the names of the goals that could not be judged in some runs, each with the reason."""
     return {
         goal.name: goal.reason for outcome in outcomes for goal in outcome.goals if goal.is_unknown
     }
@@ -231,7 +236,7 @@ def find_unknown_goals(outcomes: Iterable[Outcome]) -> dict[str, str]:
 def make_portable(text: str, folder: Path | str) -> str:
     """Return a text without addresses in memory, and without the parts of paths that depend on this machine.
 
-    Paths in the folder in which the program ran, in those of modules, and in Python's become relative to it.
+    Paths in the program's folder, in folders of modules and in Python's folders become relative to these.
     """
     if "/" in text:
         modules = {
@@ -246,7 +251,7 @@ def make_portable(text: str, folder: Path | str) -> str:
 
 
 def _find_cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgement:
-    """Return the judgement that says why a goal was missed; for `all`, that of the first of its goals not met."""
+    """Return the judgement with the reason for a missed goal: its own or, for `all`, that of its first goal not met."""
     if isinstance(judgement.goal.condition, AllOf):
         for name in judgement.goal.condition.goals:
             if judgements[name].state is not GoalState.MET:
@@ -255,7 +260,7 @@ def _find_cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Ju
 
 
 def _describe_failure(result: Result) -> str:
-    """Return why a program did not finish."""
+    """Return why a program did not finish, as text."""
     if result.end == End.STOPPED:
         return "stopped, because it took too long"
     if result.end == End.STALLED:

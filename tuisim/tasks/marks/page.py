@@ -28,7 +28,7 @@ Links = Mapping[tuple[str, str, int], str]
 
 @dataclass(frozen=True, slots=True)
 class GoalStatistics:
-    """How well a class did with one goal."""
+    """Statistics of one goal for a class: how many students met it, and their mean points."""
 
     goal: Goal
     met: int
@@ -43,7 +43,7 @@ class GoalStatistics:
 
 @dataclass(frozen=True, slots=True)
 class _Mark:
-    """A cell of the page: how a student did with one goal."""
+    """A cell of the page's table: a student's points for one goal."""
 
     points: float
     level: str
@@ -53,7 +53,7 @@ class _Mark:
 
 @dataclass(frozen=True, slots=True)
 class _Student:
-    """A row of the table of students."""
+    """A row of the page's table of students."""
 
     row: SheetRow
     level: str
@@ -69,10 +69,11 @@ def build_page(
     similar: Similar | None = None,
     maps: Sequence[Picture] = (),
 ) -> str:
-    """Return the page of a class in HTML.
+    """Return the page on the marks of a class, as HTML.
 
     Args:
-        links: The reports of runs that were kept.
+        sheet: The marks of the class.
+        links: The paths of the reports of kept runs.
         ignored: Names of files that are no programs.
         similar: Which programs resemble each other.
         maps: Pictures of where goals were missed.
@@ -128,7 +129,7 @@ def _mark(cell: Cell, column: Goal, runs: int) -> _Mark:
 
 
 def _find_reports(row: SheetRow, links: Links) -> dict[str, list[tuple[str, str]]]:
-    """Return the reports of a student by world: the path of each, and the seeds of its runs in words."""
+    """Return the reports of a student's runs by world: the path of each, and the seeds of its runs in words."""
     seeds: dict[str, dict[str, list[int]]] = {}
     for outcome in row.outcomes:
         if path := links.get((row.name, outcome.world, outcome.seed)):
@@ -140,7 +141,7 @@ def _find_reports(row: SheetRow, links: Links) -> dict[str, list[tuple[str, str]
 
 
 def _format_ranges(seeds: Sequence[int]) -> str:
-    """Return ascending numbers with runs of them as ranges, such as `0, 3–5`."""
+    """Return ascending numbers as text, with consecutive ones as ranges, such as `0, 3–5`."""
     ranges: list[list[int]] = []
     for seed in seeds:
         if ranges and seed == ranges[-1][-1] + 1:
@@ -153,7 +154,7 @@ def _format_ranges(seeds: Sequence[int]) -> str:
 
 
 def _tabulate(similar: Similar) -> Mapping[str, object]:
-    """Return the tables of programs that resemble each other, by the names that the template of the page uses."""
+    """Return tables of similar programs, by the names that the page's template uses."""
     heads = ("", "equal except for names, numbers and texts", "of these exactly equal")
     groups = [
         (
@@ -173,7 +174,7 @@ def _tabulate(similar: Similar) -> Mapping[str, object]:
 
 
 def compute_goal_statistics(sheet: Sheet) -> tuple[GoalStatistics, ...]:
-    """Return the statistics of each goal that is shown."""
+    """Return the statistics of each goal that the sheet shows."""
     statistics = []
     for index, goal in enumerate(sheet.columns):
         cells = [(row, row.cells[index]) for row in sheet.rows]
@@ -187,7 +188,7 @@ def compute_goal_statistics(sheet: Sheet) -> tuple[GoalStatistics, ...]:
 
 
 def compute_distribution(sheet: Sheet) -> tuple[tuple[float, float, int], ...]:
-    """Return how many students have how many points: lower end, upper end and number for equal parts of the scale.
+    """Return lower end, upper end and number of students for each of the equal parts of the scale of points.
 
     A student at the border of two parts counts in the upper one; one beyond the scale in the first or the last.
     """

@@ -41,7 +41,7 @@ _HEADS = ("", "goal", "result", "why", "points")
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """The report of a kept run."""
+    """The report of a kept run, as an HTML file."""
 
     student: str
     world: str
@@ -60,11 +60,13 @@ def write_reports(
 ) -> Iterator[Report]:
     """Write the reports of kept runs; yield each once it is written.
 
-    Runs of a student that recorded the same have one report. Runs that were removed from the store are left out.
+    Runs of a student with equal recordings share one report. Runs that were removed from the store are left out.
     Reports of an earlier page of this name are replaced. If a report cannot be made, its `fault` says why.
 
     Args:
+        sheet: The marks of the class.
         worlds: The worlds of the task, the first one first.
+        page: The page that links to the reports.
         movies: Whether the report of a run that missed a goal has a movie with the goals on it.
 
     Raises:
@@ -141,7 +143,7 @@ def _load_stored(store: RunStore, run_id: str) -> StoredRun | None:
 
 
 def _make_portable(run: StoredRun) -> StoredRun:
-    """Return a run with an end whose texts are the same on every machine, see `make_portable`."""
+    """Return a run whose error and summary are the same texts on every machine, see `make_portable`."""
     if run.end is None:
         return run
     folder = run.program.working_directory
@@ -170,7 +172,7 @@ def _find_misses(
     outcome: Outcome,
     run: StoredRun,
 ) -> tuple[Miss, ...]:
-    """Return where a run missed goals; a goal that was not decided at a place is put where the robot was last."""
+    """Return the goals that a run missed, and where: where the goal was decided, else at the robot's last position."""
     last = run.telemetry.last()
     missed = {goal.name: goal for goal in outcome.goals if not goal.is_good}
     misses = []
@@ -186,12 +188,12 @@ def _find_misses(
 def _list_verdicts(
     columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Outcome
 ) -> tuple[Table, list[Pin]]:
-    """Return the table of the goals of a run, and a pin for each goal that was decided at a place.
+    """Return the table of the goals of a run, and a pin on the mat for each goal that was decided at a place.
 
     Args:
         columns: The goals that are shown, in their order.
-        judged: When and where goals were decided, as of `_judge_goals`.
-        outcome: What the run has achieved.
+        judged: When and where goals were decided, from `_judge_goals`.
+        outcome: The outcome of the run.
     """
     goals = {goal_outcome.name: goal_outcome for goal_outcome in outcome.goals}
     rows = []
@@ -229,7 +231,7 @@ def _list_verdicts(
 
 
 def _judge_goals(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str, Change]:
-    """Return when and where goals were met or missed, without those that only the program's text decides."""
+    """Return when and where a run met or missed goals, by name, without goals that only the program's text decides."""
     if outcome.end == End.FALSIFIED:
         return {}
     # Judging is slow to import, and most runs have been judged.

@@ -36,7 +36,7 @@ STUDENT_TAG = "student:"
 
 @dataclass(frozen=True, slots=True)
 class MarkPlan:
-    """How the programs of all students are run."""
+    """How the programs of all students are run: worlds, seeds and options."""
 
     worlds: tuple[TrialWorld, ...]
     """The worlds of the task, the first one first."""
@@ -54,7 +54,7 @@ class MarkPlan:
 
 @dataclass(frozen=True, slots=True)
 class RunEntry:
-    """A student whose program can be run."""
+    """A student whose program can be run, with the specifications of the runs."""
 
     student: Student
     specs: tuple[RunSpec, ...]
@@ -80,9 +80,10 @@ def run_entries(
 ) -> Generator[tuple[str, Outcome]]:
     """Run every student's program with every seed; yield names of students and outcomes as they become known.
 
-    A program that hangs, floods or dies with the first seed is not run with the others; if it does so in the first
-    world, nor in the other worlds. Outcomes that the journal has are not run again. Closing the iterator stops what is
-    running. An unexpected error with one student gives an outcome that does not count.
+    A program that hangs, floods or dies with the first seed is not run with the others in that world; if this happens
+        in
+    the first world, it is not run in the other worlds either. Outcomes that the journal has are not run again. Closing
+    the iterator stops the programs that run. An unexpected error with one student gives an outcome that does not count.
 
     Raises:
         LogError: the journal cannot be read or written.
@@ -116,7 +117,12 @@ def run_entries(
 
 
 def count_runs(outcomes: Sequence[Outcome], plan: MarkPlan) -> int:
-    """Return how many runs a student's program has in all: fewer if outcomes show that it has given up."""
+    """Return the total number of runs of a student's program, which is smaller if it has given up.
+
+    Args:
+        outcomes: The student's outcomes so far.
+        plan: The worlds and seeds.
+    """
     given_up = {
         outcome.world for outcome in outcomes if outcome.gave_up and outcome.seed == plan.seeds[0]
     }
@@ -193,7 +199,7 @@ def _build_tasks(
     workspace: Path,
     uncopied: list[tuple[str, Outcome]],
 ) -> Iterator[Task]:
-    """Yield the runs; those whose files cannot be copied are added to `uncopied`."""
+    """Yield a task for each run; if the student's files cannot be copied, add an outcome to `uncopied` instead."""
     for index, turn in enumerate(turns):
         student = turn.entry.student
         try:

@@ -33,7 +33,7 @@ MARKS_FORMAT = 1
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """How one student did with one goal."""
+    """The result of one student for one goal."""
 
     points: float
     """Mean over the runs; NaN if one could not be judged."""
@@ -102,12 +102,12 @@ class Sheet:
 
     @property
     def most_points(self) -> float:
-        """The points of a program that meets every goal."""
+        """The points of a program that meets every goal with positive points and no other."""
         return round_points(compute_max_points(self.columns))
 
     @property
     def summary(self) -> str:
-        """One sentence about the class."""
+        """One sentence about the marks of the class."""
         full = sum(row.robustness == 1 for row in self.rows)
         known = [row.points for row in self.rows if not math.isnan(row.points)]
         mean = math.fsum(known) / len(known) if known else 0.0
@@ -118,7 +118,7 @@ class Sheet:
         )
 
     def tabulate(self, max_name: int = 40, max_goal: int = 60) -> tuple[list[str], list[list[str]]]:
-        """Return heads and rows of the text table; the reason comes last.
+        """Return the headings and the rows of the sheet as a table of texts; the last column is the reason.
 
         Args:
             max_name, max_goal: Characters of the names of students and goals; the middle of longer ones is left out.
@@ -139,7 +139,7 @@ class Sheet:
         return heads, rows
 
     def build_frame(self) -> pd.DataFrame:
-        """Return the sheet as a frame: one row a student, for each goal a column `goal_NAME` with its mean points."""
+        """Return the sheet as a pandas frame: one row a student, with the mean points for each goal as `goal_NAME`."""
         import pandas as pd
 
         rows = self.rows
@@ -164,7 +164,7 @@ class Sheet:
 
 
 def list_columns(goals: Sequence[Goal]) -> list[Goal]:
-    """Return the goals that a student is shown, in words; others, without points and words, are parts of these."""
+    """Return the goals that have points or words, which a sheet shows; the others are only parts of these."""
     return [replace(goal, say=goal.say or goal.name) for goal in goals if goal.points or goal.say]
 
 
@@ -179,6 +179,10 @@ def build_sheet(
     """Return the sheet of a class.
 
     Args:
+        title: The title of the task.
+        columns: The goals that are shown.
+        seeds: The seeds of the runs.
+        students: The students, in the order of the rows.
         outcomes: The outcomes of the runs so far, by the name of the student, in any order.
         worlds: The worlds of the task, see `TrialWorld.where`, the first one first.
     """
@@ -241,7 +245,7 @@ def build_row(
 def _build_empty_row(
     student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome]
 ) -> SheetRow:
-    """Return the row of a student without runs that count: with NaN as points, or 0 if the hand-in is to blame."""
+    """Return the row of a student without runs that count: its points are NaN, or 0 if the hand-in is at fault."""
     failed = next(
         (
             outcome
@@ -265,7 +269,7 @@ def _build_empty_row(
 
 
 def _compute_points(columns: Sequence[Goal], outcome: Outcome) -> float:
-    """Return the points of one run; a run without a recording has no judgements, and no points."""
+    """Return the points of one run; 0 for a run without a recording, which has no judgements."""
     met = {goal.name for goal in outcome.goals if goal.met}
     unknown = {goal.name for goal in outcome.goals if goal.is_unknown}
     return sum_points(
@@ -302,7 +306,7 @@ def _has_missed(outcome: Outcome, columns: Sequence[Goal]) -> bool:
 
 
 def _find_reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
-    """Return why a run failed, and the program's line: its error if it had one, else the first goal that it missed."""
+    """Return why a run failed, and the program's line: the program's error, else the first goal that the run missed."""
     names = {column.name: column.say for column in columns}
     missed = [goal for goal in outcome.goals if not goal.is_good and goal.name in names]
     if outcome.failure:
@@ -338,7 +342,7 @@ def build_metadata(sheet: Sheet) -> dict[str, Any]:
 
 
 def export_marks(sheet: Sheet, path: Path) -> None:
-    """Write the sheet in the format of the suffix; an existing file is replaced.
+    """Write the sheet as a table in the format of the path's suffix; an existing file is replaced.
 
     Raises:
         ExportError: it cannot be written; an existing file is unchanged.

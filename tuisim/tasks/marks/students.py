@@ -36,7 +36,7 @@ _MAX_LEVELS = 50
 
 @dataclass(frozen=True, slots=True)
 class Student:
-    """What one student has handed in."""
+    """A student with the files of the hand-in."""
 
     name: str
     """Name of the folder, or of the file without `.py`; unique in the class."""
@@ -68,7 +68,7 @@ class Student:
 
 @dataclass(frozen=True, slots=True)
 class StudentsFound:
-    """The students in the folders of a class, and names of other files."""
+    """The students in the folders of a class, and the names of files that are nobody's program."""
 
     students: tuple[Student, ...]
     ignored: tuple[str, ...]
@@ -79,7 +79,7 @@ class StudentsFound:
 
 @dataclass(slots=True)
 class _Search:
-    """How hand-ins are read, and the names of what is left out."""
+    """A search for students: how hand-ins are read, and the names of the files that were left out."""
 
     program: str
     unpacked: Path | None
@@ -88,7 +88,7 @@ class _Search:
     places: int = 0
 
     def build_place(self, name: str) -> Path:
-        """Return the path of a new folder for what is unpacked, with a name; names such as `..` are replaced."""
+        """Return the path of a new folder for unpacked files; a name such as `..` is replaced."""
         assert self.unpacked is not None
         self.places += 1
         place = self.unpacked / str(self.places)
@@ -96,7 +96,10 @@ class _Search:
         return place / (name if name.strip(".") else "files")
 
     def unpack(self, path: Path) -> Path:
-        """Unpack a zip and return the folder; return other paths, or any without a folder to unpack to, as they are."""
+        """Unpack a zip and return the new folder.
+
+        Return the path itself if it is no zip or if nothing is to be unpacked.
+        """
         if self.unpacked is None or path.suffix.lower() != ZIP_SUFFIX or not os.path.isfile(path):
             return path
         place = self.build_place(path.stem)
@@ -104,7 +107,7 @@ class _Search:
         return place
 
     def list_names(self, folder: Path) -> list[str]:
-        """Return the names in a folder that may be a student's, in order; note the others as left out."""
+        """Return the sorted names in a folder that may be a student's files; add the other names to `left_out`."""
         names = os.listdir(folder)
         left_out = LEFT_OUT(str(folder), names)
         self.left_out |= dict.fromkeys(sorted(map(_quote_name, left_out)))
@@ -118,12 +121,12 @@ def find_students(
     unpacked: Path | None = None,
     max_bytes: int = MOST_BYTES,
 ) -> StudentsFound:
-    """Return the students in folders; a folder that contains a main program, or a file, is one student.
+    """Return the students in folders; each file, and each folder with a main program, is one student.
 
     Args:
         words: Paths of folders and files.
-        program: Name of the main program in a student's folder, if there is one of that name; else it is `MAIN`, or the
-            only one.
+        program: Name of the main program in a student's folder; if it is "" or a folder has no file of that name, the
+            main program is `MAIN` or the only program.
         excluded: Files and folders that belong to no student, such as the goals file; resolved.
         unpacked: A folder for the contents of zips, and for files that gradebooks deliver one by one; None to leave
             them as they are.
@@ -172,12 +175,12 @@ def _is_program(path: Path) -> bool:
 
 
 def _resolve_links(path: Path) -> Path:
-    """Return a path without links; `Path.resolve` raises an error for links in a circle."""
+    """Return a path without links; unlike `Path.resolve`, it raises no error for links in a circle."""
     return Path(os.path.realpath(path))
 
 
 def _list_entries(folder: Path, excluded: Collection[Path], search: _Search) -> Iterator[Path]:
-    """Return the entries of a folder that may belong to a student, in the order of their names."""
+    """Return the entries of a folder that may belong to a student, sorted by name."""
     try:
         names = search.list_names(folder)
     except OSError as error:
@@ -193,8 +196,8 @@ def _list_entries(folder: Path, excluded: Collection[Path], search: _Search) -> 
 def _make_names_unique(students: Iterable[_Submission]) -> Iterator[Student]:
     """Yield the students with unique names.
 
-    If the name of a file without `.py` is also that of a neighbour, it keeps the suffix. Equal names from several
-    folders get the name of the folder in front; those from a gradebook its number behind; others a number.
+    The name of a file without `.py` keeps the suffix if a neighbour has the name, too. Equal names from several folders
+    get the name of the folder in front; those from a gradebook get its number behind; others get a number.
     """
     every = [(_resolve_links(folder), student, own) for folder, own, student in students]
     beside = Counter((folder, student.name) for folder, student, _ in every)
@@ -262,7 +265,7 @@ def _read_student(path: Path, search: _Search) -> Student:
 
 
 def _enter_folder(path: Path, search: _Search) -> Path:
-    """Return the folder with a student's files: a folder that is alone in its folder is entered, and one zip.
+    """Return the folder with a student's files: if a folder contains only another folder, or a zip, that is entered.
 
     Raises:
         ConfigError: a zip cannot be unpacked.
@@ -284,17 +287,20 @@ def _enter_folder(path: Path, search: _Search) -> Path:
 
 
 def _explain_no_program(name: str) -> str:
-    """Return what a student must do if the suffix of a file shows that it was meant as a program; empty for others."""
+    """Return what a student must do with a file whose suffix shows that it was meant as a program.
+
+    It is empty for other files.
+    """
     return next((why for ending, why in _NO_PROGRAM.items() if name.lower().endswith(ending)), "")
 
 
 def _own_name(path: Path) -> str:
-    """Return the name of a file or folder as it is shown; for a path such as `.`, the name of the folder itself."""
+    """Return the shown name of a file or folder; for a path such as `.`, the name of the folder itself."""
     return _quote_name(path.name if path.name not in ("", "..") else _resolve_links(path).name)
 
 
 def _explain_refusal(folder: Path, name: str, search: _Search) -> str:
-    """Return why a student's folder is not copied, as a sentence; empty if it is."""
+    """Return in a sentence why a student's folder cannot be copied; empty if it can."""
     own = _resolve_links(folder)
     files = size = 0
     inside = [folder]
@@ -345,14 +351,19 @@ def find_outside_option(student: Student) -> str:
 
 
 def _quote_name(name: str) -> str:
-    """Return the name of a file or folder as it is shown and stored; bytes that are not UTF-8 become `\\xff`."""
+    """Return the name of a file or folder as it is shown and stored.
+
+    Bytes that are not UTF-8 become escapes like `\\xff`.
+    """
     return printable(os.fsencode(name).decode("utf-8", "backslashreplace"))
 
 
 def _read(student: Student, path: Path, cell: str) -> Student:
-    """Return a student with the program in a file, or with the problem if it cannot be read.
+    """Return a student with the program in a file, or with a problem if the file cannot be read.
 
     Args:
+        student: The student.
+        path: The file.
         cell: The number of the program cell, if the file is a notebook with several.
     """
     try:
@@ -390,10 +401,14 @@ def _read_program_cell(path: Path, cell: str) -> ProgramSource:
 
 
 def _find_main(folder: Path, program: str) -> str:
-    """Return the name of a folder's main program.
+    """Return the file name of the main program in a folder.
+
+    Args:
+        folder: The folder.
+        program: The name that the main program should have; "" for any.
 
     Raises:
-        ConfigError: there is none, or it is not clear which file is the main program.
+        ConfigError: there is no main program, or it is not clear which file it is.
         OSError: the folder cannot be read.
     """
     named = program.partition("#")[0]

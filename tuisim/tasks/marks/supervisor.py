@@ -22,7 +22,7 @@ STOPPED = "T"
 
 
 def list_processes() -> dict[int, tuple[int, str]]:
-    """Return parent and state of each process of this machine, by process id."""
+    """Return the parent's id and the state of each process of this machine, by process id."""
     states = {}
     for name in os.listdir("/proc"):
         if name.isdigit():
@@ -37,7 +37,12 @@ def list_processes() -> dict[int, tuple[int, str]]:
 
 
 def walk_processes(root: int, known: dict[int, tuple[int, str]]) -> Iterator[int]:
-    """Yield the ids of a process and of all that descend from it; `known` comes from `list_processes`."""
+    """Yield the ids of a process and of all its descendants.
+
+    Args:
+        root: Id of the process.
+        known: All processes, from `list_processes`.
+    """
     children: dict[int, list[int]] = {}
     for pid, (parent, _) in known.items():
         children.setdefault(parent, []).append(pid)
@@ -49,14 +54,14 @@ def walk_processes(root: int, known: dict[int, tuple[int, str]]) -> Iterator[int
 
 
 def continue_stopped(root: int, before: set[int]) -> set[int]:
-    """Continue the processes that are stopped now and were stopped before.
+    """Continue (SIGCONT) the processes that are stopped now and were stopped at the last call.
 
     Args:
-        root: These are `root` and its descendants.
-        before: What this function returned last.
+        root: Only this process and its descendants are continued.
+        before: The result of the last call.
 
     Returns:
-        The processes that are stopped now.
+        The ids of the processes that are stopped now.
     """
     known = list_processes()
     stopped = {
@@ -73,7 +78,7 @@ def continue_stopped(root: int, before: set[int]) -> set[int]:
 
 
 def supervise(root: int) -> None:
-    """Continue what a program stops of a process and its descendants, until that process has ended. Blocks."""
+    """Continue a process and its descendants whenever a program stops them, until stdin is closed. Blocks."""
     stopped: set[int] = set()
     is_suspended = False
     while True:
@@ -87,7 +92,7 @@ def supervise(root: int) -> None:
 
 @contextmanager
 def keep_running() -> Iterator[None]:
-    """Continue this process, and those that it starts in the block, when a program stops them.
+    """In a `with` block, continue this process and its descendants whenever a program stops them.
 
     Without `/proc` nothing is continued.
 

@@ -49,7 +49,7 @@ _LETTERS = "a1 .:-AZ_"
 
 
 def answer_lines(goals: Sequence[Goal]) -> list[str]:
-    """Return the lines that meet the goals, in an order that their `after` allows; `ASK` stands for a question."""
+    """Return lines of output that meet the goals, in an order that their `after` allows; `ASK` marks a question."""
     by_name = {goal.name: goal for goal in goals}
     ordered: dict[str, Goal] = {}
 
@@ -82,7 +82,7 @@ def _build_lines(condition: Condition) -> Iterator[str]:
 
 
 def _build_line(condition: ValueCondition) -> str:
-    """Return a line that makes a condition true; empty if none does."""
+    """Return a line of output that makes a comparison true; empty if no line does."""
     if condition.source is ValueSource.PRINT:
         return build_matching_line(condition.value)
     if condition.source is not ValueSource.SAMPLE:
@@ -101,7 +101,7 @@ def _build_line(condition: ValueCondition) -> str:
 
 
 def build_matching_line(pattern: str) -> str:
-    """Return a line that a regular expression matches; if none is found easily, the words of the expression."""
+    """Return a line that a regular expression matches; if none is easy to find, the words in the expression."""
     plain = re.sub(r"[\\^$.|?*+(){}\[\]]", "", pattern)
     with suppress(re.error, RecursionError, IndexError, OverflowError, UnjudgedError):
         line = _build_text(_parser.parse(pattern), {})
@@ -110,7 +110,7 @@ def build_matching_line(pattern: str) -> str:
 
 
 def _build_text(parsed: Any, groups: dict[int, str]) -> str:
-    """Return a text that matches a parsed expression; its lookarounds are ignored."""
+    """Return a text that a parsed regular expression matches; lookarounds in it are ignored."""
     return "".join(_build_part(kind, value, groups) for kind, value in parsed)
 
 
@@ -141,7 +141,7 @@ def _build_part(kind: object, value: Any, groups: dict[int, str]) -> str:
 
 
 def _pick_character(members: Any) -> str:
-    """Return a character that a class such as `[a-z]` matches.
+    """Return a character that a class of a regular expression, such as `[a-z]`, matches.
 
     Args:
         members: The parsed class.
@@ -203,7 +203,7 @@ _DOES = {
 
 @dataclass(frozen=True, slots=True)
 class TaskTrial:
-    """The result of a trial of a task with several programs."""
+    """The result of trying a task with several programs."""
 
     rows: tuple[tuple[str, str, str], ...]
     """The name of each program, its points, and which goals it meets."""
@@ -219,7 +219,7 @@ def run_trial(
     time_limit_s: float,
     jobs: int,
 ) -> TaskTrial:
-    """Try a task out; blocks while the programs run.
+    """Try a task with a model, wrong and idle programs; blocks while the programs run.
 
     Args:
         task: The task.
@@ -259,7 +259,7 @@ def run_trial(
 
 
 def _describe_earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
-    """Return the points of a program, and the names of the goals that it meets, or `all`."""
+    """Return a program's points, such as `3 of 5`, and the names of the goals that it meets, or `all`."""
     met = [column.name for column, cell in zip(sheet.columns, row.cells, strict=True) if cell.met]
     good = all(
         (cell.met == row.runs) is (column.points >= 0)
@@ -270,7 +270,7 @@ def _describe_earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
 
 
 def _write_fakes(task: GoalsFile, folder: Path) -> Iterator[tuple[TrialRole, Student]]:
-    """Yield programs that do not do the task: an empty one, one that waits, and one that prints what goals ask for."""
+    """Yield programs that do not do the task: an empty one, one that waits, and one that prints the goals' lines."""
     still = f"import time\n\ntime.sleep({STILL_S:g})\n"
     texts = {TrialRole.EMPTY: "", TrialRole.STILL: still}
     if lines := answer_lines(task.goals):
@@ -287,7 +287,7 @@ def _write_fakes(task: GoalsFile, folder: Path) -> Iterator[tuple[TrialRole, Stu
 def _list_author_programs(
     task: GoalsFile, wrong: Sequence[str]
 ) -> Iterator[tuple[TrialRole, Student]]:
-    """Return the task's model and wrong examples.
+    """Yield the model and the wrong examples of a task's author, as students.
 
     Raises:
         ConfigError: one of them is missing, or Python cannot read it.
@@ -301,7 +301,12 @@ def _list_author_programs(
 
 
 def _find_faults(sheet: Sheet, roles: Sequence[TrialRole]) -> Iterator[str]:
-    """Yield what is wrong with a task."""
+    """Yield the faults of a task that its trial shows, one line each.
+
+    Args:
+        sheet: The marks of the programs.
+        roles: The kind of each program, in the order of the rows.
+    """
     rows = list(zip(sheet.rows, roles, strict=True))
     for index, goal in enumerate(sheet.columns):
         if by := [
@@ -328,7 +333,7 @@ def _find_faults(sheet: Sheet, roles: Sequence[TrialRole]) -> Iterator[str]:
 
 
 def _suggest_remedy(goal: Goal) -> str:
-    """Return how to change a goal that a program meets although it does nothing for it."""
+    """Return how to change a goal that a program meets without doing the task."""
     for part in goal.parts:
         match part:
             case FinishCondition():

@@ -21,7 +21,7 @@ _MAX_MODULES_BYTES = 1 << 20
 
 
 def copy_files(student: Student, place: Path) -> Path:
-    """Return a new folder with a copy of a student's files.
+    """Copy a student's files into a new folder, `place`, and return it.
 
     Files that cannot be read are left out, as the program could not read them either.
 
@@ -40,7 +40,13 @@ def copy_files(student: Student, place: Path) -> Path:
 
 
 def build_program(student: Student, folder: Path, **changes: Any) -> Program:
-    """Return a student's main program, to be run from a copy of the files in a folder, its working directory."""
+    """Return a student's main program, which runs in a folder with a copy of the student's files.
+
+    Args:
+        student: The student.
+        folder: The folder, which becomes the working directory.
+        **changes: Other attributes of the program.
+    """
     assert student.source is not None
     program = student.source.program
     if program.module_folder:
