@@ -35,11 +35,11 @@ MAX_OUTPUT_BYTES = 16 << 20
 
 
 def execute(task: Task, folder: Path) -> Result:
-    """Run a task and return its result, which also tells whatever went wrong. Blocks until the run is over.
+    """Run a task and return its result, which also says what went wrong. Blocks until the run is over.
 
     Args:
         task: The task.
-        folder: Where its recording is until it has been evaluated; see `engine.runs.temporary.create_batch_folder`.
+        folder: Where the recording is until the run has been judged; see `engine.runs.temporary.create_batch_folder`.
     """
     try:
         return _run_task(task, folder)
@@ -106,7 +106,7 @@ def _prepare_field(background_name: str, fit: str, diameters: frozenset[int]) ->
 
 
 def _load_field_files(spec: RunSpec) -> FieldFiles:
-    """Return the prepared mat of a run; the image is read only once in a process, while the files are kept."""
+    """Return the prepared mat of a run, from the cache of this process unless the cached files are damaged."""
     mat = spec.world.background, spec.world.background_fit, find_diameters(spec)
     files = _prepare_field(*mat)
     if not files.are_sound:
@@ -116,7 +116,7 @@ def _load_field_files(spec: RunSpec) -> FieldFiles:
 
 
 def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, Ended]:
-    """Return the run that is to be judged, and how it ended; if the task says so, it is replayed from its commands.
+    """Return the run to be judged, and how it ended; if the task is replayed, both come from the commands of the run.
 
     Raises:
         LogError: no program can have given the commands.
@@ -152,10 +152,10 @@ def _is_kept(task: Task, run: StoredRun, ended: Ended, judgements: Sequence[Judg
 
 
 def _keep(temporary: TemporaryRun, ended: Ended) -> str:
-    """Store a run; return its id, or "" if its program has damaged it: the run has been judged, and counts.
+    """Store a run and return its id; return "" if the program has damaged the recording after the run was judged.
 
     Raises:
-        LogError: the machine refuses to store it.
+        LogError: the run cannot be stored for a reason of this machine, such as a full disk.
     """
     try:
         temporary.write_end(ended)
@@ -167,14 +167,25 @@ def _keep(temporary: TemporaryRun, ended: Ended) -> str:
 
 
 def build_unjudged(task: Task, why: str) -> Result:
-    """Return the result of a run that could not be judged, for which the program is not to blame."""
+    """Return the result of a run that could not be judged for a reason that is not the program's fault.
+
+    Args:
+        task: The task of the run.
+        why: The reason, as a sentence.
+    """
     return Result(
         task.index, task.parameters, "", 2, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan
     )
 
 
 def build_unknown_result(task: Task, end: End, why: str) -> Result:
-    """Return the result of a run of which the program has left no recording."""
+    """Return the result of a run without a recording.
+
+    Args:
+        task: The task of the run.
+        end: How the run ended.
+        why: Why there is no recording, as a sentence.
+    """
     return Result(
         task.index, task.parameters, end.value, 1, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan
     )
@@ -208,7 +219,7 @@ def _build_result(
 
 
 def compute_statistics(rows: Iterable[OutputRow]) -> dict[str, VariableStatistics]:
-    """Return statistics of the samples among the rows of a run, by name."""
+    """Return statistics of the samples among the rows of a run's output, by the name of the variable."""
     values: dict[str, list[float]] = {}
     for sample in list_samples(rows):
         values.setdefault(sample.name, []).append(sample.value)
@@ -238,6 +249,9 @@ def _read_beginning(rows: Iterable[OutputRow]) -> str:
 
 
 def has_machine_cause(error: BaseException) -> bool:
-    """Return whether the direct cause of an error is a file error of this machine; see `of_the_machine`."""
+    """Return whether the direct cause of an error is an `OSError` of this machine, such as a full disk.
+
+    See `of_the_machine`.
+    """
     cause = error.__cause__
     return isinstance(cause, OSError) and of_the_machine(cause)

@@ -45,12 +45,12 @@ def run_many(tasks: Iterable[Task], jobs: int = 0) -> Generator[Result]:
     """Execute tasks, and yield their results in the order in which they finish. Each `next` blocks.
 
     A result does not depend on the number of jobs. Tasks of a worker that has died are executed again. Closing the
-    iterator stops what is running.
+    iterator stops the running tasks.
 
     Args:
-        tasks: The tasks; they are consumed as workers become free. An iterator without any is asked again after each
-            result.
-        jobs: Number of workers; 0 is one for each processor. A single one is this process.
+        tasks: The tasks; the next ones are taken as workers become free. If the iterator is empty, its `next` is called
+            again after each result.
+        jobs: Number of workers; 0 is one for each processor. With 1, the tasks run in this process.
 
     Raises:
         LogError: the folder for the recordings cannot be created.
@@ -116,14 +116,17 @@ class _Pool:
                 yield from self._start_again()
 
     def _take_chunk(self, tasks: Iterator[Task]) -> list[Task]:
-        """Return the next tasks for a worker; one by one if they are to be run alone."""
+        """Return the next tasks for a worker: one task that must run alone, if there is one, else up to `CHUNK`."""
         return [self._alone.pop()] if self._alone else list(islice(tasks, CHUNK))
 
     def _submit(self, chunk: list[Task]) -> None:
         self._pending[self._executor.submit(_execute_all, chunk, self._folder)] = chunk
 
     def _start_again(self) -> Iterator[Result]:
-        """Replace all workers and submit unfinished tasks again; yield finished results and tasks given up."""
+        """Replace all workers and submit unfinished tasks again.
+
+        Yield results of finished tasks and of tasks given up.
+        """
         unfinished = [
             task
             for future, chunk in self._pending.items()
@@ -147,7 +150,7 @@ class _Pool:
                 yield build_unknown_result(task, End.KILLED, why)
 
     def stop(self) -> None:
-        """End the workers and what they run."""
+        """Kill the workers and the programs that they run."""
         self._executor.shutdown(wait=False, cancel_futures=True)
         for process in self._context.processes:
             process.kill()
@@ -182,7 +185,10 @@ def _prepare_worker() -> None:
 
 
 def _end_with_parent() -> None:
-    """End this worker once its parent has been killed: it would not notice, since other workers keep its pipe open."""
+    """End this worker process once its parent has been killed.
+
+    It would not notice that otherwise, since other workers keep its pipe open.
+    """
     parent = parent_process()
     assert parent is not None
     parent.join()
@@ -194,7 +200,7 @@ def _execute_all(tasks: Sequence[Task], folder: Path) -> list[Result]:
 
 
 class _Worker(SpawnProcess):
-    """A worker that does not import the main module again: a script that starts a batch would start another one."""
+    """A worker process that does not import the main module: a script that starts a batch would start another one."""
 
     @staticmethod
     def _Popen(process_obj: Any) -> Any:  # noqa: N802 - its name in the library
@@ -207,14 +213,14 @@ class _Worker(SpawnProcess):
 
 
 class _Context(SpawnContext):
-    """Starts workers, and remembers them."""
+    """A multiprocessing context that starts `_Worker` processes, and keeps a list of them."""
 
     def __init__(self) -> None:
         super().__init__()
         self.processes: list[_Worker] = []
 
     def Process(self, *args: Any, **kwargs: Any) -> _Worker:  # type: ignore[override]  # noqa: N802
-        """Return a new worker, which has not been started."""
+        """Return a new worker process, which is not yet started."""
         worker = _Worker(*args, **kwargs)
         self.processes.append(worker)
         return worker

@@ -25,7 +25,7 @@ OUTPUT_CHARACTERS = 2000
 
 
 class Keep(StrEnum):
-    """Which runs are stored."""
+    """Which runs of a batch are stored."""
 
     ALL = "all"
     FAILED = "failed"
@@ -35,7 +35,7 @@ class Keep(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One run of a batch."""
+    """A task of a batch: one run, with its goals and limits."""
 
     index: int
     """Place of the task in the batch, from 0."""
@@ -58,7 +58,7 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class VariableStatistics:
-    """Statistics of the samples of one name."""
+    """Statistics of the samples of one variable."""
 
     last: float
     count: int
@@ -71,7 +71,7 @@ class VariableStatistics:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What is known of a task's run after its end. It is the same whichever process ran it."""
+    """The result of a task: how its run ended, and what it recorded. It does not depend on the process that ran it."""
 
     index: int
     parameters: Mapping[str, Value]

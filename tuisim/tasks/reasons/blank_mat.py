@@ -24,7 +24,10 @@ _MAX_LINES = 64
 
 
 def describe_blank_mat(run: StoredRun) -> str:
-    """Return that a run which is over steered by light on plain white, and what gives it a line; else empty."""
+    """Return that the mat is plain white and how to get a line, if a finished program steered by light there.
+
+    Else empty.
+    """
     world = run.spec.world
     is_blank = world.background == EMPTY_MAT and not world.pen_marks
     last = run.telemetry.last()

@@ -22,13 +22,13 @@ class HandPress:
 def find_presses(
     actions: Iterable[UserAction], names: Sequence[str], hz: int, ticks: int
 ) -> tuple[HandPress, ...]:
-    """Return the presses of some names, in the order in which they end.
+    """Return the presses of buttons and touch sensors with some names, in the order in which they end.
 
     Args:
         actions: The user's actions in a run.
         names: Some of `PRESSABLE`.
-        hz: Ticks in a second.
-        ticks: Length of the run, at which presses end that are still held.
+        hz: Ticks per second.
+        ticks: Length of the run; a press that goes on ends there.
     """
     since: dict[str, int] = {}
     presses: list[HandPress] = []
@@ -43,5 +43,10 @@ def find_presses(
 
 
 def find_hits(presses: Iterable[HandPress], names: Sequence[str]) -> list[HandPress]:
-    """Return the presses of some names, or of all touch sensors at once; every press if there are no names."""
+    """Return the presses of buttons or sensors with some names, including presses of all touch sensors together.
+
+    Args:
+        presses: The presses.
+        names: The names; empty for all presses.
+    """
     return [press for press in presses if not names or press.name in (*names, TOUCH)]

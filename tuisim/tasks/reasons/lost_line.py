@@ -67,7 +67,7 @@ class LostLine:
 def find_lost_lines(
     records: Array, spec: RunSpec, mat: Field, read_ticks: Mapping[str, Array]
 ) -> Iterator[LostLine]:
-    """Yield each loss of the line, in order of time.
+    """Yield each time that the robot lost the line, in order.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
@@ -100,7 +100,7 @@ def find_lost_lines(
 def _name_loss(
     dark: Mapping[str, Bools], watched: Collection[str], left: int, hz: int, is_black: bool
 ) -> LostLine:
-    """Return a loss of the line, by the sensor that saw the line last; a sensor that the program reads is preferred.
+    """Return a loss of the line with the sensor that saw the line last; a sensor that the program reads is preferred.
 
     Args:
         dark: For each sensor, by name, whether it saw the line at each tick.
@@ -138,7 +138,7 @@ def compute_reflected_percent(
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """When the line was under each of some points: the sensors, and points between them."""
+    """When the line was under some points: under each sensor, and under points between sensors."""
 
     is_dark: list[Bools]
     """Whether at least its edge was under each, at each tick."""
@@ -148,7 +148,7 @@ class _Seen:
 
 
 def _find_points(eyes: Sequence[ColorSensorSpec]) -> list[ColorSensorSpec]:
-    """Return the sensors, and as many made-up sensors between them as it takes to fill the gaps."""
+    """Return the sensors, with additional points between them so that a line cannot be in a gap unseen."""
     points = [*eyes]
     for eye, other in pairwise(eyes):
         apart_mm = np.hypot(other.x_mm - eye.x_mm, other.y_mm - eye.y_mm)
@@ -163,7 +163,7 @@ def _find_points(eyes: Sequence[ColorSensorSpec]) -> list[ColorSensorSpec]:
 def _see_line(
     records: Array, spec: RunSpec, mat: Field, points: Sequence[ColorSensorSpec]
 ) -> _Seen | None:
-    """Return when the line was under each point; None if what they saw of the mat has too little contrast."""
+    """Return when the line was under each point; None if the points saw too little contrast on the mat."""
     on = [is_on_mat(records, point) for point in points]
     light = [compute_reflected_percent(records, point, spec, mat) for point in points]
     there = np.concatenate([percent[is_on] for percent, is_on in zip(light, on, strict=True)])
@@ -179,11 +179,13 @@ def _see_line(
 
 
 class _Way:
-    """The stretches of a run in which a sensor was over the dark, and the gaps between; standing still does not count.
+    """The stretches of a run in which a sensor was over the dark line, and the gaps between.
+
+    Ticks without movement are left out.
 
     Args:
         records: The telemetry.
-        is_dark: Whether a sensor was over the dark, at each tick.
+        is_dark: Whether a sensor was over the dark line, at each tick.
     """
 
     def __init__(self, records: NDArray[Any], is_dark: Bools) -> None:
@@ -200,25 +202,25 @@ class _Way:
         self._last_tick = len(records) - 1
 
     def find_long_gaps(self, hz: int) -> list[int]:
-        """Return the numbers of the stretches over the dark after which the gap is long enough for a loss."""
+        """Return the indices of the dark stretches after which the gap is long enough for a loss of the line."""
         gaps = self._next - self._ends
         longest = np.maximum.accumulate(np.append(0, gaps[:-1]))
         long_enough = (gaps >= _MIN_GAP_S * hz) & (gaps > _LONGER * longest)
         return np.flatnonzero(long_enough).tolist() if len(gaps) else []
 
     def find_gap(self, number: int) -> tuple[int, int]:
-        """Return the last tick of a stretch over the dark, and the first of the next, or else the end of the run."""
+        """Return the last tick of a dark stretch, and the first tick of the next one, else the last tick of the run."""
         index = int(self._next[number])
         end = self._ticks[index] if index < len(self._ticks) else self._last_tick
         return int(self._ticks[self._ends[number] - 1]), int(end)
 
     def was_followed(self, number: int) -> bool:
-        """Return whether the robot followed the line up to a stretch: was over the dark mostly, or several times."""
+        """Return whether the robot followed the line up to a dark stretch: it was mostly over it, or came back."""
         share = self._is_dark[self._starts[0] : self._ends[number]].mean()
         return number >= _MIN_RETURNS or bool(share >= _MIN_DARK_SHARE)
 
     def is_steered(self, is_dark: Bools, hz: int) -> bool:
-        """Return whether the robot changed its turning soon after most changes of what a sensor saw.
+        """Return whether the robot changed its turning soon after most changes between line and ground under a sensor.
 
         Args:
             is_dark: Whether the sensor was over the line, at each tick.

@@ -31,7 +31,7 @@ _SAME_LIGHT = 25
 
 @dataclass(frozen=True, slots=True)
 class OneColor:
-    """The one colour that all light sensors which a program read saw all the time."""
+    """The only colour that the program's light sensors saw."""
 
     tick: int
     """When the program read the first of these sensors."""
@@ -45,9 +45,9 @@ class OneColor:
 def find_one_color(
     records: Array, spec: RunSpec, mat: Field, read_ticks: Mapping[str, Array]
 ) -> OneColor | None:
-    """Return the one colour that a program saw with every light sensor that it read while the robot drove far.
+    """Return the only colour that every light sensor of the program saw while the robot drove far.
 
-    None if it saw more, if it read too seldom, or if the robot did not drive far.
+    None if the sensors saw more colours, if the program read too seldom, or if the robot did not drive far.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
@@ -79,7 +79,9 @@ def find_one_color(
 
 
 def describe_colors(loop: LoopEnd, device: str, codes: Array, has_codes: bool) -> str:
-    """Return the colour that a loop waited for and the ones that were seen; empty if the loop saw its colour.
+    """Return the colour that a loop waited for and the colours that it read.
+
+    It is empty if it read the one that it waited for.
 
     Args:
         loop: The loop.
@@ -106,9 +108,12 @@ def _is_text(loop: LoopEnd) -> bool:
 
 
 def name_seen(loop: LoopEnd, codes: Array, has_codes: bool) -> list[str]:
-    """Return the colours that were seen, in words; if the loop compares with a text, as the program reads them.
+    """Return the colours of some codes in words or, if the loop compares with a text, as the program reads them.
 
-    Arguments as of `describe_colors`.
+    Args:
+        loop: The loop.
+        codes: Codes of the colours, shape (n,).
+        has_codes: Whether `color` is a number in the program's library.
     """
     names = {COLOR_NAMES[int(code)]: f"{code:g}" for code in codes}
     if not _is_text(loop):
@@ -123,5 +128,5 @@ def name_seen(loop: LoopEnd, codes: Array, has_codes: bool) -> list[str]:
 
 
 def name_limit(loop: LoopEnd) -> str:
-    """Return the colour that a loop compares with: in words or, if it is a text, as it stands in the program."""
+    """Return the colour that a loop compares with, in words; a text such as `"Red"` in quotes, as in the program."""
     return repr(loop.limit) if _is_text(loop) else loop.color

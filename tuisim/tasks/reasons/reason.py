@@ -49,7 +49,7 @@ _TRACEBACK = "Traceback"
 
 
 class ReasonKind(IntEnum):
-    """What went wrong, most important first."""
+    """The kinds of reasons why a run went wrong, most important first."""
 
     RAISED = auto()
     BLOCKED = auto()
@@ -87,14 +87,15 @@ def find_reasons(
     earlier: Recording | None = None,
     mat: Field | None = None,
 ) -> tuple[Reason, ...]:
-    """Return every reason why a run went wrong, most important first, those of one kind by time.
+    """Return every reason why a run went wrong, most important first; reasons of one kind are in order of time.
 
-    Missed goals and what a sensor lost are one kind here. What may have led to a later reason comes before it.
+    Missed goals and lost lines count as one kind here. What may have caused a later reason comes before it.
 
     Args:
         run: The run; it may still be running.
-        judgements: How it did on the goals of its task. A run that met them all went wrong by none of what blocked it
-            or what a sensor lost.
+        judgements: The judgements of the goals of its task. For a run that met them all, obstacles and lost lines are
+            no
+            reasons.
         earlier: The run to compare with, if this one repeats it; None for none.
         mat: The mat of the run; None opens it.
 
@@ -126,7 +127,7 @@ def sort_by_cause(reasons: Sequence[Reason]) -> tuple[Reason, ...]:
 
 
 def _rank(reason: Reason, reasons: Sequence[Reason]) -> ReasonKind:
-    """Return the most important kind among those that a reason may have led to, and its own."""
+    """Return the most important kind among a reason's own and those of the reasons that it may have caused."""
     effects: list[Reason] = []
     if reason.kind in _CAUSES:
         effects = [
@@ -141,7 +142,7 @@ def _rank(reason: Reason, reasons: Sequence[Reason]) -> ReasonKind:
 
 
 def _find_line(run: StoredRun, time_s: float) -> int:
-    """Return the program's line at a time."""
+    """Return the number of the program's line that ran at a time."""
     if not run.telemetry.count:
         return 0
     tick = round(time_s * run.spec.profile.tick_hz)
@@ -149,7 +150,7 @@ def _find_line(run: StoredRun, time_s: float) -> int:
 
 
 def _find_raised(run: StoredRun) -> Iterator[Reason]:
-    """Yield the error that ended the run, and errors of threads, which did not end it."""
+    """Yield as reasons the error that ended the run, and errors in threads, which did not end it."""
     end = run.end
     ending = end.summary if end and end.end not in _EXPECTED_ENDS else ""
     for error in _find_tracebacks(run):
@@ -163,12 +164,12 @@ def _find_raised(run: StoredRun) -> Iterator[Reason]:
 
 
 def _compile_place(run: StoredRun) -> re.Pattern[str]:
-    """Return the pattern of a line of a traceback that names a line of the program."""
+    """Return a pattern for the lines of a traceback that name a line of the program."""
     return re.compile(rf'  File ".*{re.escape(Path(run.program.file).name)}", line ([0-9]+)')
 
 
 def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
-    """Yield each traceback in the program's error output."""
+    """Yield as reasons the tracebacks in the program's error output."""
     place = _compile_place(run)
     line = 0
     is_inside = False
@@ -186,7 +187,7 @@ def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
 
 
 def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]:
-    """Yield where something solid stopped or pushed the robot, and what the program waited for in vain."""
+    """Yield as reasons where an obstacle stopped or pushed the robot, and what the program waited for in vain."""
     for contact in (
         find_standstill(run.telemetry, run.spec),
         find_push(run.telemetry, run.spec),
@@ -199,7 +200,7 @@ def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]
 
 
 def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
-    """Yield the goals that were missed, and those met that take points off; hidden ones are left out."""
+    """Yield as reasons the goals that were missed, and the met ones that take points off; hidden ones are left out."""
     for judged in judgements:
         is_known = judged.state is not GoalState.UNKNOWN
         if judged.event and is_known and not judged.is_good and not judged.goal.hidden:
@@ -209,12 +210,12 @@ def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
 
 
 def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[Reason]:
-    """Yield where a robot lost its line, where light just missed a limit, and where sensors saw only one colour.
+    """Yield as reasons where a robot lost its line, light just missed a limit, and sensors saw only one colour.
 
     Args:
         run: The run.
         mat: Its mat; None opens it.
-        has_waited: Whether it waited for a light sensor in vain, which is told already: then one colour is not.
+        has_waited: Whether it waited for a light sensor in vain; the one colour is then no further reason.
     """
     eyes = run.spec.robot.color_sensors
     if not eyes or run.telemetry.count < 2:
@@ -241,7 +242,7 @@ def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[
 
 
 def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
-    """Yield where the robot drove over the edge of the mat for the first time."""
+    """Yield as a reason where the robot first drove over the edge of the mat."""
     records = run.telemetry.array()
     x_mm, y_mm = records["x_mm"], records["y_mm"]
     is_off = (x_mm < 0) | (x_mm > FIELD_WIDTH_MM) | (y_mm < 0) | (y_mm > FIELD_HEIGHT_MM)
@@ -250,7 +251,7 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
 
 
 def _find_mistaken(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
-    """Yield where the program probably did something else than it was meant to.
+    """Yield as reasons where the program probably did not do what was meant.
 
     It turned the wheels by an angle meant for the robot, or counted a band twice.
     """
@@ -264,7 +265,7 @@ def _find_mistaken(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
 
 
 def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
-    """Yield that the program was over too early, did not stop its motors, or has a line that does nothing."""
+    """Yield as reasons that the program ended too early, did not stop its motors, or has a line that does nothing."""
     for line, text in read_facts(run.program).slips if run.end else ():
         yield Reason(ReasonKind.ENDED, run.time_s, line, text)
     if early := find_early_end(run, mat):
@@ -275,7 +276,7 @@ def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
 
 
 def describe_end(run: StoredRun) -> str:
-    """Return how a run ended, in a sentence without its full stop; empty if there is nothing to say.
+    """Return what went wrong at the end of a run, in a sentence without its full stop; empty if nothing did.
 
     It says where a robot lost its line for good, if a limit or the user ended the run; where light just missed what the
     program waited for, or came between two reads; why the program was over too early; or that the mat is blank.
@@ -307,6 +308,7 @@ def _find_read_ticks(run: StoredRun, count: int) -> dict[str, NDArray[Any]]:
     """Return the ticks at which the program read each light sensor, by its name, in ascending order.
 
     Args:
+        run: The run.
         count: Ticks of the telemetry: a run that goes on may have later readings, which are left out.
     """
     readings = read_readings(run.folder, is_over=run.end is not None)
@@ -321,7 +323,7 @@ def _find_read_ticks(run: StoredRun, count: int) -> dict[str, NDArray[Any]]:
 
 
 def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
-    """Return as a reason that a sensor lost the line, and when a sensor saw it again."""
+    """Return the reason that a sensor lost the line, with when a sensor saw it again, if one did."""
     text = f"the {lost.sensor} sensor left the {'black' if lost.is_black else 'dark'}"
     if lost.seen_again is None:
         return _explain_lost(run, lost.tick, f"{text}, and did not see it again")
@@ -334,7 +336,7 @@ def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
 
 
 def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:
-    """Yield where the robot left the path of an earlier run."""
+    """Yield as a reason where the robot left the path of an earlier run."""
     hz = run.spec.profile.tick_hz, earlier.spec.profile.tick_hz
     time_s = find_first_difference_s(run.telemetry.array(), earlier.telemetry.array(), hz)
     if time_s is not None:

@@ -86,7 +86,7 @@ class _Series:
 
 @dataclass(frozen=True, slots=True)
 class Unmet:
-    """What a program waited for in vain or just missed, or another fault of a line."""
+    """A loop's or move's condition that was not met or only just missed, or another fault of a line of a program."""
 
     time_s: float
     line: int
@@ -95,9 +95,9 @@ class Unmet:
 
 
 def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:
-    """Return what a program waits for in its last loop or move, if its run goes on or ended at a limit or by the user.
+    """Return what a program waited for in its last loop or move, if its run goes on, or a limit or the user ended it.
 
-    None if it waits for nothing, or if that is not known.
+    None if it waited for nothing, or if that is not known.
 
     Args:
         run: The run.
@@ -108,7 +108,9 @@ def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 
 
 def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
-    """Return where a loop that is over missed the light that it waited for; None if none did, or if that is not known.
+    """Return where a finished loop just missed the light that it waited for.
+
+    It is None if no loop did, or if that is not known.
 
     No reading quite reached the light, or it was there only between two readings.
 
@@ -130,7 +132,9 @@ def find_stale_angle(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 
 
 def find_recount(run: StoredRun, mat: Field | None = None) -> Unmet | None:
-    """Return a line that counted twice on one band of the mat; None if there is none, or if that is not known.
+    """Return a line of the program that counted one band of the mat twice.
+
+    It is None if there is none, or if that is not known.
 
     Args:
         run: The run.
@@ -140,7 +144,9 @@ def find_recount(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 
 
 def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
-    """Return why a program was over too early: before its motors could turn, or it only defines; None if it was not.
+    """Return why a program ended too early: before its motors could turn, or because it only defines functions.
+
+    Else None.
 
     Args:
         run: The run.
@@ -180,7 +186,7 @@ def _find_first(
 
 
 class _Search:
-    """Looks for what a program waited for.
+    """A search for what the program of a run waited for.
 
     Raises:
         LogError, ConfigError: a recording is damaged, or the mat no longer exists.
@@ -197,12 +203,15 @@ class _Search:
 
     @cached_property
     def _readings(self) -> Array:
-        """The readings of the program."""
+        """The readings of sensors and motors that the program took."""
         return read_readings(self._run.folder, is_over=self._run.end is not None).rows
 
     @cached_property
     def _scales(self) -> dict[str, float]:
-        """How many degrees the program counts for one of a motor, by port; 1 where it is missing."""
+        """The scales of motors by port: degrees in the program per degree of the motor.
+
+        A port without an entry has 1.
+        """
         # Imported on demand: few runs wait for a motor.
         from tuisim.engine.runs.command_events import CommandIndex
 
@@ -210,11 +219,11 @@ class _Search:
 
     @cached_property
     def _field(self) -> Field:
-        """The mat, opened if nobody has done so."""
+        """The mat of the run, opened at the first use."""
         return self._run.open_mat() if self._mat is None else self._mat
 
     def find_unmet(self) -> Iterator[Unmet]:
-        """Yield what was waited for in the last move or in each loop, the inner ones first."""
+        """Yield what the program waited for in its last move and in each loop, the inner loops first."""
         if move := self._find_move():
             yield move
         for loop in self._loops:
@@ -224,7 +233,7 @@ class _Search:
                 yield Unmet(stay[0] / self._hz, loop.line, text)
 
     def find_near_misses(self) -> Iterator[Unmet]:
-        """Yield where light just missed what a finished loop waited for, or was so between two reads."""
+        """Yield where light just missed the limit of a finished loop, or passed it only between two readings."""
         is_finished = self._run.end is not None and self._run.end.end is End.FINISHED
         for loop in self._loops:
             stay = self._find_stay(loop)
@@ -240,7 +249,7 @@ class _Search:
                 yield Unmet(tick / self._hz, loop.line, text)
 
     def find_met(self) -> Iterator[Unmet]:
-        """Yield the loops that ended at once: the first reading was what they waited for."""
+        """Yield the loops that ended after their first reading, which was already what they waited for."""
         for loop in self._loops:
             series = self._measure(loop, (0, len(self._records)))
             if series is None:
@@ -279,7 +288,7 @@ class _Search:
                 yield Unmet(series.ticks[stale[0]] / self._hz, loop.line, text)
 
     def find_recounts(self) -> Iterator[Unmet]:
-        """Yield lines that counted at two readings in a row while the robot moved."""
+        """Yield lines of the program that counted two readings in a row of the same band while the robot moved."""
         for line, test in read_facts(self._run.program).counts:
             series = self._measure(test, (0, len(self._records)))
             if series is None or series.column not in LIGHT_COLUMNS or isinstance(test.limit, str):
@@ -320,7 +329,10 @@ class _Search:
         return Unmet(first / self._hz, line, text)
 
     def _find_stay(self, loop: LoopEnd) -> tuple[int, int] | None:
-        """Return the first tick in a loop and the one after the last; None unless it was entered exactly once."""
+        """Return the first tick in a loop and the one after its last.
+
+        It is None if the loop was entered never or more than once.
+        """
         # Imported on demand, as numpy is.
         from tuisim.engine.runs.arrays import find_spans
 
@@ -330,7 +342,10 @@ class _Search:
         return (stays[0][0], stays[0][1]) if len(stays) == 1 else None
 
     def _describe(self, loop: LoopEnd, stay: tuple[int, int]) -> str:
-        """Return what a loop waited for, and what it read; empty if it came, or if that is not known."""
+        """Return what a loop waited for, and what it read.
+
+        It is empty if the loop's condition was met, or if that is not known.
+        """
         if loop.is_silent and not loop.name:
             return "its endless loop to end, in which nothing waits, reads or breaks"
         if loop.set_line or loop.is_silent:
@@ -354,7 +369,10 @@ class _Search:
         return f"{series.device} to read {goal}: {came}"
 
     def _name_nearest(self, loop: LoopEnd, series: _Series) -> str:
-        """Return which value came nearest to the limit of a loop; if it was the first one, how the values changed."""
+        """Return which value came nearest to the limit of a loop.
+
+        If it was the first value, how the values changed after it.
+        """
         values = series.values
         nearest = int(abs(values - loop.limit).argmin())
         if values[nearest] != values[0] and values[nearest] == values[-1]:
@@ -366,7 +384,7 @@ class _Search:
         return f"it went from {_round(values[0])} to {_round(values[-1])}"
 
     def _find_miss(self, loop: LoopEnd, series: _Series) -> Unmet | None:
-        """Return where the light came within `_NEAR` % of a loop's limit, but never met its condition; None if nowhere.
+        """Return where the light came within `_NEAR` % of a loop's limit without passing it; None if it did nowhere.
 
         Before and after, the light was at least `_AWAY` % away from the limit.
         """
@@ -391,9 +409,9 @@ class _Search:
     def _find_skip(
         self, loop: LoopEnd, stay: tuple[int, int], reads: _Series
     ) -> tuple[int, str] | None:
-        """Return the first tick at which light was as a loop wants it, but was not read; and why, in words.
+        """Return the first tick at which the light met a loop's condition between two readings, and a description.
 
-        None if there is none.
+        Else None.
         """
         import numpy as np
 
@@ -422,9 +440,9 @@ class _Search:
     def _measure(
         self, loop: LoopEnd, stay: tuple[int, int], *, is_between: bool = False
     ) -> _Series | None:
-        """Return the values that a loop read; with `is_between` those that it would have read at every tick.
+        """Return the values that a loop read; with `is_between` the values that it would have read at every tick.
 
-        None if they are not known, or if light noise or a pen would make it take long.
+        None if they are not known, or if noise or the pen's marks would make the computation slow.
         """
         import numpy as np
 
@@ -448,7 +466,10 @@ class _Search:
         return self._measure_sensor(loop, sensors[0], read, ticks)
 
     def _measure_wheel(self, loop: LoopEnd, wheel: str, port: str, ticks: Array) -> _Series | None:
-        """Return the position of a wheel's motor at some ticks; None if the loop reads another attribute of it."""
+        """Return the position in degrees of a wheel's motor at some ticks.
+
+        It is None if the loop reads another attribute of it.
+        """
         if loop.attribute not in TURN_COLUMNS:
             return None
         column, factor, unit = TURN_COLUMNS[loop.attribute]
@@ -459,7 +480,10 @@ class _Search:
     def _measure_sensor(
         self, loop: LoopEnd, sensor: SensorSpec, read: tuple[str, float, str], ticks: Array
     ) -> _Series | None:
-        """Return what a sensor measured at some ticks; None if it does not measure that, or if that takes long."""
+        """Return what a sensor measured at some ticks.
+
+        It is None if it has no such measurement, or if computing it would be slow.
+        """
         import numpy as np
 
         spec, (column, factor, unit) = self._run.spec, read
@@ -485,7 +509,10 @@ class _Search:
         return _Series(device, column, unit, ticks, values)
 
     def _find_wheel(self, ports: list[str]) -> str:
-        """Return `left` or `right` if the only port is that of the wheel's motor; otherwise, or with gears, empty."""
+        """Return `left` or `right` if the only port is that of the wheel's motor.
+
+        It is empty otherwise, or if there are gears.
+        """
         robot = self._run.spec.robot
         wheels = {
             robot.left_port: "left",
@@ -495,7 +522,7 @@ class _Search:
 
 
 def describe_place(port: str) -> str:
-    """Return where a sensor is, to follow its kind."""
+    """Return where a sensor is in words, such as `on in1`."""
     return "in the hub" if port == INSIDE else f"on {port}"
 
 

@@ -45,17 +45,16 @@ class MistakenTurn:
 
 
 def find_mistaken_turn(run: StoredRun) -> MistakenTurn | None:
-    """Return the first turn on the spot in which the wheels, but not the robot, turned by the angle in the program.
+    """Return the first turn on the spot in which the wheels, but not the robot, turned by the program's angle.
 
-    Args:
-        run: The run.
+    Else None.
     """
     turns = [_measure_turns(run, turn) for turn in read_facts(run.program).wheel_turns]
     return min((turn for turn in turns if turn), key=lambda turn: turn.tick, default=None)
 
 
 def _measure_turns(run: StoredRun, turn: WheelTurn) -> MistakenTurn | None:
-    """Return how far a call turned the robot when it ran first; None if this angle seems to be intended."""
+    """Return by which angle a call turned the robot the first time it ran; None if that angle seems to be intended."""
     records = run.telemetry.array()
     lines = records["line"]
     is_on = (lines >= turn.first_line) & (lines <= turn.last_line)
@@ -97,7 +96,7 @@ _WHOLE = frozenset({LightRead.REFLECTED, LightRead.REFLECTION})
 
 @dataclass(frozen=True, slots=True)
 class Unwatched:
-    """Light that came and went between two reads."""
+    """A light that a sensor passed between two readings, so that the program missed it."""
 
     tick: int
     """When it came."""
@@ -108,7 +107,9 @@ class Unwatched:
 def find_unwatched(
     program: Program, records: Array, spec: RunSpec, mat: Field, read_ticks: Mapping[str, Array]
 ) -> Unwatched | None:
-    """Return the first light between two reads for which the program would have done something else.
+    """Return the first light between two readings for which the program would have acted differently.
+
+    It is None if there is none.
 
     Args:
         program: The program.
@@ -137,7 +138,7 @@ def _list_passes(
     threshold: ProgramThreshold,
     ticks: Array,
 ) -> Iterator[Unwatched]:
-    """Yield the first light between two reads at which a comparison has another answer than at both."""
+    """Yield the first light between two readings for which a comparison has another result than at both readings."""
     hz = spec.profile.tick_hz
     long = np.flatnonzero(np.diff(ticks) >= _MIN_PAUSE_S * hz)
     if not len(long):
@@ -163,7 +164,7 @@ def _list_passes(
 def _measure(
     records: Array, spec: RunSpec, sensor: ColorSensorSpec, mat: Field, read: LightRead
 ) -> Array:
-    """Return what a program would have read at each tick without noise, shape (n,)."""
+    """Return what a program would have read from a colour sensor at each tick without noise, shape (n,)."""
     red, green, blue = measure_quiet_color(records, sensor, spec, mat).values()
     if read.is_color:
         colors, places = np.unique(

@@ -83,7 +83,7 @@ _SAME_HEADING_DEG = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Awaited:
-    """Something that the program read several times, and that never changed."""
+    """A sensor, button or connection that the program read several times without the change that it waited for."""
 
     subject: Subject
     port: str
@@ -153,15 +153,15 @@ def find_at_end(run: Recorded, end: End) -> tuple[Awaited, ...]:
 
 
 def is_standing(telemetry: TelemetryView, spec: RunSpec) -> bool:
-    """Return whether the robot has stood still for the last `WINDOW_S`."""
+    """Return whether the robot has stood still for the last `WINDOW_S` seconds."""
     ticks = _count_window_ticks(spec)
     return telemetry.count > ticks and not _is_driving(telemetry.array(telemetry.count - 1 - ticks))
 
 
 def find_in_recording(run: Recorded) -> tuple[Awaited, ...]:
-    """Return what a program read in its last seconds and never saw change, most important first.
+    """Return what a program read in its last seconds without seeing a change, most important first.
 
-    If readings are damaged or missing, nothing was waited for.
+    If readings are damaged or missing, the result is empty.
     """
     try:
         return tuple(_Search(run).find_awaited())[:MAX_AWAITED]
@@ -180,7 +180,7 @@ def _is_driving(records: Array) -> bool:
 
 
 class _Search:
-    """Looks for what a program waits for.
+    """A search for what the program of a run waits for.
 
     Raises:
         LogError: a recording is damaged.
@@ -220,7 +220,7 @@ class _Search:
                     yield awaited
 
     def _find_readings(self, subject: Subject, port: str) -> Array:
-        """Return the indices of the readings of a subject, on the lines on which the program waits for it now."""
+        """Return the indices of the readings of a subject on those lines on which the program waits for it now."""
         import numpy as np
 
         is_meant = self._select(subject, port)
@@ -241,7 +241,7 @@ class _Search:
         return is_meant
 
     def _has_seen(self, subject: Subject, port: str, presses: Iterable[HandPress]) -> bool:
-        """Return whether the program has read a subject, on any line, while something was pressed."""
+        """Return whether the program has read a subject, on any line, during one of some presses."""
         times_s = self._ticks[self._select(subject, port)] / self._hz
         return any(
             ((times_s >= press.from_s) & (times_s < press.until_s)).any() for press in presses
@@ -251,7 +251,7 @@ class _Search:
         return read_facts(self._run.program).find_question(line) if self._asks_text else Question()
 
     def _is_asking(self, subject: Subject, line: int) -> bool:
-        """Return whether a reading of a subject on a line can be what the program waits for."""
+        """Return whether the program can wait for a subject on a line: the reading there decides what happens next."""
         question = self._ask(line)
         if subject in OUTSIDE_SUBJECTS:
             return True
@@ -260,7 +260,7 @@ class _Search:
         return question.decides and not is_guard and not is_computed
 
     def _is_logging_or_playing(self) -> bool:
-        """Return whether the program has shown or stored readings in the last seconds, or has played sounds."""
+        """Return whether the program has printed or stored readings, or played sounds, in the last seconds."""
         return any(not self._ask(line).decides for line in self._lines) or any(
             row.tick > self._first and row.stream is Stream.SPEECH
             for row in self._run.output.rows()
@@ -268,7 +268,7 @@ class _Search:
 
     @cached_property
     def _blocking_line(self) -> int | None:
-        """The line of the call that the program is in, if it reads anything there."""
+        """The line of the call in which the program is now, if the program has readings there; None otherwise."""
         import numpy as np
 
         lines = np.unique(self._records["line"][self._first + 1 :])
@@ -285,7 +285,7 @@ class _Search:
         return any(dps for _, dps in face.turns)
 
     def _describe(self, subject: Subject, port: str, rows: Array) -> Awaited | None:
-        """Return a subject as `Awaited`, with what the program asks of it; None if it changed, or came."""
+        """Return what the program waits for at a subject; None if the subject changed or the awaited value came."""
         import numpy as np
 
         mode = READING_MODES[self._rows["mode"][rows[-1]]]
@@ -325,7 +325,7 @@ class _Search:
         return find_presses(self._run.actions, names, self._hz, len(self._records))
 
     def _skip_answered(self, rows: Array, presses: Sequence[HandPress]) -> Array:
-        """Return the readings after the last press if the program has read on for long since then, else all."""
+        """Return the readings after the last press if they go on for at least `WINDOW_S` seconds, else all."""
         import numpy as np
 
         if not presses:
@@ -339,7 +339,10 @@ class _Search:
         return self._run.telemetry.record(int(self._ticks[row])).pose
 
     def _find_limit(self, mode: str, question: Question) -> float | None:
-        """Return the distance that the program compares with, in mm or in % for an infrared sensor; else None."""
+        """Return the distance that the program compares with, in mm or, for an infrared sensor, in %.
+
+        It is None if not known.
+        """
         limit = question.find_limit()
         if limit is None or mode not in MODES[Subject.DISTANCE]:
             return limit
@@ -357,7 +360,7 @@ class _Search:
         needs_all: bool,
         limit: float | None,
     ) -> str | None:
-        """Return what was read each time, in words; None if it changed, or if what the program waits for came."""
+        """Return in words what was read each time; None if it changed, or if the awaited value came."""
         import numpy as np
 
         if subject in OUTSIDE_SUBJECTS:
@@ -389,7 +392,7 @@ class _Search:
         return None
 
     def _is_pressed(self, ticks: Array, names: Sequence[str], needs_all: bool) -> bool:
-        """Return whether any name, or with `needs_all` all at once, was pressed by hand at one of some ticks."""
+        """Return whether any button, or with `needs_all` all together, was pressed by hand at one of some ticks."""
         import numpy as np
 
         enough = len(names) if needs_all else 1
@@ -431,9 +434,10 @@ class _Search:
         tolerance: float,
         limit: float | None,
     ) -> str | None:
-        """Return the smallest distance that was measured, such as `12 cm`; None if what the program waits for came.
+        """Return the smallest distance that was measured, such as `12 cm`; None if the awaited distance came.
 
-        With a `limit`, a distance came that is not larger; without one, distances that differ by more than `tolerance`.
+        With a `limit`, that is a distance that is not larger; without one, distances that differ by more than
+            `tolerance`.
         """
         low, high = math.inf, -math.inf
         for value, *_ in self._measure(sensor, ticks):
@@ -443,7 +447,7 @@ class _Search:
         return f"{low / per_unit:.0f} {'cm' if per_unit > 1 else '%'}"
 
     def _describe_color(self, sensor: ColorSensorSpec, ticks: Array) -> str | None:
-        """Return the name of the one colour that a sensor saw; None if it saw several, or if that is not known."""
+        """Return the name of the only colour that a sensor saw; None if it saw several, or if that is not known."""
         import numpy as np
 
         from tuisim.engine.runs.sensor_arrays import measure_quiet_color
@@ -461,7 +465,7 @@ class _Search:
 def _list_sought(
     subject: Subject, port: str, mode: str, questions: Iterable[Question]
 ) -> tuple[str, ...]:
-    """Return the names of what a program asks for of a subject on several lines, in their order; empty for anything."""
+    """Return the names of the values that a program waits for on several lines, in their order; empty for any value."""
     names = dict.fromkeys(
         name for question in questions for name in _find_sought(subject, port, mode, question)
     )
@@ -470,7 +474,7 @@ def _list_sought(
 
 
 def _find_sought(subject: Subject, port: str, mode: str, question: Question) -> tuple[str, ...]:
-    """Return the names of buttons, ports or colours that a program asks for; empty for anything."""
+    """Return the names of the buttons, ports or colours that a program waits for; empty for any."""
     match subject:
         case Subject.BUTTONS:
             return question.find_buttons(port)

@@ -47,7 +47,7 @@ _TURNED_DEG = 45.0
 
 @dataclass(frozen=True, slots=True)
 class Wait:
-    """What a run waited for in vain."""
+    """A description of what a run waited for in vain."""
 
     time_s: float
     """When the waiting began."""
@@ -60,7 +60,7 @@ class Wait:
 
 
 def find_waits(run: StoredRun, mat: Field | None = None) -> list[Wait]:
-    """Return what a run waited for or, if it still goes on, waits for; most important first.
+    """Return descriptions of what a run waited for or, if it still goes on, waits for; most important first.
 
     Args:
         run: The run.
@@ -97,7 +97,7 @@ def describe_wait(run: StoredRun) -> str:
 
 
 def describe_wait_with_keys(awaited: Iterable[Awaited], spec: RunSpec) -> str:
-    """Return what a run waited for, for the app: with ids of actions in braces; empty if it waited for nothing."""
+    """Return in words for the app what a run waited for, with action ids in braces; empty if it waited for nothing."""
     return "; ".join(
         f"{describe_awaited(wait)}: {name_remedy_with_keys(wait, spec)}" for wait in awaited
     )
@@ -143,13 +143,13 @@ def describe_awaited(awaited: Awaited) -> str:
 
 
 def _name_choice(awaited: Awaited) -> str:
-    """Return which buttons a program asks for, after a blank, if any of several will do; else empty."""
+    """Return the buttons of which the program needs any one, with a blank in front; empty otherwise."""
     has_choice = len(awaited.sought) > 1 and not awaited.needs_all
     return f" {', '.join(awaited.sought[:-1])} and {awaited.sought[-1]}" if has_choice else ""
 
 
 def _describe_presses(awaited: Awaited) -> str:
-    """Return why what was pressed by hand did not help; empty if nothing was pressed."""
+    """Return why the presses by hand were not those that the program waited for; empty if nothing was pressed."""
     names = list(dict.fromkeys(press.name for press in awaited.pressed))
     wants = awaited.sought
     hits = find_hits(awaited.pressed, wants)
@@ -170,17 +170,17 @@ def _describe_presses(awaited: Awaited) -> str:
 
 
 def _find_color(awaited: Awaited) -> str:
-    """Return the first colour that the program asks for and did not see; empty if that is not known."""
+    """Return the first colour that the program waits for and did not see; empty if that is not known."""
     return next((name for name in awaited.sought if name != awaited.value), "")
 
 
 def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
-    """Return the option or file that gives a program what it waited for, for users of the command line.
+    """Return the option or file with which a run gets what its program waited for, for users of the command line.
 
     Args:
         awaited: What was waited for.
         spec: The run.
-        is_live: Whether the run took real time, as another program needs it.
+        is_live: Whether the run took real time, as another program requires that connects to it.
     """
     match awaited.subject:
         case Subject.BUTTONS:
@@ -209,7 +209,12 @@ def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
 
 
 def _name_presses(awaited: Awaited, default: str) -> str:
-    """Return the options that press what the program asks for, when it looks and for long enough."""
+    """Return the options that press the awaited buttons or sensors when the program reads them and for long enough.
+
+    Args:
+        awaited: What was waited for.
+        default: What to press if the program accepts anything.
+    """
     pressed = {press.name for press in awaited.pressed}
     names = tuple(sorted(awaited.sought, key=pressed.__contains__)) or (default,)
     is_touch, is_remote = awaited.subject is Subject.TOUCH, awaited.subject is Subject.REMOTE
@@ -263,7 +268,7 @@ def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
 
 
 def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
-    """Return what an ultrasonic sensor reads at a wall, if that is farther than the program asks for; else empty."""
+    """Return what an ultrasonic sensor reads at a wall, if the program waits for a smaller distance; else empty."""
     for sensor in spec.robot.sensors:
         if sensor.port == awaited.port and isinstance(sensor, UltrasonicSpec):
             nearest_mm = find_nearest(sensor, spec)
@@ -273,7 +278,10 @@ def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
 
 
 def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
-    """Return the key that gives a program what it waited for, as an id of an action in braces; else the option."""
+    """Return the app's key that gives a program what it waited for, as an action id in braces.
+
+    The option if no key does.
+    """
     names = awaited.sought if awaited.needs_all else awaited.sought[:1]
     brick = "hub" if awaited.port in (HUB_BUTTONS_PORT, *HUB_PORTS) else "brick"
     match awaited.subject:
@@ -300,7 +308,7 @@ _NEAREST_MM = 40.0
 
 
 def find_nearest(sensor: UltrasonicSpec, spec: RunSpec) -> float:
-    """Return the least distance in mm that an ultrasonic sensor can read of a wall: that with the robot at the wall."""
+    """Return the least distance in mm that an ultrasonic sensor can read: that with the robot at the wall."""
     front_mm = build_outline(spec.robot).front_mm if spec.profile.solid or spec.world.solid else 0.0
     return max(float(spec.profile.min_echo_mm), front_mm - sensor.y_mm)
 
@@ -308,13 +316,13 @@ def find_nearest(sensor: UltrasonicSpec, spec: RunSpec) -> float:
 def find_obstacle(
     sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, pose: Pose, limit: float | None
 ) -> str:
-    """Return options that put an obstacle of `OBSTACLES` before a sensor; empty if none of them does.
+    """Return the options that put one of `OBSTACLES` in front of a sensor; empty if no obstacle is near enough there.
 
     Args:
         sensor: The sensor.
         spec: The run.
-        pose: Where the robot looks for the obstacle.
-        limit: How near it has to be, in mm or in % for an infrared sensor; None for anywhere.
+        pose: The robot's pose when it looks for the obstacle.
+        limit: How near the obstacle must be, in mm or, for an infrared sensor, in %; None for any distance.
     """
     sets = {name: replace(spec.world, obstacles=boxes) for name, boxes in OBSTACLES.items()}
     distances = {name: measure_obstacle(sensor, spec, world, pose) for name, world in sets.items()}

@@ -20,7 +20,7 @@ from tuisim.tasks.reasons.waited_words import describe_wait_with_keys
 
 
 class WaitWatch:
-    """Watches the run in view, and tells once what its program waits for."""
+    """Watches the run in view, and reports once what its program waits for."""
 
     def __init__(self) -> None:
         self._run_id = ""
@@ -35,13 +35,15 @@ class WaitWatch:
         is_running: bool,
         open_mat: Callable[[RunSpec], Field | None],
     ) -> list[str]:
-        """Return what the program waits for, with ids of actions in braces; nothing if that was returned before.
+        """Return a line on what the program waits for, with action ids in braces.
+
+        It is empty if nothing, or if already reported.
 
         Args:
             recording: The recording in view.
-            ended: The end of its run, given once; None before and after.
+            ended: How its run ended, only in the call after the end; None otherwise.
             is_running: Whether its program runs, neither paused nor ended.
-            open_mat: Returns the mat of a run, None if it is not at hand.
+            open_mat: Returns the mat of a run; None if the mat is not available.
 
         Raises:
             LogError: the recording is damaged.
@@ -81,7 +83,7 @@ def _build_recorded(recording: Recording, open_mat: Callable[[RunSpec], Field | 
 
 
 def describe_so_far(recording: Recording) -> str:
-    """Return that nothing is wrong so far, and where a program that goes on is, with ids of actions in braces."""
+    """Return that nothing is wrong with a paused run so far, and where the program is, with action ids in braces."""
     import numpy as np
 
     hz = recording.spec.profile.tick_hz
