@@ -328,6 +328,22 @@ OUTPUT = {
         3,
     ),
     "print after": Case("print = 'a: '\nafter = 1.5", PRINTED, "met", 2.0, line=5),
+    "print too early": Case(
+        "print = 'start'\nafter = 1.5",
+        PRINTED,
+        "missed",
+        2.0,
+        "'start' was printed at 0.00 s, before the time of this goal began.",
+        6,
+    ),
+    "print nothing any more": Case(
+        "print = 'x'\nafter = 1.5",
+        (says("start", 1), wait(2, 2)),
+        "missed",
+        2.0,
+        "The program printed nothing in the time of this goal.",
+        0,
+    ),
     "log": Case("log = { name = 'a', levels = [100, 86.3] }", PRINTED, "met", 2.0, line=5),
     "log in another order": Case(
         "log = { name = 'a', levels = [86.3, 100] }",

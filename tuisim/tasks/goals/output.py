@@ -96,7 +96,7 @@ def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSp
                 return fault
             return Finding(
                 None,
-                _explain_missing_line(condition, pattern, rows, line is not None, evidence),
+                _explain_missing_line(condition, pattern, rows, line is not None, evidence, span),
                 about,
             )
         next_place = place + 1
@@ -211,10 +211,17 @@ def _explain_missing_line(
     rows: list[tuple[int, OutputRow]],
     some: bool,
     evidence: Evidence,
+    span: EvidenceSpan,
 ) -> str:
+    search = evidence.search(pattern)
+    early = (row for row in evidence.rows[: span.first_row] if row.stream == Stream.STDOUT)
+    if not some and (row := next((row for row in early if search(row.text)), None)):
+        return f"{_quote(row.text)} was printed at {row.time_ns / NS_PER_S:.2f} s, before the time of this goal began."
     if not rows:
-        return "The program printed nothing."
-    if some and condition.in_order and any(evidence.search(pattern)(row.text) for _, row in rows):
+        return (
+            f"The program printed nothing{' in the time of this goal' if span.first_row else ''}."
+        )
+    if some and condition.in_order and any(search(row.text) for _, row in rows):
         return f"A line that {_describe_pattern(pattern)} was printed, but not after the lines before it."
     last = _quote(rows[-1][1].text)
     printed = "the only one is" if len(rows) == 1 else f"the last of the {len(rows):,} is"
