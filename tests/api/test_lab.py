@@ -154,6 +154,12 @@ def test_a_lab_is_one_line() -> None:
     assert (lab.pose.x_mm, lab.pose.y_mm) == (lab.read()["x_mm"], lab.read()["y_mm"])
 
 
+def test_a_lab_says_that_its_robot_and_mat_are_not_the_named_ones() -> None:
+    lab = tuisim.Lab(tuisim.World(obstacles="Wall"), tuisim.Robot(wheel_diameter_mm=30))
+    robot, place = "Default_Robot of own values", "Empty_Map with 1 box"
+    assert repr(lab) == f"<lab with {robot} on {place} after 0.00 s>"
+
+
 @cases(
     "given, words",
     {

@@ -17,13 +17,14 @@ from tuisim.api.descriptions import (
     read_world,
 )
 from tuisim.api.keywords import build_keyword_error, check_keywords
-from tuisim.base.errors import ConfigError
+from tuisim.base.errors import ConfigError, counted
 from tuisim.engine.core.profile import PYBRICKS_4
 from tuisim.engine.core.sensors import build_reader
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.engine.runs.stepped_run import SteppedRun
-from tuisim.settings.build import build_run_spec
+from tuisim.settings.build import build_run_spec, extract_settings
 from tuisim.settings.options import merge_settings
+from tuisim.settings.robots import ROBOTS
 from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.goals.live import LiveGoals, check_goals
 
@@ -106,9 +107,11 @@ class Lab:
         self.reset()
 
     def __repr__(self) -> str:
-        robot = self._spec.robot.name
-        mat = self._spec.world.background
-        return f"<lab with {robot} on {mat} after {self.time_s:.2f} s>"
+        world, robot = self._spec.world, self._spec.robot.name
+        is_own = robot in ROBOTS and extract_settings(self._spec)["robot"] != robot
+        own = " of own values" if is_own else ""
+        boxes = f" with {counted(n, 'box', 'boxes')}" if (n := len(world.obstacles)) else ""
+        return f"<lab with {robot}{own} on {world.background}{boxes} after {self.time_s:.2f} s>"
 
     @property
     def spec(self) -> RunSpec:
