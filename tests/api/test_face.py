@@ -436,3 +436,4 @@ def test_a_class_is_marked(tmp_path: Path) -> None:
         tmp_path / "goals.toml", tmp_path / "class", seeds=np.array([1]), jobs=1, isolate=False
     )
     assert marks[["student", "points"]].to_numpy().tolist() == [["Ada", 2], ["Bob", 0]]
+    assert tuisim.runs()["tags"].tolist()[-1] == "student:Bob"

@@ -33,8 +33,9 @@ def mark(
 ) -> pd.DataFrame:
     """Mark the programs of a class, block until all runs are over, and return the marks.
 
-    What a program does wrong is not raised here: it is in its row. The command `tuisim mark` also writes pages,
-    gradebooks and feedback.
+    What a program does wrong is not raised here: it is in its row. Runs that raise, are stopped or miss a goal are
+    stored with the tag `student:NAME`, in the column `tags` of `tuisim.runs()`. The command `tuisim mark` also writes
+    pages, gradebooks and feedback.
 
     Args:
         goals: The file with the goals of the task and its world.
