@@ -19,6 +19,7 @@ from tests.cases import cases
 from tests.conftest import ROOT
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.commands.guide import find_page
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 
 LOGGER = """\
 tank_drive.on(SpeedPercent(50), SpeedPercent(50))
@@ -425,6 +426,30 @@ name = "done"
 finish = true
 points = 2
 """
+
+
+BRICK = "from ev3dev2.motor import LargeMotor\n"
+SENSING = BRICK + "from ev3dev2.sensor.lego import UltrasonicSensor\nUltrasonicSensor()\n"
+
+
+@pytest.mark.parametrize(
+    "text, world, profile, x_mm, walls, solid",
+    [
+        ("print(1)\n", None, "robolab", 100, True, False),
+        (BRICK, None, "ev3", 1181, False, True),
+        (SENSING, None, "ev3", 1181, True, True),
+        (BRICK, "lab.toml", "ev3", 280, True, True),
+        ("print(1)\n", "lab.toml", "robolab", 500, True, False),
+    ],
+)
+def test_a_world_has_the_defaults_that_the_page_names(
+    tmp_path: Path, text: str, world: str | None, profile: str, x_mm: int, walls: bool, solid: bool
+) -> None:
+    (tmp_path / "lab.toml").write_text('background = "Loop"\n')
+    spec = tuisim.simulate(text, world=world and tmp_path / world).stored.spec
+    assert (spec.profile.name, spec.world.walls, spec.world.solid) == (profile, walls, solid)
+    assert spec.world.start.x_mm == x_mm
+    assert (FIELD_WIDTH_MM, FIELD_HEIGHT_MM) == (2362, 1143)
 
 
 def test_a_class_is_marked(tmp_path: Path) -> None:

@@ -54,6 +54,9 @@ WORLD_CLASS = '''
 class World(WorldDescription):
     """A world: where a program runs. `simulate`, `experiment` and `Lab` take it.
 
+    By default it is an empty mat of 2362 × 1143 mm with walls; a program for a brick has walls only with a world file,
+    or with a sensor for them. The profile decides whether they are solid, the mat where the robot starts.
+
     Args:
         file: A world file; the options take precedence over it.
 {help}
