@@ -83,3 +83,20 @@ def test_sensors_are_moved_on_the_mat_that_wants_it_and_nowhere_else() -> None:
         build_run_spec(Settings({"background": "Grey_bands"})).robot.color_sensors
         == RobotSpec().color_sensors
     )
+
+
+@pytest.mark.parametrize(
+    "robot, drift, scale_pc",
+    [
+        ("Default_Robot", "typical", 2.0),
+        ("Prime_Robot", "typical", 0.0),
+        ("Prime_Robot", "typical gyro_dps=0", 0.0),
+        ("Prime_Robot", "typical gyro_scale_pc=1", 1.0),
+        ("Prime_Robot", "gyro_scale_pc=2", 2.0),
+    ],
+)
+def test_the_gyro_of_a_hub_has_no_typical_scale_of_an_ev3(
+    robot: str, drift: str, scale_pc: float
+) -> None:
+    spec = build_run_spec(merge_settings(parse_words(["-r", robot, "--drift", drift])))
+    assert spec.world.drift.gyro_scale_pc == scale_pc

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from tuisim.engine.core import tree
+from tuisim.engine.core.drift_spec import DriftSpec
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.profile import PROFILES, ProfileSpec
@@ -21,6 +22,7 @@ from tuisim.engine.core.spec import (
     RunSpec,
     WorldSpec,
 )
+from tuisim.engine.core.values import list_values
 from tuisim.engine.files import errors_at
 from tuisim.engine.mats import Background, find_mat, mat_of_spec
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles
@@ -75,6 +77,13 @@ def _place_obstacles(settings: Settings, mat: Background) -> tuple[Obstacle, ...
             return boxes
 
 
+def _drop_scale_of_ev3(drift: DriftSpec) -> DriftSpec:
+    """Return a drift for a hub: typical sizes without that of `gyro_scale_pc`, whose source is about the EV3."""
+    text = list_values(WorldSpec)["drift"].format_text(drift)
+    is_of_ev3 = text.startswith("typical") and "gyro_scale_pc" not in text
+    return replace(drift, gyro_scale_pc=0.0) if is_of_ev3 else drift
+
+
 def build_run_spec(settings: Settings) -> RunSpec:
     """Return the run specification of the settings; unset ones are decided by mat, robot and profile.
 
@@ -103,6 +112,8 @@ def build_run_spec(settings: Settings) -> RunSpec:
         if (value := settings[path]) is not None
     }
     spec = tree.put_all(RunSpec(place_robot(choice, mat), world, profile), spec_values)
+    if spec.robot.hub:
+        spec = tree.put(spec, "world.drift", _drop_scale_of_ev3(spec.world.drift))
     world = spec.world
     return tree.put(
         spec, "world.start", _start(settings, mat, spec.robot, walled=world.solid and world.walls)
