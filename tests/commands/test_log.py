@@ -144,7 +144,7 @@ BAD = {
         ("export", "{log}", "--out", "x.xls"),
         "unknown format '.xls' (a file ends in .csv, .parquet, .jsonl, .arrow, .mcap)",
     ),
-    "no robot": (("reckon", "{log}"), "robot"),
+    "no wheels": (("reckon", "{log}"), "no column 'left_position_deg' with numbers"),
 }
 
 

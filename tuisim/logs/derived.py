@@ -235,10 +235,6 @@ def build_reckoned_series(log: Log) -> list[Series]:
     Raises:
         LogError: the log is not telemetry, or has no metadata of the robot.
     """
-    spec = read_spec(log.metadata)
-    if spec is None:
-        hint = "a stored run, or its telemetry exported to a file"
-        raise LogError("has no metadata of the robot", hint, file=log.title)
     numbers = list_numeric_columns(log.table.schema)
     missing = [name for name in NEEDED if name not in numbers]
     if missing:
@@ -247,6 +243,10 @@ def build_reckoned_series(log: Log) -> list[Series]:
             "a stored run, or its telemetry exported",
             file=log.title,
         )
+    spec = read_spec(log.metadata)
+    if spec is None:
+        hint = "a stored run, or its telemetry exported to a file"
+        raise LogError("has no metadata of the robot", hint, file=log.title)
     left, right, x_mm, y_mm, _ = (log.numbers(name) for name in NEEDED)
     ticks = np.round(log.times_s * spec.profile.tick_hz)
     scales = compute_scales(ticks, spec.robot, _read_scale_changes(log.metadata))

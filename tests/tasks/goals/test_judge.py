@@ -76,7 +76,7 @@ CASES = {
         "print = 'one'\nafter = 'two'",
         "missed",
         2.78,
-        "No printed line",
+        "before the time of this goal began",
     ),
     "after a goal": ("reach = { x_mm = 700 }\nafter = 'a'", "met", 1.09, ""),
     "after a goal that is never met": (
