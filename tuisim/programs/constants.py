@@ -14,15 +14,20 @@ from tuisim.programs.robot.course import list_global_names
 from tuisim.programs.values import write_value
 
 _EVALUATED = ("ClassVar", "InitVar", "KW_ONLY")
-"""What dataclasses look for in annotations."""
+"""Words in annotations that dataclasses evaluate."""
 
 
 def set_constants(source: ProgramSource, values: Mapping[str, object]) -> ProgramSource:
-    """Return a program with other values of some constants; its lines keep their numbers.
+    """Return a program with other values of some of its constants; its lines keep their numbers.
+
+    Args:
+        source: The program.
+        values: The new values, by the name of the constant.
 
     Raises:
-        ConfigError: the program has no such constant, assigns several values to it, has computed another constant from
-            it before, or is not Python; or it cannot have such a value.
+        ConfigError: the program has no such constant, assigns several values to it, has already computed another
+            constant
+            from it, or is not Python; or a value cannot be written in a program.
     """
     if not values:
         return source
@@ -39,7 +44,7 @@ def set_constants(source: ProgramSource, values: Mapping[str, object]) -> Progra
         ) from None
     lines = [line.encode() for line in text.split("\n")]
     defined = list_global_names(text)[1]
-    # From the end, so that what is before stays where it is.
+    # The last value is replaced first, so that the positions of earlier ones remain valid.
     for node, name in sorted(nodes, key=lambda pair: (pair[0].lineno, pair[0].col_offset))[::-1]:
         if name in values:
             replace_node(lines, node, write_value(values[name], defined))
@@ -58,7 +63,7 @@ def set_constants(source: ProgramSource, values: Mapping[str, object]) -> Progra
 
 
 def _list_values(module: ast.Module) -> list[tuple[ast.expr, str]]:
-    """Return the values that are assigned outside functions and blocks, each with the name that gets it."""
+    """Return the values that a program assigns outside functions and blocks, each with the name of its variable."""
     pairs: list[tuple[ast.expr, str]] = []
     for statement in module.body:
         match statement:
@@ -70,7 +75,7 @@ def _list_values(module: ast.Module) -> list[tuple[ast.expr, str]]:
 
 
 def quote_annotations(text: str) -> str:
-    """Return a text in which annotations that use more than Python's own types are texts, which nothing evaluates."""
+    """Return a program with quoted annotations, which nothing evaluates, where they use other than Python's types."""
     lines = [line.encode() for line in text.split("\n")]
     nodes: list[ast.expr] = []
     for node in ast.walk(parse_module(text)):
@@ -84,7 +89,15 @@ def quote_annotations(text: str) -> str:
 
 
 def replace_node(lines: list[bytes], node: ast.expr, text: str) -> None:
-    """Put a text in place of a value, and empty lines in place of its further lines."""
+    """Replace the text of an expression in the lines of a program, in place.
+
+    The expression's further lines become empty.
+
+    Args:
+        lines: The lines, in UTF-8.
+        node: The expression.
+        text: The new text.
+    """
     first, last = node.lineno - 1, (node.end_lineno or node.lineno) - 1
     after = lines[last][node.end_col_offset or 0 :]
     lines[first] = lines[first][: node.col_offset] + text.encode() + after

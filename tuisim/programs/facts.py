@@ -54,7 +54,7 @@ class WheelTurn:
 
 
 def list_wheel_turns(tree: ast.Module) -> Iterator[WheelTurn]:
-    """Yield the calls of a program that turn the wheels in opposite directions by an angle such as robots turn by.
+    """Yield the calls of a program that turn the wheels in opposite directions by an angle common for robots' turns.
 
     Two calls one after the other, each for one motor, are one turn.
     """
@@ -79,7 +79,7 @@ def list_wheel_turns(tree: ast.Module) -> Iterator[WheelTurn]:
 
 
 def _list_pairs(tree: ast.Module) -> Iterator[tuple[ast.Call, ast.Call]]:
-    """Yield two calls that are statements of a block one after the other."""
+    """Yield each pair of calls that are consecutive statements of a block."""
     for node in ast.walk(tree):
         for block in (getattr(node, name, None) for name in ("body", "orelse")):
             for pair in pairwise(block if isinstance(block, list) else ()):
@@ -89,7 +89,10 @@ def _list_pairs(tree: ast.Module) -> Iterator[tuple[ast.Call, ast.Call]]:
 
 
 def _find_pair_angle(*calls: ast.Call) -> float:
-    """Return the angle by which two calls of `run_angle` turn two motors against each other; 0 if they do not."""
+    """Return the angle in degrees by which two calls of `run_angle` turn two motors in opposite directions.
+
+    The result is 0 for others.
+    """
     motors = set[str]()
     turns_deg: list[float] = []
     for call in calls:
@@ -111,7 +114,10 @@ def _is_known(numbers: list[float | None]) -> TypeGuard[list[float]]:
 
 
 def _find_number(node: ast.expr) -> float | None:
-    """Return a number, also that in a speed such as `SpeedPercent(30)`; None for other expressions."""
+    """Return the number in an expression, which may be in a speed such as `SpeedPercent(30)`.
+
+    The result is None for other expressions.
+    """
     match node:
         case ast.Constant(value=int() | float() as value):
             return float(value)
@@ -155,7 +161,7 @@ def _count(*kinds: type[ast.AST]) -> Callable[[ast.Module], int]:
 
 
 def _count_functions(tree: ast.Module) -> int:
-    """Return how many functions the program defines and also uses."""
+    """Return the number of functions that the program defines and uses."""
     defined = _list_nodes(tree, _Function)  # type: ignore[arg-type]
     named = [
         node.id if isinstance(node, ast.Name) else node.attr
@@ -168,7 +174,7 @@ def _count_functions(tree: ast.Module) -> int:
 
 
 def _count_lines(tree: ast.Module) -> int:
-    """Return how many lines have code; comments and docstrings do not count."""
+    """Return the number of lines with code, without comments and docstrings."""
     statements = (
         node for node in ast.walk(tree) if isinstance(node, ast.stmt) and not _is_idle(node)
     )
@@ -176,7 +182,7 @@ def _count_lines(tree: ast.Module) -> int:
 
 
 def _list_span(statement: ast.stmt) -> Iterator[int]:
-    """Yield the lines of a statement; of a block only the first."""
+    """Yield the numbers of a statement's lines; for a block only that of the first."""
     is_block = isinstance(statement, _BLOCKS)
     yield from range(
         statement.lineno, statement.lineno + 1 if is_block else (statement.end_lineno or 0) + 1
@@ -184,7 +190,7 @@ def _list_span(statement: ast.stmt) -> Iterator[int]:
 
 
 def _measure_depth(node: ast.AST) -> int:
-    """Return how deep blocks are nested."""
+    """Return the depth of the most deeply nested block in a node."""
     inner = max(map(_measure_depth, ast.iter_child_nodes(node)), default=0)
     return inner + isinstance(node, _BLOCKS)
 
@@ -218,7 +224,7 @@ MAX_TEXT = 100_000
 
 
 class ProgramFacts:
-    """What the text of a program says; nothing is executed.
+    """Facts that the text of a program shows without being executed.
 
     Args:
         program: The program.
@@ -229,25 +235,25 @@ class ProgramFacts:
 
     @cached_property
     def _tree(self) -> ast.Module:
-        """The syntax tree of the program; raises what `parse_module` does."""
+        """The syntax tree of the program; raises the errors of `parse_module`."""
         return parse_module(self._program.text)
 
     @cached_property
     def _short_tree(self) -> ast.Module:
-        """The syntax tree of the program, without statements if it is not Python, or too long."""
+        """The syntax tree of the program; an empty one if it is not Python, or too long."""
         text = self._program.text
         return (parse(text) if len(text) <= MAX_TEXT else None) or ast.Module([], [])
 
     @cached_property
     def fault(self) -> tuple[str, int] | None:
-        """Why the program does not compile, and the line, 0 if there is none; None if it compiles."""
+        """Why the program does not compile, with the line's number or 0 without one; None if it compiles."""
         return find_fault(self._program.text)
 
     def count_structure(self, name: str) -> int:
-        """Return how many loops, functions and so on the program has.
+        """Return how often the program has a structure, such as a loop.
 
         Args:
-            name: What to count, one of `STRUCTURES`.
+            name: The structure, one of `STRUCTURES`.
 
         Raises:
             SyntaxError, ValueError, RecursionError: it is not Python.
@@ -255,11 +261,11 @@ class ProgramFacts:
         return STRUCTURES[name](self._tree)
 
     def find_calls(self, call: str) -> list[int]:
-        """Return the lines with a call, in ascending order.
+        """Return the numbers of the lines with a call, in ascending order.
 
         Args:
             call: A name such as `time.sleep`, a method of an object that the prelude defines such as `tank_drive.on`,
-                or the name of a function or method alone. An object of the same class counts as well.
+                or the name of a function or method alone. Methods of other objects of the same class count as well.
 
         Raises:
             SyntaxError, ValueError, RecursionError: it is not Python.
@@ -271,7 +277,7 @@ class ProgramFacts:
         return QuestionReader(self._short_tree)
 
     def find_question(self, line: int) -> Question:
-        """Return what the program does with what a line reads; `Question()` if its text does not tell."""
+        """Return how the program uses the value that a line reads; `Question()` if the text does not show it."""
         return self._question_reader.find_question(line)
 
     @cached_property
@@ -280,21 +286,24 @@ class ProgramFacts:
 
     @cached_property
     def loop_ends(self) -> tuple[LoopEnd, ...]:
-        """The loops that end by a comparison which the text shows, the inner ones first."""
+        """The loops that end when a comparison in the text becomes true, the inner ones first."""
         return list_loop_ends(self._short_tree, self._constants)
 
     @cached_property
     def counts(self) -> tuple[tuple[int, LoopEnd], ...]:
-        """The lines in loops that count each time that a comparison with a constant is true, with the comparison."""
+        """The lines in loops that add 1 to a variable when a value passes a constant, with the comparison of both."""
         return tuple(list_counts(self._short_tree, self._constants))
 
     def find_turns(self, line: int) -> tuple[float, str] | None:
-        """Return by how much a call on a line turns a motor or both wheels, and the unit; None if there is none."""
+        """Return by how much a call on a line turns a motor or both wheels, and the unit.
+
+        The result is None if the line has no such call.
+        """
         return find_turns(self._short_tree, self._constants, line)
 
     @cached_property
     def wheel_turns(self) -> tuple[WheelTurn, ...]:
-        """The calls that turn both wheels against each other by an angle that could be meant for the robot."""
+        """The calls that turn both wheels in opposite directions by an angle that could be meant for the robot."""
         return tuple(list_wheel_turns(self._short_tree))
 
     @cached_property
@@ -304,12 +313,15 @@ class ProgramFacts:
 
     @cached_property
     def slips(self) -> tuple[tuple[int, str], ...]:
-        """The lines that do nothing, or always the same, and why, in words."""
+        """The lines that do nothing, or always do the same, each with a description of the fault."""
         return tuple(list_slips(self._short_tree))
 
     @cached_property
     def idle_definition(self) -> tuple[int, str] | None:
-        """The last function or class of a program that only defines, and why nothing happens; otherwise None."""
+        """The last function or class of a program that only has definitions, and why it does nothing.
+
+        It is None for others.
+        """
         return find_idle_definition(self._short_tree)
 
     @cached_property
@@ -327,24 +339,24 @@ class ProgramFacts:
         return places
 
     def find_place(self, line: int) -> tuple[int, range]:
-        """Return the first line of the function that a line is in, 0 for none, and the lines of its loop there.
+        """Return where a line is: the first line of its function, 0 without one, and the lines of the loop around it.
 
-        Without a loop, they are those of the statement of the function or program that holds the line.
+        Without a loop, these are the lines of the statement around it.
         """
         return self._places.get(line, (0, range(0)))
 
     def find_light_reads(self, robot: RobotSpec) -> Mapping[str, LightRead]:
-        """Return which number of each colour sensor the program compares or reads first, by name of the sensor."""
+        """Return which reading of each colour sensor the program compares first, else reads first, by sensor name."""
         return find_light_reads(self._program, robot)
 
     def find_thresholds(self, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:
-        """Return what the program compares its colour sensors with, in order of its lines, by name of the sensor."""
+        """Return the values with which the program compares each colour sensor, in order of lines, by sensor name."""
         return find_thresholds(self._program, robot)
 
 
 @lru_cache(8)
 def read_facts(program: Program) -> ProgramFacts:
-    """Return the facts that the text of a program shows."""
+    """Return the facts that the text of a program shows; they are cached."""
     return ProgramFacts(program)
 
 
@@ -356,12 +368,12 @@ _MAX_MEANING = 200
 _MAX_MEANINGS = 24
 """More meanings of one expression are not followed."""
 _DEFAULT_PRELUDE = "preloaded"
-"""Its names mean the same in a goals file, whichever prelude a program has."""
+"""The prelude whose names a goals file uses, whatever prelude a program has."""
 
 
 @dataclass(slots=True)
 class _Names:
-    """Finds out what the names of a program stand for.
+    """Finds the full names of what a program's names refer to, such as `ev3dev2.motor.MoveTank`.
 
     Args:
         prelude: The scope of its prelude.
@@ -371,10 +383,15 @@ class _Names:
     _known: dict[tuple[ast.expr, Scope], tuple[str, ...]] = field(default_factory=dict)
 
     def list_meanings(self, node: ast.expr, scope: Scope) -> tuple[str, ...]:
-        """Return what an expression can stand for, such as `ev3dev2.motor.MoveTank().on`."""
+        """Return the full names that an expression can refer to, such as `ev3dev2.motor.MoveTank().on`.
+
+        Args:
+            node: The expression.
+            scope: The scope that contains it.
+        """
         key = (node, scope)
         if key not in self._known:
-            # Where a name refers to itself, nothing is known.
+            # If the name refers to itself, the recursion finds this empty result.
             self._known[key] = ()
             meanings = (
                 meaning for meaning in self._follow(node, scope) if len(meaning) <= _MAX_MEANING
@@ -412,7 +429,7 @@ def _build_prelude_scope(prelude: str) -> Scope:
 
 
 def _name_prelude(name: str, prelude: str) -> str:
-    """Return what a name stands for in a prelude, or the name itself if the prelude does not define it."""
+    """Return the full name of what a prelude defines for a name; the name itself if the prelude does not define it."""
     names = _Names(_build_prelude_scope(prelude))
     return next(iter(names.list_meanings(ast.Name(name), names.prelude)))
 
@@ -422,13 +439,14 @@ def _list_scopes(scope: Scope) -> list[Scope]:
 
 
 def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
-    """Return the lines of a program with a call, in ascending order.
+    """Return the numbers of a program's lines with a call, in ascending order.
 
     Args:
         tree: The program.
         prelude: Its prelude, a key of `PRELUDE_TEXTS`.
         wanted: The call: a name such as `time.sleep`, a method of an object that the prelude defines such as
-            `tank_drive.on`, or the name of a function or method alone. Objects of the same class count as well.
+            `tank_drive.on`, or the name of a function or method alone. Methods of other objects of the same class count
+            as well.
     """
     scopes = _list_scopes(build_scope(Module("", "", tree)))
     names = _Names(_build_prelude_scope(prelude))
@@ -440,7 +458,7 @@ def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
     ]
     wanted = wanted.removesuffix("()")
     head, _, rest = wanted.partition(".")
-    # `sleep` alone is any function or method of that name.
+    # A name without a dot, such as `sleep`, means any function or method of that name.
     if not rest:
         return sorted(
             {
@@ -450,16 +468,16 @@ def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
             }
         )
     meant = _name_prelude(head, _DEFAULT_PRELUDE)
-    # `MoveTank.on` is also a method of an object of the class.
+    # `MoveTank.on` also means the method `on` of any object of the class.
     owner, _, method = f"{meant}.{rest}".rpartition(".")
     whole = {wanted, f"{meant}.{rest}", f"{owner}().{method}"}
-    # `DriveBase.straight` is one of the class that the program imports from Pybricks.
+    # `DriveBase.straight` also means the method of the class that the program imports from Pybricks.
     for own in {
         meaning for scope in scopes for meaning in names.list_meanings(ast.Name(head), scope)
     }:
         if own.partition(".")[0] == PYBRICKS:
             whole |= {f"{own}.{rest}", f"{own}().{rest}"}
-    # After `from ev3dev2.motor import *` a program writes `MoveTank` alone: accept it without the module, too.
+    # After `from ev3dev2.motor import *`, programs write only `MoveTank`, so the name without the module is accepted.
     starred = [f"{module}." for scope in scopes for module in scope.stars]
     whole |= {
         meaning.removeprefix(module)

@@ -24,11 +24,11 @@ from tuisim.programs.values import ValueWriter, is_library, is_own, is_plain, wr
 
 
 def read_function(function: Callable[..., object]) -> ProgramSource:
-    """Return a program that calls a function or a method of an object; `partial` gives it arguments.
+    """Return a program that calls a function, a method of an object, or a `partial` of one with its arguments.
 
-    Each line has the number that it has in the file of the function. Imports of libraries for a brick and of Python's
-    own, values, functions and classes that it uses are copied as they are written, or values as expressions that have
-    them; names without a definition are those of the prelude.
+    Each line has the number that it has in the function's file. The program contains everything that the function uses:
+    imports of libraries for a brick and of Python's own modules, functions and classes as they are written, and values
+    as they are written or as expressions that compute them. Names without a definition are those of the prelude.
 
     Raises:
         ConfigError: it is no function with a name and a source, takes arguments, uses something else, or its file has
@@ -65,7 +65,7 @@ def read_function(function: Callable[..., object]) -> ProgramSource:
 
 
 class _Block(NamedTuple):
-    """The lines of a function, a class or an instance."""
+    """The lines that define a function, a class or a value."""
 
     name: str
     file: str
@@ -75,7 +75,7 @@ class _Block(NamedTuple):
 
     @property
     def is_evaluated(self) -> bool:
-        """Whether it needs what it uses not only when it is called."""
+        """Whether the definition itself uses other names, such as a class or a function with default values."""
         node = parse_module("\n".join(self.lines)).body[0]
         return not isinstance(node, ast.FunctionDef) or bool(
             node.decorator_list or node.args.defaults or node.args.kw_defaults
@@ -88,11 +88,11 @@ class _Block(NamedTuple):
 
 
 class _Reader:
-    """Collects functions and classes, and the statements that define the other names."""
+    """Collects the functions, classes and values that a program needs, and writes the program."""
 
     def __init__(self) -> None:
         self._owners: dict[str, object] = {}
-        """What each name stands for."""
+        """The object to which each name refers."""
         self._statements: list[str] = []
         self._blocks: list[_Block] = []
         """Each after those that it uses."""
@@ -101,19 +101,24 @@ class _Reader:
         """What is used of each module."""
         self._writer = ValueWriter()
         self.unknown: set[str] = set()
-        """Names that are known from nowhere."""
+        """Names without any definition."""
         self.fixed: dict[str, str] = {}
         """Constants of which another one has been computed outside the program, with the name of that one."""
 
     def write_arguments(self, values: Sequence[object], named: Mapping[str, object]) -> str:
-        """Return the arguments of a call, after what they use has been added."""
+        """Return the text of a call's arguments, and add the definitions that they use.
+
+        Args:
+            values: The positional arguments.
+            named: The keyword arguments.
+        """
         texts = [self._write(value, "an argument", "partial") for value in values]
         texts += [f"{name}={self._write(value, name, 'partial')}" for name, value in named.items()]
         self._add_names(Surroundings({}, "", "", {}), "partial")
         return ", ".join(texts)
 
     def write_called(self, function: FunctionType | MethodType) -> str:
-        """Return the expression for a function, or for the method of an object, after it has been added."""
+        """Return the expression for a function, or for the method of an object, and add the definitions it uses."""
         name = function.__name__
         if isinstance(function, FunctionType):
             self.add_function(name, function, "the script")
@@ -129,10 +134,15 @@ class _Reader:
             raise build_refusal(name, type(value).__name__, user) from None
 
     def add_function(self, name: str, function: FunctionType, user: str) -> None:
-        """Add a function that is used by a name, and what it uses.
+        """Add a function and everything that it uses.
+
+        Args:
+            name: The function's name in the program.
+            function: The function.
+            user: What uses it, for errors.
 
         Raises:
-            ConfigError: it has no source, or uses what cannot go along.
+            ConfigError: it has no source, or uses something that cannot be copied.
         """
         if not self._claim(name, id(function), user):
             return
@@ -147,7 +157,7 @@ class _Reader:
             raise ConfigError(f"the function {own} has no source", hint) from None
         around = Surroundings.read_function(function, text)
         around.check_source([function], own)
-        # The program decorates it again.
+        # The copied source includes the decorators, so the object of that name must wrap this function.
         public: Any = around.values.get(own)
         if lines[0].lstrip().startswith("@") and inspect.unwrap(public) is not function:
             raise ConfigError(f"a decorator hides {own}", "give it functools.wraps")
@@ -155,7 +165,7 @@ class _Reader:
             self._add_block(_Block(own, function.__code__.co_filename, first, lines), around, own)
 
     def _add_class(self, name: str, kind: type, around: Surroundings, user: str) -> None:
-        """Add a class that is used by a name, and what it uses."""
+        """Add a class and everything that it uses; `user` is what uses it, for errors."""
         own = kind.__name__
         if kind.__module__ != around.values.get("__name__"):
             around = Surroundings.read_module(sys.modules[kind.__module__])
@@ -183,7 +193,7 @@ class _Reader:
         self._blocks.append(block._replace(lines=text.split("\n")))
 
     def _add_module(self, name: str, module: ModuleType, names: set[str], user: str) -> None:
-        """Add what is used of a module of one's own, and an object that has it in its place."""
+        """Add the names that are used of a user's own module, and a `SimpleNamespace` of these in its place."""
         self._claim(name, id(module), user)
         around = Surroundings.read_module(module)
         self._attributes.setdefault(name, set()).update(names)
@@ -194,17 +204,17 @@ class _Reader:
         self._blocks.append(_Block(name, "", 0, [f"{name} = SimpleNamespace({values})"]))
 
     def _claim_own(self, name: str, own: str, user: str) -> bool:
-        """Return whether what a new name stands for, a function or class, is new under its own name, too."""
+        """Register the original name of a function or class that is used by another name; return whether it is new."""
         if name == own:
             return True
         self._aliases.append(f"{name} = {own}")
         return self._claim(own, self._owners[name], user)
 
     def _claim(self, name: str, owner: object, user: str) -> bool:
-        """Return whether a name is new.
+        """Register a name for an object; return whether the name is new.
 
         Raises:
-            ConfigError: it stands for something else already.
+            ConfigError: the name stands for another object already.
         """
         is_new = name not in self._owners
         if self._owners.setdefault(name, owner) != owner:
@@ -212,7 +222,13 @@ class _Reader:
         return is_new
 
     def _add(self, name: str, around: Surroundings, user: str) -> None:
-        """Add the object that a function or a class uses by a name."""
+        """Add the object to which a name refers, and everything that it uses.
+
+        Args:
+            name: The name.
+            around: The names around the code that uses it.
+            user: What uses it, for errors.
+        """
         if statement := around.find_import(name):
             self._add_import(name, statement, user)
         elif not self._add_named(name, around.values[name], around, user):
@@ -223,7 +239,7 @@ class _Reader:
             self._statements.append(statement)
 
     def _add_named(self, name: str, value: Any, around: Surroundings, user: str) -> bool:
-        """Add a module, a class or a function; return whether it is one."""
+        """Add the object of a name if it is a module, a class or a function; return whether it is."""
         function = inspect.unwrap(value)
         if statement := write_import(name, value):
             self._add_import(name, statement, user)
@@ -238,7 +254,7 @@ class _Reader:
         return True
 
     def _add_value(self, name: str, around: Surroundings, user: str) -> None:
-        """Add a value as it is written, if this gives the value that it has, else by an expression that has it."""
+        """Add a value: as it is written, if that still has the same value, else as an expression for it."""
         origin, source = around.find_origin(name)
         if origin == name:
             around = source
@@ -255,14 +271,14 @@ class _Reader:
             self._blocks.append(_Block(name, *place, [f"{name} = {text}"]))
 
     def _write_value(self, name: str, around: Surroundings, user: str) -> str:
-        """Return the expression for a value, after what it uses has been added."""
+        """Return the expression for the value of a name, and add the definitions that it uses."""
         value = around.values[name]
         expression = around.find_expression(name)
         kind = type(value)
         try:
             text = self._writer.write(value)
         except (ConfigError, RecursionError):
-            # What Python itself cannot copy, such as a lock, is made again.
+            # A value that cannot be copied, such as a lock, is created by its original expression.
             if expression is None or not is_library(kind.__module__):
                 raise build_refusal(name, kind.__name__, user) from None
             text = ""
@@ -275,17 +291,21 @@ class _Reader:
         return text
 
     def _add_names(self, around: Surroundings, user: str) -> None:
-        """Add the classes and functions that values use."""
+        """Add the classes and functions that the expressions for values use."""
         for name, value in [*self._writer.names.items()]:
             self._add_named(name, value, around, user)
 
     def write(self, call: str) -> str:
-        """Return the program that ends with a call of the last function."""
+        """Return the text of the program, which ends with a call of the last function.
+
+        Args:
+            call: The call.
+        """
         own = self._blocks[-1].file
         reserved = {
             number for block in self._blocks if block.file == own for number in block.numbered
         }
-        # All on one line, so that the functions keep theirs; on the first if it is free, since defaults need them.
+        # All statements go on one line, so that functions keep their lines; on the first if free, as defaults use them.
         place = max(reserved) + 1 if 1 in reserved else 1
         lines = {place: "; ".join(self._statements)}
         defined = place
@@ -293,7 +313,7 @@ class _Reader:
             numbered = block.numbered
             is_early = block.is_evaluated and block.first <= place
             if block.file != own or is_early or not lines.keys().isdisjoint(numbered):
-                # A class may have its other name as a base.
+                # A class may be a base under its other name, so that name follows its definition.
                 names = [alias for alias in self._aliases if alias.endswith(f" = {block.name}")]
                 moved = [*block.lines, *names]
                 first = (max(place, defined) if block.is_evaluated else place) + 1
@@ -310,6 +330,12 @@ class _Reader:
 
 
 def build_refusal(name: str, kind: str, user: str) -> ConfigError:
-    """Return the error for an object of a kind that cannot go along with its user."""
+    """Return the error for an object that cannot be copied into a program.
+
+    Args:
+        name: The name of the object.
+        kind: What it is, in words.
+        user: The function or class that uses it.
+    """
     message = f"{user} uses {name}, a {kind}, which cannot go along"
     return ConfigError(message, "import or make it inside the function")

@@ -18,11 +18,10 @@ _OWN_NAMES = (ast.Lambda, ast.ClassDef, ast.ListComp, ast.SetComp, ast.DictComp,
 
 
 def map_line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ...]]:
-    """Return the variables that each line of a program, from 1, has assigned.
+    """Return the variables to show beside each line of a paused program: those that it has assigned, by line from 1.
 
-    Of the lines above the current one, or in a loop around it, that assign a variable, only the one that has run last
-    counts, and the current line itself. A line that assigns a constant does not count if the variable has another value
-    by now.
+    Of several lines that assign a variable, above the current line or in a loop around it, only the one that ran last
+    and the current line are included. A line that assigns a constant is left out if the variable now has another value.
 
     Args:
         text: The program that runs.
@@ -50,7 +49,7 @@ def map_line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable
 
 
 def _find_function(tree: ast.Module, frame: FrameState) -> _Function | None:
-    """Return the definition of a frame's function; None if the program has none."""
+    """Return the definition of the function that a frame runs; None if the program does not define it."""
     functions = [
         node
         for node in ast.walk(tree)
@@ -64,10 +63,12 @@ def _find_function(tree: ast.Module, frame: FrameState) -> _Function | None:
 def _find_values(
     scope: ast.Module | _Function, frame: FrameState | None, variables: Sequence[Variable]
 ) -> dict[int, tuple[Variable, ...]]:
-    """Return the variables that each line of a scope has assigned.
+    """Return the variables that each line of a scope has assigned, by line.
 
     Args:
-        frame: The frame that runs the scope; None if it has been left.
+        scope: The program or a function.
+        frame: The frame that runs the scope; None if it has ended.
+        variables: The variables of the scope.
     """
     by_name = {variable.name: variable for variable in variables}
     here = frame.line if frame else 0
@@ -76,7 +77,7 @@ def _find_values(
         for node in _walk_scope(scope)
         if isinstance(node, _LOOPS)
     ]
-    # The outermost loop around the current line.
+    # These are the lines of the outermost loop around the current line.
     first, last = min(
         ((start, end) for start, end in loops if start <= here <= end), default=(0, -1)
     )
@@ -88,7 +89,7 @@ def _find_values(
             lines_of.setdefault(name, []).append(line)
 
     def rank_age(line: int) -> tuple[int, int]:
-        """Return a sort key: first lines of this round of the loop, then of the round before, then those before it."""
+        """Return a sort key for when a line ran: in this iteration of the loop, in the one before, or earlier."""
         if not first <= line <= last:
             return 2, -line
         return (0 if line < here else 1), -line
@@ -104,7 +105,7 @@ def _find_values(
 
 
 def _walk_scope(scope: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes of a scope, without those of functions, classes and comprehensions in it."""
+    """Yield the syntax nodes of a scope, without those of functions, classes and comprehensions in it."""
     for node in ast.iter_child_nodes(scope):
         if not isinstance(node, (*_OWN_NAMES, ast.FunctionDef, ast.AsyncFunctionDef)):
             yield node
@@ -112,7 +113,7 @@ def _walk_scope(scope: ast.AST) -> Iterator[ast.AST]:
 
 
 def _list_assignments(scope: ast.Module | _Function) -> Iterator[tuple[int, str, str | None]]:
-    """Yield line and name of each assignment in a scope, and the text of its value, None if it is no constant."""
+    """Yield line, name and value of each assignment in a scope; the value is its text if it is constant, else None."""
     if not isinstance(scope, ast.Module):
         arguments = scope.args
         parameters = [

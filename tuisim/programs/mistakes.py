@@ -11,12 +11,12 @@ from itertools import pairwise
 
 
 def find_fault(text: str) -> tuple[str, int] | None:
-    """Return why a program does not compile, and the line, 0 if there is none; None if it compiles."""
+    """Return why a program does not compile, with the line's number or 0 without one; None if it compiles."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             data = text.encode("utf-8", "surrogateescape")
-            # From bytes, in its own encoding: a line may name one that there is not.
+            # The text is compiled as bytes, since a line in it may name an encoding that does not exist.
             encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
             compile(text.encode(encoding, "surrogateescape"), "program", "exec", dont_inherit=True)
     except SyntaxError as error:
@@ -27,7 +27,7 @@ def find_fault(text: str) -> tuple[str, int] | None:
 
 
 def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """Yield the first line with each kind of slip, such as a stop without `()`, and what is wrong with it, in words."""
+    """Yield for each kind of slip, such as a stop without `()`, the first line with it and a description."""
     for find_slip in (
         *(_find_uncalled_method, _find_equal_branches, _find_idle_comparison),
         _find_short_wait,
@@ -37,7 +37,10 @@ def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 
 def find_idle_definition(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the last function or class of a program that only defines, and why nothing happens; else None."""
+    """Return the last function or class of a program that only has definitions, and why it does nothing.
+
+    The result is None for others.
+    """
     last: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | None = None
     for node in tree.body:
         match node:
@@ -55,13 +58,13 @@ def find_idle_definition(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _only_makes(node: ast.AST) -> bool:
-    """Return whether all calls in a node have the name of a class: they only make objects."""
+    """Return whether all calls in a node have the name of a class, so that they only create objects."""
     calls = (part.func for part in ast.walk(node) if isinstance(part, ast.Call))
     return all(ast.unparse(name).rpartition(".")[2][:1].isupper() for name in calls)
 
 
 def _find_uncalled_method(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line that names a method without calling it."""
+    """Return the first line that names a method without calling it, and a description; None if there is none."""
     for node in ast.walk(tree):
         match node:
             case ast.Expr(value=ast.Attribute() as name):
@@ -71,7 +74,10 @@ def _find_uncalled_method(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _find_equal_branches(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line with an `if` whose `else`, or the next `if` with the opposite question, does the same."""
+    """Return the first line with an `if` whose opposite case does the same, and a description; None if there is none.
+
+    The opposite case is its `else`, or the next `if` with the opposite comparison.
+    """
     pairs: list[tuple[int, str]] = []
     for node in ast.walk(tree):
         if isinstance(node, ast.If) and node.orelse and _dump(node.body) == _dump(node.orelse):
@@ -85,7 +91,7 @@ def _find_equal_branches(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _is_opposite(first: ast.stmt, second: ast.stmt) -> bool:
-    """Return whether two `if` do the same, one below a limit and the other above."""
+    """Return whether two `if` statements do the same, one below a limit and the other above it."""
     match first, second:
         case (
             ast.If(test=ast.Compare(ops=[way]) as test, orelse=[]),
@@ -104,9 +110,9 @@ def _dump(nodes: Sequence[ast.AST]) -> list[str]:
 
 
 def _find_idle_comparison(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line that compares and does nothing with the result.
+    """Return the first line with a comparison whose result is not used, and a description; None if there is none.
 
-    A comparison in a `try` is left out: whether it raises is a result, too.
+    A comparison in a `try` is left out: the program may use whether it raises an error.
     """
     nodes = [*ast.walk(tree)]
     tried = {part for node in nodes if isinstance(node, ast.Try) for part in ast.walk(node)}
@@ -128,6 +134,7 @@ def _describe_idle(test: ast.Compare, function: str) -> str:
     """Return what is wrong with a comparison whose result is not used.
 
     Args:
+        test: The comparison.
         function: The name of the function whose last line it is; empty for none.
     """
     words = ast.unparse(test)

@@ -1,4 +1,4 @@
-"""Names in a program that stand for nothing, and attributes that what they stand for has not."""
+"""Names in a program that are not defined, and attributes that objects do not have."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from tuisim.programs.robot.course import list_global_names
 
 _IMPORTS = (ast.Import, ast.ImportFrom)
 _ASKS_FIRST = re.compile(r"\b(hasattr|getattr|setattr|pybricks)\b")
-"""Programs that look themselves what there is; and Pybricks, whose versions have different members."""
+"""Functions and libraries of programs that are not checked: they test themselves what exists, or versions differ."""
 
 Members = Callable[[str, str, int, int], frozenset[str] | None]
 """`completion.members`, which tests replace."""
 
 
 class AttributeCheck:
-    """Looks for unknown attributes; caches the attributes of an object until the line that defines it changes.
+    """Finds unknown attributes in a program; caches the attributes of an object until the line that defines it changes.
 
     Args:
-        members: Returns the names that an object has.
+        members: Returns the names of an object's attributes.
     """
 
     def __init__(self, members: Members) -> None:
@@ -43,10 +43,10 @@ class AttributeCheck:
         self._known: dict[tuple[str, ...], frozenset[str] | None] = {}
 
     def find_unknown_attributes(self, text: str, path: str) -> tuple[UnknownName, ...]:
-        """Return the unknown attributes of names that get an object only once, in the program or its prelude.
+        """Return the unknown attributes of names that are assigned only once, in the program or its prelude.
 
         Args:
-            text: The program as it stands in the editor.
+            text: The present text of the program in the editor.
             path: Its file, or its name.
         """
         program = parse_unfinished(text, path)
@@ -80,13 +80,13 @@ class AttributeCheck:
 
 
 def _find_end(lines: Sequence[str], node: ast.expr) -> tuple[int, int]:
-    """Return the row, from 0, and the column in characters just after the end of a node."""
+    """Return row and column (in characters, both from 0) just after the end of a node."""
     row = (node.end_lineno or 1) - 1
     return row, count_column(lines[row], node.end_col_offset)
 
 
 def _find_definitions(tree: ast.Module) -> dict[str, str]:
-    """Return, by name, the statement at the top level that gives the name its object."""
+    """Return the top-level statements that define names, by name."""
     statements: dict[str, str] = {}
     for node in tree.body:
         match node:
@@ -98,7 +98,7 @@ def _find_definitions(tree: ast.Module) -> dict[str, str]:
 
 
 def _find_uses(tree: ast.Module) -> Iterator[tuple[ast.Attribute, ast.Name]]:
-    """Yield each attribute that is read of a name which gets one object only, and that name."""
+    """Yield each attribute that is read of a name which is assigned only once, and that name."""
     attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute)]
     assigned = {node.attr for node in attributes if not isinstance(node.ctx, ast.Load)}
     bound = Counter(_list_bound_names(tree))
@@ -114,7 +114,7 @@ def _find_uses(tree: ast.Module) -> Iterator[tuple[ast.Attribute, ast.Name]]:
 
 
 def _list_bound_names(tree: ast.Module) -> Iterator[str]:
-    """Yield each name as often as it gets an object, in whatever scope."""
+    """Yield each name once for each place that assigns or defines it, in any scope."""
     for node in ast.walk(tree):
         match node:
             case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
@@ -155,7 +155,7 @@ _WORD = re.compile(r"[^\W\d]\w*")
 
 @dataclass(frozen=True, slots=True)
 class UnknownName:
-    """A name or an attribute that does not exist, or a line that is not Python, and where it is in the text."""
+    """An unknown name or attribute, or a line that is not Python, with its position in the text."""
 
     name: str
     row: int
@@ -172,7 +172,7 @@ class UnknownName:
 
     @property
     def message(self) -> str:
-        """What is wrong, and the hint."""
+        """The fault and the hint, as text."""
         wrong = self.fault or (
             f"`{self.owner}` has no `{self.name}`"
             if self.owner
@@ -183,7 +183,7 @@ class UnknownName:
 
 @dataclass(slots=True)
 class _SeenNames:
-    """The names that a program's code uses and defines."""
+    """The global names that a program's code reads and defines."""
 
     loaded: dict[tuple[int, int, int], str] = field(default_factory=dict)
     """Globals that are read, by line, first and last byte."""
@@ -193,10 +193,10 @@ class _SeenNames:
 
 
 def find_faulty_line(text: str, name: str) -> UnknownName | None:
-    """Return the line because of which a program is not Python; None if it is, or if no line is known.
+    """Return the line with a program's syntax error; None if there is no error, or if its line is not known.
 
     Args:
-        text: The program as it stands in the editor.
+        text: The present text of the program in the editor.
         name: The name of its file.
     """
     program = parse_unfinished(text, name)
@@ -213,7 +213,7 @@ def find_unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
     """Return the unknown names of a program; None if the program cannot be read.
 
     Args:
-        text: The program as it stands in the editor.
+        text: The present text of the program in the editor.
         name: The name of its file.
     """
     program = parse_unfinished(text, name)
@@ -222,7 +222,7 @@ def find_unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
         return None
     seen = _SeenNames()
     with warnings.catch_warnings():
-        # Python shows the warnings when the program runs.
+        # Warnings are ignored here; Python shows them when the program runs.
         warnings.simplefilter("ignore")
         try:
             _search(compile(tree, name, "exec", dont_inherit=True), seen)
@@ -241,7 +241,10 @@ def find_unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
 
 
 def parse_readable(text: str) -> tuple[ast.Module | None, set[str]]:
-    """Return the syntax tree of a program without the lines that are not Python yet, and the words of these lines."""
+    """Return the syntax tree of a program without the lines that are not Python, and the words in those lines.
+
+    The tree is None if too many lines are not Python.
+    """
     lines = source_lines(text)
     readable = list(lines)
     words = set[str]()
@@ -260,7 +263,7 @@ def parse_readable(text: str) -> tuple[ast.Module | None, set[str]]:
 
 
 def _replace_line(lines: Sequence[str], index: int) -> str:
-    """Return a statement to replace a line that is not Python: the head of a block if a block follows."""
+    """Return a statement that replaces a line with a syntax error: the head of a block if a block follows."""
     indent = _read_indent(lines[index])
     below = next((line for line in lines[index + 1 :] if line.strip()), "")
     return indent + ("if True:" if len(_read_indent(below)) > len(indent) else "pass")
@@ -281,7 +284,10 @@ def _has_unseen_names(tree: ast.Module) -> bool:
 
 
 def _search(code: types.CodeType, seen: _SeenNames, is_module: bool = True) -> None:
-    """Note the global names that code reads and those that it defines; names in the body of a class are not global."""
+    """Add the global names that compiled code reads and defines to `seen`.
+
+    Names in the body of a class are not global.
+    """
     own = set[str]()
     for instruction in dis.get_instructions(code):
         if instruction.opname in _STORES:
@@ -306,7 +312,7 @@ def _search(code: types.CodeType, seen: _SeenNames, is_module: bool = True) -> N
 
 
 def count_column(line: str, byte: int | None) -> int:
-    """Return the column in characters for one that Python counts in bytes."""
+    """Return a column in characters from one in bytes of UTF-8, as Python's errors have it."""
     return len(line.encode()[:byte].decode(errors="ignore"))
 
 
@@ -316,9 +322,10 @@ def _list_prelude_names(prelude: str) -> frozenset[str]:
 
 
 def _build_hint(name: str, follows: str, own: set[str], within: Mapping[str, str]) -> str:
-    """Return what may help with a name that is not defined.
+    """Return a hint for a name that is not defined.
 
     Args:
+        name: The name.
         follows: The character after the name.
         own: The names that the program defines.
         within: Local variables, each with its function.
@@ -341,7 +348,7 @@ def _build_hint(name: str, follows: str, own: set[str], within: Mapping[str, str
 
 
 def guess_name(name: str, names: Set[str]) -> str:
-    """Return the name that may have been meant; empty if none is near."""
+    """Return the name among `names` that is most similar to an unknown one; empty if none is similar."""
     known = (
         candidate
         for candidate in sorted(names)

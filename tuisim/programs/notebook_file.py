@@ -42,7 +42,7 @@ class NotebookProgram:
 
 @dataclass(frozen=True, slots=True)
 class _Words:
-    """A magic line of a notebook, without variables, which only the notebook knows."""
+    """A magic line of a notebook, without the options that contain the notebook's variables."""
 
     magic: re.Match[str]
     settings: Mapping[str, Any]
@@ -55,7 +55,7 @@ def is_notebook(word: str) -> bool:
 
 
 def _read_cells(path: Path) -> Iterator[tuple[str, str]]:
-    """Yield (cell type, text)."""
+    """Yield the type and the text of each cell of a notebook."""
     file_name = str(path)
     missing = "there is no such notebook"
     data = read_bytes(path, MAX_NOTEBOOK_BYTES, ConfigError, missing, folder=missing)
@@ -72,7 +72,7 @@ def _read_cells(path: Path) -> Iterator[tuple[str, str]]:
 
 
 def read_notebook_programs(path: Path) -> list[NotebookProgram]:
-    """Return the programs in a notebook, from the top; settings with variables of the notebook are left out.
+    """Return the programs in a notebook, from the top, without settings that contain the notebook's variables.
 
     Raises:
         ConfigError: it cannot be read, is no notebook, or a magic line in it is wrong.
@@ -111,7 +111,7 @@ def read_notebook_programs(path: Path) -> list[NotebookProgram]:
 
 
 def _parse_magics(text: str, where: str) -> Iterator[_Words]:
-    """Yield each magic that sets the world, parsed; a cell magic is the first line of its cell."""
+    """Yield each magic of a cell that sets the world, parsed; a cell magic is in the first line of its cell."""
     stripped = text.lstrip()
     lines = source_lines(stripped)
     if stripped.startswith("%%"):
@@ -136,7 +136,7 @@ def _drop_variables(words: str) -> tuple[str, str]:
     """Return a magic line without the options that contain variables, and those variables."""
     unknown = ", ".join(_VARIABLE.findall(words))
     constant: list[str] = []
-    # A word may contain a variable with blanks in its braces.
+    # The pattern keeps a variable in braces, which may contain blanks, in one word.
     for word in re.findall(rf"(?:{_VARIABLE.pattern}|\S)+", words) if unknown else ():
         if not _VARIABLE.search(word):
             constant.append(word)

@@ -11,7 +11,12 @@ from tuisim.programs.robot.library import DEVICES, SENSES_WALLS
 
 
 def describe_plugged(run: StoredRun) -> str:
-    """Return in one sentence which parts a program got that its text did not show, and what to do; empty for none."""
+    """Return in a sentence which parts were plugged in during a run, as the program's text did not show them.
+
+    Otherwise the text is empty.
+
+    It also says how to have them from the start.
+    """
     parts = list_parts(run.plugged)
     if not parts:
         return ""
@@ -21,26 +26,29 @@ def describe_plugged(run: StoredRun) -> str:
 
 
 def _name_remedy(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
-    """Return the option that gives a sensor walls to see; empty if none needs walls, or if there are some."""
+    """Return the option that adds walls for a sensor that was plugged in.
+
+    The result is empty if no sensor needs walls, or if there are some.
+    """
     is_blind = spec.world.is_open and any(DEVICES.get(part.part) in SENSES_WALLS for part in parts)
     return "; there are no walls: --walls on" if is_blind else ""
 
 
 def describe_newest(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
-    """Return what was plugged in last; empty for a left wheel, which is described together with the right one."""
+    """Return in words which part was plugged in last; empty for a left wheel, which is described with the right one."""
     last = parts[-2:] if parts[-1].role == RIGHT else parts[-1:]
     words = f"{list_parts(last)}{_name_remedy(last, spec)}"
     return "" if parts[-1].role == LEFT else f"— plugged in, because the program opened it: {words}"
 
 
 def list_parts(parts: Sequence[PluggedPart]) -> str:
-    """Return the parts with their ports and the lines that asked for them; empty for none."""
+    """Return the parts as text, with their ports and the program's lines that use them; empty for none."""
     right = {(part.tick, part.line): part.port for part in parts if part.role == RIGHT}
     words = []
     wheels = {part.port: number for number, part in enumerate(parts) if part.role in (LEFT, RIGHT)}
     for number, part in enumerate(parts):
         if not part.role and wheels.get(part.port, 0) > number:
-            # The motor has become that of a wheel, which comes later in the list.
+            # The motor is listed later, as that of a wheel.
             continue
         line = f" (line {part.line})" if part.line else ""
         kind = DEVICES.get(part.part) or f"{MOTOR_KIND_OF[part.part].replace('-', ' ')} motor"

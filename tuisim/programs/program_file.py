@@ -42,7 +42,7 @@ from tuisim.settings.shared_options import parse_words
 
 
 class WrongMat(NamedTuple):
-    """A magic line with a mat that cannot be laid out."""
+    """A mat in a program's magic line that does not exist or cannot be read."""
 
     line: int
     """From 1."""
@@ -51,18 +51,18 @@ class WrongMat(NamedTuple):
 
     @property
     def words(self) -> str:
-        """What is wrong, with the mat that may be meant, in one line."""
+        """The fault, with the mat that may be meant, in one line."""
         guess, question, _ = self.error.hint.partition("?")
         return f"{self.error.message.partition(': ')[2]}{f', {guess}?' if question else ''}"
 
 
 def find_wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
-    """Return what is wrong with the mat in a magic line; None if nothing is wrong, or if the mat is not judged here.
+    """Return the fault of the mat in a magic line; None if there is none, or if this function does not check the mat.
 
     Args:
         text: The program.
         name: The name of its file.
-        folder: The user's own mats.
+        folder: The folder of the user's own mats.
     """
     try:
         magic = find_magic(text, name)
@@ -86,7 +86,12 @@ def find_wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
 
 
 def drop_wrong_mat(source: ProgramSource, folder: str | None) -> ProgramSource:
-    """Return a program without the mat of its magic line if the mat is wrong, so that it can be opened and mended."""
+    """Return a program without a wrong mat in its magic line, so that it can be opened and corrected.
+
+    Args:
+        source: The program.
+        folder: The folder of the user's own mats.
+    """
     if find_wrong_mat(source.program.text, source.program.name, folder) is None:
         return source
     return replace(
@@ -169,7 +174,7 @@ class ProgramSource:
 
 
 class ProgramFile(NamedTuple):
-    """One example program."""
+    """The file of an example program."""
 
     name: str
     """File name, such as `log_greys.py`."""
@@ -189,7 +194,7 @@ def _read_title(path: Path) -> str:
 
 
 def list_programs() -> list[ProgramFile]:
-    """Return the example programs by name.
+    """Return the files of the example programs, sorted by name.
 
     Raises:
         ConfigError: there is no folder of programs.
@@ -201,7 +206,7 @@ def list_programs() -> list[ProgramFile]:
 
 
 def _read_head(lines: list[str]) -> Iterator[tuple[int, str]]:
-    """Yield (line number, text) of the lines before the first statement, without the docstring."""
+    """Yield number and text of each line before the first statement, without the docstring."""
     closing = ""
     for number, raw in enumerate(lines, start=1):
         line = raw.strip()
@@ -218,7 +223,7 @@ def _read_head(lines: list[str]) -> Iterator[tuple[int, str]]:
 
 
 def resolve_files(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the options of a magic line, with file names resolved from the folder of the program or its notebook."""
+    """Return the options of a magic line, with file names resolved in the folder of the program or notebook."""
     resolved = dict(options)
     for field_name in FILE_FIELDS & resolved.keys():
         word = resolved[field_name]
@@ -233,7 +238,11 @@ def is_file_name(word: str) -> bool:
 
 
 def find_magic(text: str, name: str) -> Magic | None:
-    """Return the magic line before the program's first statement, or None; errors blame the file `name`.
+    """Return the magic line before the program's first statement; None if there is none.
+
+    Args:
+        text: The program.
+        name: The name of its file, for errors.
 
     Raises:
         ConfigError: the magic is not one of `PRELUDES`, or an option in it is wrong.
@@ -257,7 +266,7 @@ def find_magic(text: str, name: str) -> Magic | None:
 
 
 def replace_mat(text: str, name: str, mat: str) -> str:
-    """Return a program whose magic line names a mat; a program without one gets a line for the preloaded prelude.
+    """Return a program with another mat in its magic line; if it has no magic line, with a new one.
 
     Args:
         text: The program.
@@ -278,7 +287,7 @@ def replace_mat(text: str, name: str, mat: str) -> str:
     new_options = {**magic.options, "background": mat}
     before = str(magic.options.get("background", "\n"))
     quoted = shlex.quote(mat)
-    # If the line names several mats, the last one counts.
+    # `rpartition` finds the last mat in the line, which is the one that counts.
     named = (line.rpartition(word) for word in (f'"{before}"', shlex.quote(before), before))
     for changed in (
         *(f"{part[0]}{quoted}{part[2]}" for part in named if part[1]),
@@ -293,10 +302,10 @@ def replace_mat(text: str, name: str, mat: str) -> str:
 
 
 def _find_docstring_end(lines: list[str]) -> int:
-    """Return the index of the line after the docstring, or else after lines such as `#!` that must come first."""
+    """Return the index of the line after the docstring; without one, after lines such as `#!` that must come first."""
     try:
         first = parse_module("\n".join(lines)).body[:1]
-    # The program is being edited, and cannot be parsed.
+    # The program cannot be parsed while it is being edited.
     except NOT_PYTHON:
         first = []
     match first:
@@ -308,11 +317,12 @@ def _find_docstring_end(lines: list[str]) -> int:
 
 
 def choose_prelude(text: str, path: str = "") -> str:
-    """Return the prelude of a program without a magic line.
+    """Return the prelude for a program without a magic line.
 
     It is `none` if the program imports the library, or uses no name of a prelude.
 
     Args:
+        text: The program.
         path: The program's file, beside which its modules are; empty for none.
     """
     if has_library_import(text):
@@ -326,7 +336,7 @@ def choose_prelude(text: str, path: str = "") -> str:
     if not (used - defined) & (ready | _READS_ANY_NAME):
         return "none"
     if "import *" in text:
-        # The names may be those of a module of its own, which imports the library.
+        # After `import *`, names may come from an own module, which imports the library.
         modules = read_modules(Program("", text, path=path))
         if find_library(modules) is not None and not has_course_names(modules, text):
             return "none"
@@ -354,6 +364,11 @@ def has_library_import(text: str) -> bool:
 def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
     """Return a program from its text.
 
+    Args:
+        text: The text.
+        name: The name of its file, for errors.
+        path: The file, beside which its modules are; empty for none.
+
     Raises:
         ConfigError: its magic line is wrong.
     """
@@ -369,11 +384,14 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
 
 
 def parse_unfinished(text: str, name: str) -> Program:
-    """Return a program that is being edited; with the prelude unless it has a magic line or imports a library."""
+    """Return a program that is being edited.
+
+    Without a magic line and imports of a library, it has the default prelude.
+    """
     try:
         source = parse_program(text, name)
     except ConfigError:
-        # Its magic line is not finished.
+        # The magic line is not finished, so the default prelude is used.
         return Program(name, text, "preloaded")
     if source.has_magic or has_library_import(text):
         return source.program
@@ -381,7 +399,7 @@ def parse_unfinished(text: str, name: str) -> Program:
 
 
 def find_program(word: str) -> Path:
-    """Return the file that a word names: a path, else an example program. The file may be missing."""
+    """Return the path that a word of the command line names: a file, which may be missing, or an example program."""
     path = Path(word)
     if not path.name or path.parent != Path() or os.path.exists(path):
         return path
@@ -392,12 +410,14 @@ def find_program(word: str) -> Path:
 
 
 def read_program(path: Path, *, as_python: bool = False, alone: bool = False) -> ProgramSource:
-    """Read a program file; files in its magic line are looked up beside it.
+    """Read a program file; names of files in its magic line are relative to its folder.
 
     Args:
-        alone: Whether files beside it are not its modules, as in a folder with the files of a whole class.
-        as_python: Whether a file that is not text is read all the same, its wrong bytes as lone surrogates: when it is
-            run, it raises what Python raises.
+        path: The file.
+        as_python: Whether to read a file that is not UTF-8, too, with wrong bytes as lone surrogates: when it is run,
+            it
+            raises the error that Python raises.
+        alone: Whether other files in its folder are not its modules, as in a folder with the files of a whole class.
 
     Raises:
         ConfigError: it is missing, a directory, not Python text, too large, or its magic line is wrong.
@@ -436,14 +456,15 @@ def build_program(text: str, path: Path | None, name: str, *, alone: bool = Fals
 
     Args:
         text: The source, with `\\n` as line endings.
-        path: Its file, which may not exist, and beside which files in its magic line are; None if it has none.
+        path: Its file, which may not exist; names of files in its magic line are relative to its folder. None without
+            one.
         name: Its name, for errors and tables.
         alone: As in `read_program`.
 
     Raises:
         ConfigError: its magic line is wrong.
     """
-    # A path inside of a file has no modules beside it.
+    # A path inside the file itself, used if the program is alone, has no modules beside it.
     where = path / name if path and alone else path
     source = parse_program(text, name, str(where) if where else "")
     return replace(
@@ -468,10 +489,10 @@ def _decode(data: bytes, file_name: str, as_python: bool) -> str:
 
 
 def _suggest_neighbours(path: Path) -> str:
-    """Return the hint for a missing file: similar names beside it, else similar examples, else how to list them."""
+    """Return the hint for a missing file: similar names in its folder, else similar examples, else how to list them."""
     close = close_beside(path, (".py",))
     if not close and path.parent == Path():
-        # A word without a folder may also be meant as an example, which needs no suffix.
+        # A word without a folder may also be meant as an example's name, without a suffix.
         stems = [file.path.stem for file in list_programs()]
         close = [f"{stem}{path.suffix}" for stem in closest(path.stem, stems)]
     return did_you_mean(close) or "see `tuisim programs` for examples"

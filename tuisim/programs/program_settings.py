@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from tuisim.programs.robot.report import ProgramRobot
 
 FOR_SPIKE = "a program in LEGO's own Python for SPIKE, which tuisim does not run"
-"""What is told about a program that imports one of these."""
+"""The text about a program that imports a module of LEGO's Python for SPIKE."""
 
 
 BRICK_PROFILE = "ev3"
@@ -65,7 +65,7 @@ _COURSE_RULES = (
 
 @dataclass(frozen=True, slots=True)
 class SourceFacts:
-    """What the source of a program shows about the run that it needs."""
+    """Facts in the source of a program about the settings that its run needs."""
 
     library: Library | None = None
     """The library for a brick that it imports, in itself or in its own modules."""
@@ -80,7 +80,7 @@ class SourceFacts:
     shown_ports: tuple[str, ...] | None = None
     """The ports of the parts that it shows; None if it does not bring its library."""
     senses_walls: bool = False
-    """Whether it makes a sensor that can tell a wall."""
+    """Whether it creates a sensor that can sense a wall."""
     hides_parts: bool = False
     """Whether it names classes of motors or sensors, and its text shows no part that is made."""
     for_other_hub: bool = False
@@ -90,7 +90,7 @@ class SourceFacts:
 
     @property
     def brick_profile(self) -> str:
-        """The profile with the rules of the real brick for which the program is; it must import a library."""
+        """The profile of the real brick for which the program is; the program must import a library."""
         assert self.library is not None
         return PYBRICKS_4.name if self.version_4_name else PROFILES_BY_LIBRARY[self.library]
 
@@ -102,7 +102,7 @@ PROGRAM_PATHS = ("robot", "profile", "for_brick", *GROUND_PATHS)
 
 @dataclass(frozen=True, slots=True)
 class Decided:
-    """The settings that the source of a program decides, where nobody has chosen them."""
+    """Settings that the source of a program decides where the user has not chosen them."""
 
     layer: Mapping[str, Any] = field(default_factory=dict)
     """By path; below everything that somebody has chosen."""
@@ -123,12 +123,12 @@ class Decided:
 
     @property
     def note(self) -> str:
-        """What was decided and how to change it, in one line; empty if nothing was."""
+        """The decisions and how to change them, in one line; empty if nothing was decided."""
         return f"{self.said}. {self.hint}" if self.said else ""
 
     @property
     def refusal(self) -> str:
-        """The first line that the brick's Python would refuse, and how many follow; empty for none."""
+        """The first line that the brick's Python would refuse, and the number of further ones; empty for none."""
         if not self.refused:
             return ""
         first, *others = self.refused
@@ -137,13 +137,13 @@ class Decided:
 
 @dataclass(frozen=True, slots=True)
 class ProgramSettings:
-    """The settings of a run of a program, and which of them its source decided."""
+    """The settings of a program's run, with those that its source decided."""
 
     settings: Settings
     decided: Decided
 
     def apply(self, program: Program) -> Program:
-        """Return a program with the prelude and arguments of the settings, and the ports of the parts that it shows."""
+        """Return a program with the prelude, arguments and shown ports of these settings."""
         prelude = self.settings["preload"] or program.prelude
         return replace(
             program,
@@ -154,7 +154,10 @@ class ProgramSettings:
 
 
 def read_source_facts(program: Program) -> SourceFacts:
-    """Return what the source of a program shows; nothing if it is not Python, or too deeply nested to be read."""
+    """Return the facts in the source of a program.
+
+    They have default values if the program is not Python, or too deeply nested to be read.
+    """
     facts = SourceFacts()
     try:
         modules = read_modules(program)
@@ -168,14 +171,14 @@ def read_source_facts(program: Program) -> SourceFacts:
             return replace(facts, unread=f"it is {FOR_SPIKE}", for_other_hub=True)
         if not modules or library is None:
             return replace(facts, unread=find_missing_module(program, modules))
-        # Most programs are the course's, and need no reading of their own.
+        # Only programs with a library, which most of the course's do not import, are analysed further.
         return _collect_facts(program, modules, facts)
     except (RecursionError, SyntaxError):
         # When the program runs, Python reports what is wrong with it.
         return SourceFacts()
     except RobotError as error:
         why = f"its source describes an impossible robot ({error.message})"
-    except Exception as error:  # no text ends a run before it begins
+    except Exception as error:  # A fault in reading the text must not prevent the run.
         why = f"tuisim failed to read the robot from its source ({type(error).__name__})"
     unread = f"{why}: it gets the default robot"
     return replace(facts, unread=unread, shown_ports=() if facts.library else None)
@@ -203,7 +206,7 @@ def _collect_facts(program: Program, modules: dict[str, Module], facts: SourceFa
     except RobotError as error:
         if not usual.hub:
             raise
-        # The default robot has an EV3.
+        # The default robot is an EV3, so a program for a hub needs its own robot.
         impossible = f"the rest of it is impossible ({error.message})"
         robot = BuiltRobot(RobotChoice(usual), (RobotPart(usual.hub, "hub"),), (impossible,))
     return replace(
@@ -221,7 +224,7 @@ def _collect_facts(program: Program, modules: dict[str, Module], facts: SourceFa
 def _find_library(program: Program, modules: dict[str, Module]) -> Library | None:
     """Return the library for a brick that a program uses; None for none.
 
-    Its imports say so, else its first line, or the device files that it opens, which are those below ev3dev2.
+    Its imports decide, else its first line, else the device files that it opens, which mean ev3dev2.
     """
     if library := find_library(modules):
         return library
@@ -235,7 +238,7 @@ def require_library(program: Program, profile: ProfileSpec) -> None:
     """Check that a profile is for the library and the hub that a program uses, if it uses one.
 
     Raises:
-        ProfileError: it is for another one.
+        ProfileError: the profile is for another library or hub.
     """
     for_course = program.prelude != _NO_PRELUDE
     modules = read_modules(program)
@@ -251,13 +254,13 @@ def build_program_settings(
     below: Mapping[str, Any] | None = None,
     insists: bool = True,
 ) -> ProgramSettings:
-    """Return the settings of a program.
+    """Return the settings of a program's run.
 
     Args:
         source: The program with the options of its magic line.
         above: Layers that override these options, such as a world file and the command line, by path.
         below: The layer that they override: the user's defaults.
-        insists: Whether a chosen profile must be for the program's library; else another profile takes its place.
+        insists: Whether a chosen profile for another library is an error; otherwise it is replaced.
 
     Raises:
         ProfileError: the chosen profile or the prelude is for another library than the program's.
@@ -273,7 +276,7 @@ def build_program_settings(
 
 
 def find_free_paths(settings: Settings) -> frozenset[str]:
-    """Return which of `PROGRAM_PATHS` nobody has chosen; walls are not free if the floor was chosen."""
+    """Return which of `PROGRAM_PATHS` the user has not chosen; walls count as chosen if the floor was chosen."""
     free = {path for path in PROGRAM_PATHS if settings.given.get(path) is None}
     return frozenset(free if "floor" in free else free - {*GROUND_PATHS})
 
@@ -281,13 +284,13 @@ def find_free_paths(settings: Settings) -> frozenset[str]:
 def decide(
     source: ProgramSource, settings: Settings, free: Collection[str], *, insists: bool = True
 ) -> Decided:
-    """Return what the source of a program decides.
+    """Return the settings that the source of a program decides.
 
     Args:
         source: The program.
         settings: The settings that are chosen.
-        free: The paths that nobody has chosen.
-        insists: Whether a chosen profile for another library is an error; else it is replaced.
+        free: The paths that the user has not chosen.
+        insists: Whether a chosen profile for another library is an error; otherwise it is replaced.
 
     Raises:
         ProfileError: the chosen profile is not for the program's library.
@@ -323,12 +326,12 @@ def decide(
 
 
 def has_brick_rules(profile: str | ProfileSpec) -> bool:
-    """Return whether a profile, given by itself or by name, has the rules of a real brick."""
+    """Return whether a profile, or the profile of a name, has the rules of a real brick."""
     return profile in BRICK_PROFILES or profile in [PROFILES[name] for name in BRICK_PROFILES]
 
 
 def _decide_ground(facts: SourceFacts, free: Collection[str]) -> dict[str, bool]:
-    """Return the settings `floor` and `walls` of a program for a brick, if nobody has chosen them."""
+    """Return the settings `floor` and `walls` for a program of a real brick, unless the user has chosen them."""
     ground = {"floor": True, "walls": facts.senses_walls} if "floor" in free else {}
     return {path: value for path, value in ground.items() if path in free}
 
@@ -344,12 +347,12 @@ def _find_refused(facts: SourceFacts, profile: str | ProfileSpec) -> tuple[Refus
 
 
 def _find_shown(facts: SourceFacts, free: Collection[str]) -> tuple[str, ...] | None:
-    """Return `Decided.shown_ports`."""
+    """Return the value of `Decided.shown_ports`."""
     return facts.shown_ports if "robot" in free else None
 
 
 def _check_prelude(program: Program) -> None:
-    """Check that a program with a prelude, which uses ev3dev2, does not use Pybricks itself."""
+    """Raise an error if a program with a prelude, which uses ev3dev2, imports Pybricks itself."""
     if Library.PYBRICKS in program.text and find_library(read_modules(program)) is Library.PYBRICKS:
         raise ProfileError(
             f"{program.name} uses {Library.PYBRICKS}, and its predefined names are of {Library.EV3DEV2}",
@@ -359,7 +362,7 @@ def _check_prelude(program: Program) -> None:
 
 
 def _find_law(named: str | ProfileSpec) -> MotorLaw | None:
-    """Return the motor law of a profile; None if there is no such profile, which is reported later."""
+    """Return the motor law of a profile or of the profile of a name; None if there is none, which is reported later."""
     try:
         return _load_profile(named).motor_law
     except ProfileError:
@@ -367,7 +370,7 @@ def _find_law(named: str | ProfileSpec) -> MotorLaw | None:
 
 
 def _is_fitting(settings: Settings, facts: SourceFacts) -> bool:
-    """Return whether the chosen profile is for a program; True if there is no such profile, which is told later."""
+    """Return whether the chosen profile is for a program; True if there is no such profile, which is reported later."""
     law = _find_law(settings["profile"])
     if law is None:
         return True
@@ -375,7 +378,7 @@ def _is_fitting(settings: Settings, facts: SourceFacts) -> bool:
 
 
 def _can_move(law: MotorLaw, library: Library, is_for_hub: bool) -> bool:
-    """Return whether a motor law is for a library, and for the hub if a program is for one."""
+    """Return whether a motor law is for a library and, if the program is for a hub, for hubs."""
     return law.library is library and (law is MotorLaw.PYBRICKS_4 or not is_for_hub)
 
 
@@ -423,10 +426,10 @@ def choose_robot(source: ProgramSource, name: str) -> ProgramRobot:
 
 
 def _read_run_facts(source: ProgramSource) -> SourceFacts:
-    """Return what the source of a program shows, as far as it counts in its run.
+    """Return the facts in the source of a program that apply to its run.
 
-    If a program of the course needs the parts of the default robot on the same ports, it gets the default robot: sizes,
-    sides and mountings in it do not count. They do in a program with the rules of a brick, and in all for Pybricks.
+    If a program of the course has the parts of the default robot on the same ports, it gets the default robot; its own
+    sizes, sides and mountings are ignored. They apply in programs with the rules of a brick, and in all for Pybricks.
     """
     facts = read_source_facts(source.program)
     brings_rules = facts.library is Library.PYBRICKS or _has_brick_rules(source, facts)
@@ -436,12 +439,12 @@ def _read_run_facts(source: ProgramSource) -> SourceFacts:
 
 
 def _has_brick_rules(source: ProgramSource, facts: SourceFacts) -> bool:
-    """Return whether a program is for a brick, and nothing marks it as one of the course's."""
+    """Return whether a program is for a real brick and has no sign of a program of the course."""
     return facts.library is not None and not facts.of_course and not source.has_magic
 
 
 def _describe_course_rules(source: ProgramSource, facts: SourceFacts) -> str:
-    """Return what a program with its own imports may not expect of the course's rules; empty for nothing."""
+    """Return which rules of the course do not apply to a program with its own imports; empty if none is relevant."""
     brings_library = facts.library is Library.EV3DEV2 and facts.shown_ports is not None
     is_surprised = brings_library and source.has_magic and not facts.of_course
     return _COURSE_RULES if is_surprised and _BRICK_LIGHT in source.program.text else ""
@@ -450,13 +453,15 @@ def _describe_course_rules(source: ProgramSource, facts: SourceFacts) -> str:
 def _describe_decision(
     source: ProgramSource, facts: SourceFacts, layer: Mapping[str, Any], free: Collection[str]
 ) -> tuple[str, str, str]:
-    """Return what the source of a program decided, the same in brief, and how to change it; empty if it is nothing.
+    """Return three texts: what the source of a program decided, the same in brief, and how to change it.
+
+    The texts are empty if the source decided nothing.
 
     Args:
         source: The program.
-        facts: What its source shows.
+        facts: The facts in its source.
         layer: The settings that it decides.
-        free: The paths that nobody has chosen.
+        free: The paths that the user has not chosen.
     """
     program = source.program
     if facts.for_other_hub:

@@ -20,9 +20,9 @@ _RECORDERS = frozenset(
         *("text", "text_pixels", "text_grid", "draw_text"),
     }
 )
-"""Functions that show or store what they are given."""
+"""Functions that print or store their arguments."""
 _COLLECTORS = frozenset({"append", "add", "put", "extend", "insert"})
-"""Methods that put what they are given into their object."""
+"""Methods that store their arguments in their object."""
 _ENDINGS = _RECORDERS | {
     *("off", "all_off", "stop", "brake", "coast", "hold", "exit", "close", "reset", "clear"),
     *("update", "sleep", "wait", "set_color", "beep", "speak", "say", "join"),
@@ -31,7 +31,7 @@ _ENDINGS = _RECORDERS | {
 
 
 def _list_key_words(port: str, keys: Sequence[str]) -> dict[Word, str]:
-    """Return the keys of a controller by their words; what has several keys stands for the first of them."""
+    """Return the keys of a controller by the words for them; a word for several keys has the first of them."""
     names = [(key.removeprefix(f"{port}."), key) for key in keys]
     parts = [(name.rpartition("_")[0], key) for name, key in reversed(names) if "_" in name]
     return dict[Word, str]([*parts, *names])
@@ -71,7 +71,7 @@ _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What a program does with the value that a line reads."""
+    """How a program uses the value that a line reads."""
 
     decides: bool = True
     """Whether anything depends on it: it is not only shown or stored."""
@@ -82,20 +82,27 @@ class Question:
     words: tuple[Word, ...] = ()
     """Attributes, texts and numbers that the program compares it with, in their order."""
     needs_all: bool = False
-    """Whether several of them must hold at once."""
+    """Whether several of them must be true together."""
 
     def find_buttons(self, port: str = BUTTONS_PORT) -> tuple[str, ...]:
-        """Return the buttons that the program asks for at one of `KEYS_BY_PORT`, in its order; empty for any."""
+        """Return the buttons that the program tests, in its order; empty for any button.
+
+        Args:
+            port: The port of the buttons, one of `KEYS_BY_PORT`.
+        """
         return self._find_words(BUTTON_WORDS[port])
 
     @property
     def remote_buttons(self) -> tuple[str, ...]:
-        """The remote control's buttons that the program asks for, by the names of `REMOTE_BY_HAND`; empty for any."""
+        """The remote control's buttons that the program tests, by the names of `REMOTE_BY_HAND`.
+
+        It is empty for any button.
+        """
         return self._find_words(REMOTE_WORDS)
 
     @property
     def colors(self) -> tuple[str, ...]:
-        """The colours that the program asks for, in small letters; empty for any."""
+        """The colours that the program tests, in lower case; empty for any colour."""
         return self._find_words(COLOR_WORDS)
 
     def _find_words(self, names: Mapping[Word, str]) -> tuple[str, ...]:
@@ -103,18 +110,18 @@ class Question:
         return tuple(dict.fromkeys(names[word] for word in words if word in names))
 
     def find_limit(self) -> float | None:
-        """Return the first number above 0 with which the value is compared; None without one."""
+        """Return the first number above 0 with which the program compares the value; None without one."""
         numbers = (word for word in self.words if not isinstance(word, str))
         return next((number for number in numbers if number > 0), None)
 
 
 def shorten(word: Word) -> Word:
-    """Return a word of a library as in the tables of words: in small letters, without `on_`, `color_` and the like."""
+    """Return a library's word as in the tables of words: in lower case, without a prefix such as `on_` or `color_`."""
     return _PREFIX.sub("", word.lower(), count=1) if isinstance(word, str) else word
 
 
 class QuestionReader:
-    """Finds out what a program does with what it reads. A step is a statement, or the head of a compound one."""
+    """Finds how a program uses the values that it reads. A step is a statement, or the head of a compound one."""
 
     def __init__(self, tree: ast.Module) -> None:
         self._nodes = list(ast.walk(tree))
@@ -149,7 +156,7 @@ class QuestionReader:
                         self._users.setdefault(name, []).append(step)
 
     def _add_lines(self, step: ast.stmt) -> None:
-        """Note on which lines a step may read something."""
+        """Record on which lines a step may read a sensor or motor."""
         lines = {
             line
             for head in _list_heads(step)
@@ -160,13 +167,13 @@ class QuestionReader:
             self._steps.setdefault(line, []).append(step)
 
     def find_question(self, line: int) -> Question:
-        """Return what the program does with what a line reads; `Question()` if its text does not tell."""
+        """Return how the program uses the value that a line reads; `Question()` if the text does not show it."""
         if line not in self._questions:
             self._questions[line] = self._read_question(self._steps.get(line, []))
         return self._questions[line]
 
     def _read_question(self, steps: Sequence[ast.stmt]) -> Question:
-        """Return what the program does with what some steps read."""
+        """Return how the program uses the values that some steps read."""
         if not steps:
             return Question()
         flow = self._find_flow(steps)
@@ -184,7 +191,7 @@ class QuestionReader:
         )
 
     def _find_flow(self, steps: Iterable[ast.stmt]) -> list[ast.stmt]:
-        """Return some steps, and all steps that use a value that comes from them, or run depending on it."""
+        """Return some steps, and all steps that use their values or run depending on them."""
         flow = dict.fromkeys(steps)
         queue = [*flow]
         followed = set[str]()
@@ -201,7 +208,7 @@ class QuestionReader:
         return queue
 
     def _is_deciding(self, step: ast.stmt) -> bool:
-        """Return whether a step does more with a value than to show, store or pass it on."""
+        """Return whether a step does more with a value than print, store or pass it on."""
         match step:
             case ast.Expr(value=ast.Call()):
                 return not _is_recorder(step) and not self._find_names(step)
@@ -212,7 +219,7 @@ class QuestionReader:
         return not isinstance(step, ast.Pass)
 
     def _list_words(self, head: ast.AST) -> Iterator[Word]:
-        """Yield the attributes, texts and numbers in an expression, in their order, without numbers in calculations."""
+        """Yield the attributes, texts and numbers in an expression in their order, without numbers in calculations."""
         nodes = [
             node
             for node in ast.walk(head)
@@ -230,7 +237,7 @@ class QuestionReader:
                     yield self._constants[name]
 
     def _list_handlers(self) -> Iterator[str]:
-        """Yield the attributes such as `on_up` that are assigned anywhere, in their order."""
+        """Yield the names of handlers such as `on_up` that the program assigns, in order of the lines."""
         for node in sorted(
             (node for node in self._nodes if isinstance(node, ast.Attribute)),
             key=lambda node: node.lineno,
@@ -263,7 +270,7 @@ class QuestionReader:
         return all(_name_function(call.func) in _ENDINGS for call in calls)
 
     def _find_names(self, step: ast.stmt) -> set[str]:
-        """Return the names that hold the value of a step after it; attributes have a dot before them."""
+        """Return the names that contain the value of a step after it; names of attributes begin with a dot."""
         match step:
             case ast.Assign(targets=targets):
                 return {name for target in targets for name in _list_names(target)}
@@ -324,7 +331,7 @@ def _is_test(step: ast.stmt) -> bool:
 
 
 def _is_noted(step: ast.stmt, compared: Set[str]) -> bool:
-    """Return whether a step only shows a value, or stores it in a variable that it was compared with, as a maximum."""
+    """Return whether a step only prints a value, or stores it in a variable compared with it, such as a maximum."""
     match step:
         case ast.Assign(targets=targets):
             return {name for target in targets for name in _list_names(target)} <= compared
@@ -345,7 +352,7 @@ def _name_function(func: ast.expr) -> str:
 
 
 def _list_names(target: ast.AST) -> set[str]:
-    """Return the names in the target of an assignment; attributes have a dot before them."""
+    """Return the names in the target of an assignment; names of attributes begin with a dot."""
     match target:
         case ast.Name(id=name):
             return {name}
@@ -359,7 +366,7 @@ def _list_names(target: ast.AST) -> set[str]:
 
 
 def _is_for_all(head: ast.AST) -> bool:
-    """Return whether a condition holds only if several things hold at once, as in `a and b` or `not a or not b`."""
+    """Return whether a condition tests that several things are true together, as in `a and b` or `not a or not b`."""
     for node in ast.walk(head):
         match node:
             case ast.BoolOp(op=op, values=values):

@@ -24,7 +24,7 @@ _UNKNOWN = ast.Pass()
 
 
 class Surroundings:
-    """The names around a function or a class.
+    """The names that a function or a class can use from outside: its globals and the variables of functions around it.
 
     Args:
         values: Its global names.
@@ -42,23 +42,28 @@ class Surroundings:
         self._text = text
         self.values = {**values}
         for name, cell in cells.items():
-            with suppress(ValueError):  # not assigned yet
+            with suppress(ValueError):  # an empty cell: the variable is not assigned yet
                 self.values[name] = cell.cell_contents
-        # A notebook keeps the text of its cells, the last one that has run at the end.
+        # IPython keeps the texts of the cells that have run in `In`, the latest at the end.
         inputs = values.get("In")
         texts = inputs[::-1] if isinstance(inputs, list) else [text]
         self._texts = [(_parse(each), each) for each in texts if isinstance(each, str)]
 
     @classmethod
     def read_function(cls, function: FunctionType, text: str) -> Self:
-        """Return what is around a function in a file with this text."""
+        """Return the surroundings of a function.
+
+        Args:
+            function: The function.
+            text: The text of its file.
+        """
         code = function.__code__
         cells = dict(zip(code.co_freevars, function.__closure__ or (), strict=True))
         return cls(function.__globals__, code.co_filename, text, cells)
 
     @classmethod
     def read_module(cls, module: ModuleType) -> Self:
-        """Return the names of a module."""
+        """Return the surroundings of the functions in a module."""
         try:
             text = inspect.getsource(module)
         except (OSError, TypeError):
@@ -66,14 +71,18 @@ class Surroundings:
         return cls(vars(module), getattr(module, "__file__", None) or "", text, {})
 
     def check_source(self, functions: Iterable[FunctionType], name: str) -> None:
-        """Check that functions are as the file now has them.
+        """Check that functions are unchanged in their file since they were loaded.
+
+        Args:
+            functions: The functions.
+            name: The name for the error.
 
         Raises:
-            ConfigError: they are not; the error names `name`.
+            ConfigError: the file has changed.
         """
         codes = [function.__code__ for function in functions]
         own = [code for code in codes if code.co_filename == self.file]
-        # pytest rewrites what it imports.
+        # Code that pytest has rewritten differs from its source, so it is not compared.
         if not own or "@pytest_ar" in self._globals:
             return
         flags = own[0].co_flags & __future__.annotations.compiler_flag
@@ -86,11 +95,14 @@ class Surroundings:
             raise ConfigError(message, "import it again", file=self.file)
 
     def get_owner(self, name: str) -> int:
-        """Return a number for the variable of a name: equal only for the same one."""
+        """Return an id of the scope with the variable of a name, by which variables of the same name differ."""
         return id(self._cells.get(name, self._globals))
 
     def find(self, name: str) -> tuple[ast.stmt, str]:
-        """Return the last statement that gives a name its value, and the text that has it; `pass` for none."""
+        """Return the last statement that assigns a name, and the text that contains it.
+
+        If there is none, the statement is `pass`.
+        """
         if name not in self._cells:
             for statements, text in self._texts:
                 for statement in reversed(statements):
@@ -99,11 +111,11 @@ class Surroundings:
         return _UNKNOWN, ""
 
     def name_file(self, text: str) -> str:
-        """Return the file with a text of `find`; empty for another cell of a notebook."""
+        """Return the file that contains a text returned by `find`; empty for another cell of a notebook."""
         return self.file if text.rstrip() == self._text.rstrip() else ""
 
     def find_expression(self, name: str) -> ast.expr | None:
-        """Return what a statement assigns to a name alone."""
+        """Return the expression that a statement assigns only to a name; None if there is none."""
         match self.find(name)[0]:
             case ast.Assign(targets=[ast.Name()], value=value):
                 return value
@@ -117,14 +129,14 @@ class Surroundings:
         return f"from {module} import {original} as {name}" if is_library(module) else ""
 
     def find_origin(self, name: str) -> tuple[str, Surroundings]:
-        """Return the name of a value where it has been made, and what is around it there."""
+        """Return the name of a value in the module that defines it, and the surroundings there."""
         module, original = self._find_module(name)
         if not module:
             return name, self
         return Surroundings.read_module(sys.modules[module]).find_origin(original)
 
     def _find_module(self, name: str) -> tuple[str, str]:
-        """Return the module from which a name has its value by an import, and its name there; empty for none."""
+        """Return the module from which a name is imported, and its name there; empty texts if it is not imported."""
         statement, _ = self.find(name)
         if isinstance(statement, ast.ImportFrom):
             names = {alias.asname or alias.name: alias.name for alias in statement.names}
@@ -137,7 +149,14 @@ class Surroundings:
         return "", ""
 
     def list_attributes(self, name: str, text: str) -> set[str]:
-        """Return what a text reads of a module of one's own; empty for another one, or if it does more with it."""
+        """Return the attributes that a text reads of a user's own module.
+
+        The result is empty for another module, or if the text does more with it than read attributes.
+
+        Args:
+            name: The name of the module in these surroundings.
+            text: The text of a function or class.
+        """
         module = self.values[name]
         if not isinstance(module, ModuleType) or not is_own(module.__name__):
             return set()
@@ -151,12 +170,12 @@ class Surroundings:
         return {read[node] for node in names} if read.keys() >= {*names} else set()
 
     def list_used(self, expression: ast.AST) -> set[str]:
-        """Return the names around it that an expression uses."""
+        """Return the global names of these surroundings that an expression uses."""
         names = {node.id for node in ast.walk(expression) if isinstance(node, ast.Name)}
         return names & self.values.keys()
 
     def list_sources(self, name: str) -> set[str]:
-        """Return the names from which the value of a name has been computed, in any number of steps."""
+        """Return the names from which the value of a name was computed, directly or in several steps."""
         sources: set[str] = set()
         names = [name]
         while names:
@@ -170,8 +189,10 @@ class Surroundings:
 
 
 def compute(expression: ast.expr, values: Mapping[str, Any]) -> str | None:
-    """Return the value of an expression as `ValueWriter` has it; None if it uses more than constants, `math`,
-    and classes that only hold their values."""
+    """Return the value of an expression as text of `ValueWriter`; None if the expression uses other names.
+
+    It may use constants, `math`, and classes that only store their values.
+    """
     for node in ast.walk(expression):
         match node:
             case ast.Name(id=name):
@@ -185,7 +206,7 @@ def compute(expression: ast.expr, values: Mapping[str, Any]) -> str | None:
     code = compile(ast.Expression(expression), "", "eval")
     try:
         return ValueWriter().write(eval(code, {**values}))
-    except Exception:  # Whatever it is, the value has come about in another way.
+    except Exception:  # Any error means that the expression does not give the value.
         return None
 
 
@@ -197,7 +218,7 @@ def _is_pure(value: object) -> bool:
 
 
 def _parse(text: str) -> list[ast.stmt]:
-    """Return the statements of a text outside functions and classes, those of blocks after the block."""
+    """Return the statements of a text outside functions and classes; those in a block follow the block's statement."""
     try:
         return [*_list_statements(parse_module(text).body)]
     except NOT_PYTHON:
@@ -213,7 +234,7 @@ def _list_statements(nodes: Sequence[Any]) -> Iterator[ast.stmt]:
 
 
 def _list_bound(statement: ast.stmt) -> Iterator[str]:
-    """Yield the names to which a statement gives a value."""
+    """Yield the names that a statement assigns or defines."""
     match statement:
         case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
             yield name
@@ -232,7 +253,7 @@ def _list_bound(statement: ast.stmt) -> Iterator[str]:
 
 
 def _list_codes(code: CodeType) -> Iterator[CodeType]:
-    """Yield a code, and those in it."""
+    """Yield a code object, and the code objects in it."""
     yield code
     for constant in code.co_consts:
         if isinstance(constant, CodeType):

@@ -24,7 +24,7 @@ _CONSTANTS = (bool, int, float, complex, str, bytes, type(None))
 
 
 class ValueWriter:
-    """Writes values as expressions.
+    """Writes Python values as expressions.
 
     Attributes:
         names: The classes and functions that the expressions use, by name.
@@ -36,11 +36,12 @@ class ValueWriter:
         """The objects with a state of their own that are written, by their `id`."""
 
     def write(self, value: Any) -> str:
-        """Return the expression that has a value; a number of NumPy becomes one of Python.
+        """Return an expression with a given value; a NumPy number becomes a Python number.
 
         Raises:
-            ConfigError: it is no constant, member of an Enum, function or class of one's own or of Python, container of
-                these, or object that they make up; or it is an object that would then be there twice.
+            ConfigError: it is no constant, member of an Enum, function or class of the user's or of Python, container
+                of
+                these, or object that they make up; or the same object would be created twice.
         """
         if getattr(value, "shape", None) == ():
             value = value.item()
@@ -68,7 +69,7 @@ class ValueWriter:
         return self._write_object(value)
 
     def _write_name(self, value: Any) -> str:
-        """Return the name of a class or function that a program can have."""
+        """Return the name of a class or function, which the program must be able to define or import."""
         name = str(value.__name__)
         if value.__module__ != "builtins":
             is_known = write_import(name, value) or is_own(value.__module__)
@@ -77,10 +78,10 @@ class ValueWriter:
         return name
 
     def _write_object(self, value: Any) -> str:
-        """Return an expression that builds an object, with its state, as `copy.copy` does."""
+        """Return an expression that creates an object with its state, as `copy.copy` does."""
         try:
             function, arguments, *states = value.__reduce_ex__(4)
-        except Exception:  # Whatever it is, such an object has no copies.
+        except Exception:  # Any error means that the object cannot be copied.
             raise build_value_error(value) from None
         if not any(states):
             return f"{self.write(function)}({', '.join(map(self.write, arguments))})"
@@ -94,16 +95,20 @@ class ValueWriter:
 
 
 def build_value_error(value: object) -> ConfigError:
-    """Return the error for a value that no expression has."""
+    """Return the error for a value that cannot be written as an expression."""
     text = repr(value).partition("\n")[0]
     return ConfigError(f"{text} cannot go along", "such as a number, text or list", key="constants")
 
 
 def write_value(value: object, known: Collection[str] = ()) -> str:
-    """Return the expression that has a value by the names of Python, and by known ones.
+    """Return an expression with a given value that uses only Python's own names and known ones.
+
+    Args:
+        value: The value.
+        known: Other names that the expression may use.
 
     Raises:
-        ConfigError: as of `ValueWriter.write`; or it uses other names.
+        ConfigError: as of `ValueWriter.write`; or the expression needs other names.
     """
     writer = ValueWriter()
     with suppress(ConfigError, RecursionError):
@@ -114,7 +119,7 @@ def write_value(value: object, known: Collection[str] = ()) -> str:
 
 
 def is_plain(value: object) -> bool:
-    """Return whether a value needs only names of Python."""
+    """Return whether a value can be written as an expression with only Python's own names."""
     try:
         write_value(value)
     except ConfigError:
@@ -123,7 +128,10 @@ def is_plain(value: object) -> bool:
 
 
 def list_parts(kind: type) -> Sequence[str]:
-    """Return the names of the values from which a NamedTuple or dataclass is made; empty if there are others, too."""
+    """Return the field names of a NamedTuple or dataclass whose constructor takes exactly these.
+
+    The result is empty for other classes.
+    """
     if not is_dataclass(kind):
         return getattr(kind, "_fields", ()) if issubclass(kind, tuple) else ()
     of_kind = fields(kind)
@@ -132,7 +140,7 @@ def list_parts(kind: type) -> Sequence[str]:
 
 
 def is_own(module: str) -> bool:
-    """Return whether a module is one of the user's: neither a library, nor installed, nor of this package."""
+    """Return whether a module is one of the user's: not a library, not installed, and not part of tuisim."""
     if module == "__main__":
         return True
     file = getattr(sys.modules.get(module), "__file__", None)
@@ -142,7 +150,14 @@ def is_own(module: str) -> bool:
 
 
 def write_import(name: str, value: Any) -> str:
-    """Return a statement that imports a module, or what a library defines; empty if the program cannot import it."""
+    """Return a statement that imports a module, or an object that a library defines.
+
+    The result is empty if the program cannot import it.
+
+    Args:
+        name: The name that the statement must define.
+        value: The module or object.
+    """
     if isinstance(value, ModuleType):
         return f"import {value.__name__} as {name}" if is_library(value.__name__) else ""
     module = getattr(value, "__module__", None) or ""
@@ -153,5 +168,5 @@ def write_import(name: str, value: Any) -> str:
 
 
 def is_library(module: str) -> bool:
-    """Return whether a module is of a library for a brick, or of Python."""
+    """Return whether a module belongs to a library for a brick or to Python."""
     return module not in ("__main__", "builtins") and module.partition(".")[0] in _IMPORTED

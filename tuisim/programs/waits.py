@@ -12,13 +12,13 @@ from tuisim.programs.questions import COLOR_WORDS, Word, shorten
 from tuisim.programs.robot.source import OPERATORS, SIGNS, TURNED
 
 _OPPOSITE = {">=": "<", ">": "<=", "<=": ">", "<": ">=", "!=": "==", "==": "!="}
-"""The operator that ends a loop which goes on while a comparison holds."""
+"""For the operator of a `while` condition, the one with which the loop ends."""
 _Loop = ast.For | ast.While
 
 
 @dataclass(frozen=True, slots=True)
 class LoopEnd:
-    """A loop of a program that ends when a value passes a comparison with a constant, as in `while light > 20`."""
+    """The end of a loop in a program by a comparison of a value with a constant, as in `while light > 20`."""
 
     line: int
     """The line of the comparison."""
@@ -42,12 +42,12 @@ class LoopEnd:
 
     @property
     def color(self) -> str:
-        """The colour that the limit stands for, in small letters; empty for none."""
+        """The colour with which the loop compares, in lower case; empty for none."""
         return COLOR_WORDS.get(shorten(self.limit), "")
 
 
 def list_loop_ends(tree: ast.Module, constants: Mapping[str, Word]) -> tuple[LoopEnd, ...]:
-    """Return the loops of a program that end by a comparison which the text shows, the inner ones first.
+    """Return the loops of a program that end when a comparison in the text becomes true or false, the inner ones first.
 
     Args:
         tree: The program.
@@ -59,9 +59,13 @@ def list_loop_ends(tree: ast.Module, constants: Mapping[str, Word]) -> tuple[Loo
 
 
 def list_counts(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[tuple[int, LoopEnd]]:
-    """Yield each line in a loop that counts each time that a comparison with a constant is true, and the comparison.
+    """Yield each line in a loop that adds 1 to a variable when a value passes a constant, and the comparison of both.
 
-    Nothing but its start and this line sets the variable, which is in no division. Arguments as of `list_loop_ends`.
+    Nothing else may change the variable after its first value, and no division may use it.
+
+    Args:
+        tree: The program.
+        constants: Values of names in the program; see `list_constants`.
     """
     loops = [node for node in ast.walk(tree) if isinstance(node, _Loop)]
     for loop in loops:
@@ -90,7 +94,7 @@ def _find_counted(node: ast.stmt) -> str:
 
 
 def _is_only_counted(name: str, tree: ast.Module) -> bool:
-    """Return whether a variable is set in two places only, its start and its count, and is not part of a division."""
+    """Return whether a variable is assigned only at its start and where it is counted, and used in no division."""
     nodes = [*ast.walk(tree)]
     places = [node for node in nodes if isinstance(node, ast.Name) and node.id == name]
     shares = [
@@ -105,7 +109,10 @@ def find_turns(
 ) -> tuple[float, str] | None:
     """Return by how much a call on a line turns a motor or both wheels, and `rotations` or `degrees`; else None.
 
-    Arguments as of `list_loop_ends`.
+    Args:
+        tree: The program.
+        constants: Values of names in the program; see `list_constants`.
+        line: The line.
     """
     for node in ast.walk(tree):
         match node:
@@ -123,7 +130,7 @@ def find_turns(
 def find_first_drive(tree: ast.Module) -> int:
     """Return the first line of a program that starts motors; 0 for none.
 
-    Functions that the program does not mention do not count.
+    Lines in functions that the program never mentions are ignored.
     """
     nodes = [*ast.walk(tree)]
     mentioned = {node.id for node in nodes if isinstance(node, ast.Name) and not _is_set(node)}
@@ -151,7 +158,7 @@ def _is_drive(node: ast.AST) -> TypeGuard[ast.Call]:
 def _find_ends(
     loop: ast.While, tree: ast.Module, constants: Mapping[str, Word]
 ) -> Iterator[LoopEnd]:
-    """Yield what ends a loop: the condition of the loop or, in an endless one, the condition of a `break`."""
+    """Yield the comparisons that end a loop, from its condition or, if it is endless, from that of a `break`."""
     is_endless = isinstance(loop.test, ast.Constant) and bool(loop.test.value)
     if not is_endless:
         yield from _find_end(loop, loop.test, tree, constants, is_break=False)
@@ -176,12 +183,14 @@ def _find_end(
     *,
     is_break: bool,
 ) -> Iterator[LoopEnd]:
-    """Yield what ends a loop, if a condition compares something with a constant.
+    """Yield the comparisons with constants in a condition that end a loop.
 
     Args:
+        loop: The loop.
         test: The condition.
+        tree: The program.
         words: Values of names in the program, which count as constants.
-        is_break: Whether the loop ends if the condition is true, and not if it is false.
+        is_break: Whether the loop ends if the condition is true; otherwise it ends if it is false.
     """
     if isinstance(test, ast.BoolOp):
         ends = [_find_end(loop, part, tree, words, is_break=is_break) for part in test.values]
@@ -213,7 +222,7 @@ def _find_end(
 def _read_comparison(
     test: ast.expr, constants: Mapping[str, Word], *, is_break: bool
 ) -> tuple[ast.expr, str, Word] | None:
-    """Return what a test compares, the operator that ends the loop, and the constant; None if it is no such test."""
+    """Return the compared expression, the operator with which the loop ends, and the constant; None for other tests."""
     match test:
         case ast.Compare(left=left, ops=[operator], comparators=[right]):
             sign = SIGNS.get(type(operator), "")
@@ -229,7 +238,7 @@ def _read_comparison(
 def _split_sum(
     value: ast.expr, ending: str, limit: Word, constants: Mapping[str, Word]
 ) -> tuple[ast.expr, str, Word]:
-    """Return a comparison without the numbers that are added to its value: their sum is part of the limit."""
+    """Return a comparison without the numbers added to its value; they are subtracted from the limit instead."""
     while isinstance(limit, int | float):
         match value:
             case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
@@ -254,7 +263,7 @@ def _find_last_line(node: ast.stmt) -> int:
 
 
 def list_constants(tree: ast.Module) -> dict[str, Word]:
-    """Return the values of names that are set once, to a text or number, and of parameters alike in all calls."""
+    """Return the values, texts and numbers, of names that are assigned once, and of parameters equal in all calls."""
     nodes = [*ast.walk(tree)]
     functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
     times_set = Counter(
@@ -292,7 +301,7 @@ def _is_set(node: ast.Name) -> bool:
 
 
 def _find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None:
-    """Return the text or number that an expression stands for, or a name in capitals such as `RED`; None for others."""
+    """Return the text or number of a constant expression, or a name in capitals such as `RED`; None for others."""
     match node:
         case ast.Name(id=name):
             return constants.get(name)
@@ -322,9 +331,9 @@ def _find_attribute(node: ast.expr) -> str:
 
 
 def _find_values(name: str, tree: ast.Module) -> list[tuple[int, ast.expr]]:
-    """Return the lines that set a variable, with its value, or with the variable's own node if the value is not known.
+    """Return the lines that assign a variable, each with the assigned expression or, if unknown, the variable's node.
 
-    Empty if the variable is shared by functions, which may be called from anywhere.
+    The result is empty if several functions share the variable, since their order is not known.
     """
     values: list[tuple[int, ast.expr]] = []
     for node in ast.walk(tree):

@@ -60,7 +60,7 @@ _MAX_NAME = 80
 
 @dataclass(frozen=True, slots=True)
 class RobotPart:
-    """A part of the robot that differs from the default one, or that a line of the program asks for."""
+    """A part of the robot that differs from the default robot's, or that a line of the program creates."""
 
     what: str
     """The part in words, such as `medium motor on outA`."""
@@ -74,7 +74,7 @@ class RobotPart:
 
 @dataclass(frozen=True, slots=True)
 class BuiltRobot:
-    """A robot that was built for a program."""
+    """The robot that was built for a program, with its parts and doubts."""
 
     choice: RobotChoice
     parts: tuple[RobotPart, ...]
@@ -88,17 +88,18 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
     """Return the robot that a program needs; None if the usual one has every part on its port.
 
     Args:
+        mentions: The devices that the program creates.
         name: The name of the program.
         usual: The robot that is changed.
 
     Raises:
-        RobotError: what the program says is impossible, such as a wheel of 0 mm.
+        RobotError: a value in the program is impossible, such as a wheel of 0 mm.
     """
     builder = _Builder(mentions, read_mechanics(mentions), usual)
     if usual.hub:
         builder.parts.append(RobotPart(usual.hub, "hub"))
     motors = builder.motors()
-    # Raises for a wrong size of the wheels here, not later for the place of a sensor beside them.
+    # A wrong wheel size must raise its own error here, not one about the place of a sensor later.
     replace(usual, **motors)
     changes = builder.add_presses({**motors, **builder.sensors(motors)})
     changes |= builder.find_sizes(motors)
@@ -116,7 +117,7 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
 
 
 def find_shown_ports(mentions: Mentions, robot: RobotSpec) -> tuple[str, ...]:
-    """Return the ports of the parts that a program's text shows on its robot, even if it shows them without ports."""
+    """Return the ports on a robot of the parts that a program's text shows, even if it shows them without ports."""
     pairs = [port for pair in mentions.pairs for port in (pair.left, pair.right)]
     ports = {device.port for device in mentions.devices} | {*pairs}
     taken_anywhere = {device.kind for device in mentions.devices if device.is_any}
@@ -130,7 +131,7 @@ def find_shown_ports(mentions: Mentions, robot: RobotSpec) -> tuple[str, ...]:
 
 
 def _on_ports(robot: RobotSpec) -> dict[str, object]:
-    """Return the kind of the part on each port."""
+    """Return the kind of part on each port of a robot."""
     return {motor.port: motor.kind for motor in robot.motors} | {
         sensor.port: type(sensor) for sensor in robot.sensors
     }
@@ -147,7 +148,7 @@ class _Builder:
     # Motors
 
     def motors(self) -> dict[str, Any]:
-        """Return the fields of the robot on motors and wheels."""
+        """Return the robot's fields for motors and wheels."""
         motors = (device for device in self.mentions.devices if device.kind.is_motor)
         kinds = add_tools(self._find_kinds([*self._list_pairs(), *motors]), self.mentions)
         where = {
@@ -200,7 +201,7 @@ class _Builder:
         return HUBS[self.usual.hub].motor if self.usual.hub else usual
 
     def _find_reversed(self, wheels: WheelMotors) -> dict[str, bool]:
-        """Return the fields for wheels whose motors are mounted the other way round, according to the program."""
+        """Return the robot's fields for wheel motors that are mounted the other way round, as the program says."""
         turned = self.mechanics.reversed
         sides = [
             side
@@ -215,7 +216,10 @@ class _Builder:
         return {f"{side}_reversed": True for side in sides}
 
     def _find_gears(self, wheels: WheelMotors) -> dict[str, float]:
-        """Return the field for the gears of the wheels; empty if they are as usual, or differ between the sides."""
+        """Return the robot's field for the gears of the wheels.
+
+        The result is empty if they are as usual, or differ between the sides.
+        """
         motors = [
             motor
             for port in (wheels.left, wheels.right)
@@ -236,7 +240,7 @@ class _Builder:
         return {"gear_ratio": ratio}
 
     def add_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
-        """Return the fields with touch sensors that a motor presses at its end stop."""
+        """Return the robot's changed fields with the touch sensors that motors press at their end stops."""
         motors = {motor.port: motor for motor in changes["extra_motors"]}
         touches = list(changes["touch_sensors"])
         for press in self.mechanics.presses:
@@ -270,9 +274,10 @@ class _Builder:
         return next((device.where for device in self.mentions.devices if device.kind is kind), None)
 
     def _add_motors(self, kinds: dict[str, DeviceKind], wheels: tuple[str, str]) -> None:
-        """Add motors to `kinds` that the program makes without a port, on free ports.
+        """Add the motors that the program creates without a port to `kinds`, on free ports.
 
         Args:
+            kinds: The kind of each motor, by port.
             wheels: The ports of the wheels.
         """
         unknown = sum(
@@ -290,7 +295,7 @@ class _Builder:
                 missing -= 1
 
     def _read_sizes(self, pair: Pair | None) -> dict[str, float]:
-        """Return the sizes that the program gives to the class of its wheels, if the usual robot has others."""
+        """Return the wheel sizes in mm that the program gives to the class of its wheels, if they are not usual."""
         sizes: dict[str, float] = {}
         if pair and pair.wheel_mm and pair.wheel_mm[0] != self.usual.wheel_diameter_mm:
             sizes["wheel_diameter_mm"], width_mm = pair.wheel_mm
@@ -300,7 +305,7 @@ class _Builder:
         return sizes
 
     def find_sizes(self, motors: Mapping[str, Any]) -> dict[str, float]:
-        """Return the sizes of the wheels that constants of the program give, where their class gives none."""
+        """Return the wheel sizes in mm from constants of the program, where the class of its wheels gives none."""
         sizes = self._find_sizes(motors)
         self._tell_sizes(sizes)
         return {key: size.mm for key, size in sizes.items()}
@@ -316,7 +321,7 @@ class _Builder:
         }
 
     def _list_exact(self) -> Iterator[str]:
-        """Yield the names of the sizes that a `DriveBase` gives, even if they are as usual."""
+        """Yield the field names of the sizes that a `DriveBase` gives, even if they are the usual ones."""
         for pair in self.mentions.pairs:
             if PAIRS[pair.class_name].takes_motors:
                 yield from ["wheel_diameter_mm"] if pair.wheel_mm else []
@@ -367,10 +372,10 @@ class _Builder:
     # Sensors
 
     def sensors(self, motors: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the fields of the robot on sensors.
+        """Return the robot's fields for sensors.
 
         Args:
-            motors: The fields on motors and wheels.
+            motors: The robot's fields for motors and wheels.
         """
         mentions = add_sides(
             [device for device in self.mentions.devices if not device.kind.is_motor]
@@ -432,7 +437,7 @@ class _Builder:
         placed: Mapping[str, SensorSpec],
         taken: set[str],
     ) -> list[tuple[str, Mention]]:
-        """Return the sensors that a program makes without a port, each with a free port for it."""
+        """Return the sensors that a program creates without a port, each with a free port for it."""
         ported: list[tuple[str, Mention]] = []
         for kind in dict.fromkeys(
             device.kind for device in mentions if not device.port and device.kind in SENSOR_SPECS
@@ -455,7 +460,7 @@ class _Builder:
         return ported
 
     def _stay(self, left: list[SensorSpec], placed: dict[str, SensorSpec]) -> None:
-        """Put the usual sensors that the program does not name on their ports, or on others that are free.
+        """Put the usual sensors that the program does not name on their ports or, if taken, on free ones.
 
         Args:
             left: These sensors.
@@ -500,9 +505,11 @@ class _Builder:
 
 
 def _is_there(sensor: SensorSpec, mention: Mention | None, *, by_side: bool) -> bool:
-    """Return whether a sensor of the usual robot is the one that the program makes on its port.
+    """Return whether a sensor of the usual robot is the one that the program creates on its port.
 
     Args:
+        sensor: The sensor.
+        mention: The device that the program creates on the port; None for none.
         by_side: Whether a colour sensor must be on the side that the program's name for it says.
     """
     if mention is None or mention.kind not in (KINDS[type(sensor)], DeviceKind.SENSOR):

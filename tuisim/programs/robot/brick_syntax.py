@@ -19,7 +19,7 @@ MISSING = (*MISSING_MODULES, "filter", "frozenset", "open", "property", "sys.exi
 
 @dataclass(frozen=True, slots=True)
 class RefusedLine:
-    """A line that the brick refuses."""
+    """A line of a program with syntax that the brick's Python refuses."""
 
     file: str
     line: int
@@ -31,7 +31,7 @@ class RefusedLine:
 
 
 def find_refused_lines(modules: Iterable[Module]) -> tuple[RefusedLine, ...]:
-    """Return the lines of a program that the brick refuses, in the order of its files and their lines."""
+    """Return the lines of a program that the brick's Python refuses, in the order of its files and their lines."""
     return tuple(
         RefusedLine(module.file, line, what)
         for module in modules
@@ -48,7 +48,7 @@ def _find_refused(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 
 def _name_refused(node: ast.AST) -> str:
-    """Return what syntax a node is that the brick refuses; empty if the brick accepts it."""
+    """Return the name of a node's syntax if the brick's Python refuses it; empty if it accepts it."""
     match node:
         case ast.alias(name=name) | ast.ImportFrom(module=str(name)) if name in MISSING_MODULES:
             return name

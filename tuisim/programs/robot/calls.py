@@ -27,12 +27,19 @@ class CallOrder:
     _leads: dict[Scope, Order] = field(default_factory=dict)
 
     def find_order(self, line: int, scope: Scope) -> Order:
-        """Return a sort key for when a line is reached; it is the highest if nothing in the text calls its function."""
+        """Return a sort key for when a line runs first.
+
+        The key is the highest if nothing in the text calls the line's function.
+
+        Args:
+            line: The line.
+            scope: The scope that contains it.
+        """
         return *self._find_lead(scope), line
 
     def _find_lead(self, scope: Scope) -> Order:
         if scope not in self._leads:
-            # Ends recursion: a function that only calls itself keeps this.
+            # This ends the recursion: a function that only calls itself keeps this value.
             self._leads[scope] = _UNKNOWN
             self._leads[scope] = self._follow(scope)
         return self._leads[scope]
@@ -46,7 +53,7 @@ class CallOrder:
             )
         if isinstance(node, ast.ClassDef) and scope.outer is not None:
             return self.find_order(node.lineno, scope.outer)
-        # Modules that it imports run first.
+        # The 0 puts imported modules first, as they run before the program's own lines.
         return (0,) if scope.module.name else ()
 
 
@@ -87,5 +94,5 @@ def find_default(function: Function, name: str) -> ast.expr | None:
 
 
 def is_negated(nodes: Sequence[ast.expr]) -> bool:
-    """Return whether one of some arguments is written with a minus."""
+    """Return whether one of some arguments is written with a minus sign."""
     return any(isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) for node in nodes)

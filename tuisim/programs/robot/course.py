@@ -15,7 +15,7 @@ _ATTRIBUTES = frozenset({"reflected_light_intensity_pc", "full_reflected_light_i
 
 
 def has_course_names(modules: Mapping[str, Module], text: str) -> bool:
-    """Return whether a program uses the course's own names.
+    """Return whether a program uses names that only the course has.
 
     Args:
         modules: The program and its own modules.
@@ -32,7 +32,7 @@ def has_course_names(modules: Mapping[str, Module], text: str) -> bool:
     _, ready = list_global_names(PRELUDE_TEXTS["preloaded"])
     used, known = list_global_names(text)
     if any(_is_star(node) for node in ast.walk(modules[""].tree)):
-        # After `import *`, names that a library or a module may define do not show that it is the course's.
+        # After `import *`, capitalized names may be a library's, so only other names show a program of the course.
         ready = {name for name in ready - defined if name[0].islower()}
     return bool((used - known) & ready)
 
@@ -50,7 +50,7 @@ def _list_used(tree: ast.Module) -> Iterator[str]:
 
 
 def find_definitions(tree: ast.Module) -> Iterator[str]:
-    """Yield the names that a module defines itself, at whatever place."""
+    """Yield the names that a module defines itself, in any scope."""
     for node in ast.walk(tree):
         match node:
             case (

@@ -49,7 +49,10 @@ class Target:
 
 @dataclass(slots=True)
 class Mechanics:
-    """How the motors of a program's robot are mounted and move, by port; the port is empty if the program lacks it."""
+    """How the motors of a program's robot are mounted and move, by port.
+
+    The port is empty for a motor whose port the program does not give.
+    """
 
     order: CallOrder = field(default_factory=CallOrder)
     """The order in which the program reaches its lines."""
@@ -75,7 +78,10 @@ class Mechanics:
         return self.stops.get(port) or next(pressed, None)
 
     def find_range(self, port: str) -> tuple[float | None, float | None]:
-        """Return where the end stops of a motor are, from its position at the start; None for a side without one."""
+        """Return the lower and upper end stop of a motor in degrees from its position at the start.
+
+        An end stop that does not exist is None.
+        """
         stop = self.find_stop(port)
         if stop is None:
             return None, None
@@ -91,15 +97,18 @@ class Mechanics:
         return max(back_deg, -_MAX_REACH_DEG) - _MARGIN_DEG, far
 
     def note_turn(self, port: str, turn: Target) -> None:
-        """Note how far the program turns a motor from where it stands: several turns may lead the same way."""
+        """Add a turn of a motor to the range that it needs: several turns may have the same direction."""
         self.reach_deg[port] = self.reach_deg.get(port, 0.0) + turn.deg
         self.turns.setdefault(port, []).append(turn)
 
     def note_targets(self, port: str, targets: Sequence[Target], places: Collection[float]) -> None:
-        """Note how far a motor must be able to turn for its targets; all its turns must have been noted before.
+        """Extend the range that a motor needs by its target positions; all its turns must have been added before.
 
         Args:
-            places: Positions that the program gives the motor, as at an end stop: targets then count from the end stop.
+            port: The motor's port.
+            targets: The target positions.
+            places: Positions that the program sets for the motor, as at an end stop: targets then count from the end
+                stop.
         """
         far = max(
             (abs(target.deg - place) for target in targets for place in places or (0.0,)), default=0
@@ -107,14 +116,14 @@ class Mechanics:
         self.reach_deg[port] = max(self.reach_deg.get(port, 0.0), far)
         stop = self.find_stop(port)
         first = [target.deg for target in targets if not places or self._is_before(target, stop)]
-        # The direction of these turns is not known.
+        # The direction of these turns is not known, so they extend both ends of the range.
         turned_deg = sum(
             target.deg for target in self.turns.get(port, ()) if self._is_before(target, stop)
         )
         self.targets_deg[port] = min((0.0, *first)) - turned_deg, max((0.0, *first)) + turned_deg
 
     def _is_before(self, target: Target, stop: EndStop | None) -> bool:
-        """Return whether a motor turns to a target before the program drives it to its end stop."""
+        """Return whether a motor turns to a target before the program drives it against its end stop."""
         if stop is None:
             return False
         before, driven = (
@@ -123,11 +132,12 @@ class Mechanics:
         return before < driven
 
     def turn_motor(self, port: str, gear_ratio: float, *, is_turned: bool) -> None:
-        """Change the angles of a motor from those of the program into its own.
+        """Convert the recorded angles of a motor from those of the program to its own.
 
         Args:
+            port: The motor's port.
             gear_ratio: Turns of the motor per turn in the program.
-            is_turned: Whether the motor turns the other way than the program says.
+            is_turned: Whether the motor turns in the opposite direction to that in the program.
         """
         self.reach_deg[port] = self.reach_deg.get(port, 0.0) * gear_ratio
         back_deg, ahead_deg = (deg * gear_ratio for deg in self.targets_deg.get(port, (0.0, 0.0)))

@@ -42,7 +42,7 @@ _CONVERTED = {"str", "int", "float", "list", "tuple", "set", "sorted", "reversed
 
 @dataclass(slots=True)
 class Evaluation:
-    """What the expressions of one program can be, without running it."""
+    """Finds the values that expressions of a program can have, without running it."""
 
     modules: Mapping[str, Scope]
     """The program's own modules by name."""
@@ -54,7 +54,7 @@ class Evaluation:
     _steps: int = 0
 
     def values(self, node: ast.expr, scope: Scope) -> tuple[Value, ...]:
-        """Return what an expression can be, the likeliest first; empty if nothing is known."""
+        """Return the values that an expression can have, the likeliest first; empty if nothing is known."""
         key = (node, scope)
         if key in self._known:
             return self._known[key]
@@ -67,7 +67,7 @@ class Evaluation:
         finally:
             self._open.discard(key)
         if not self._open:
-            # Not cached inside another evaluation: values that are still being evaluated may be missing.
+            # The result is not cached inside another evaluation, where values may still be missing.
             self._known[key] = values
         return values
 
@@ -102,13 +102,13 @@ class Evaluation:
             case ast.BinOp(left=left, op=sign, right=right):
                 yield from self._compute(left, sign, right, scope)
             case ast.ListComp(elt=item) | ast.SetComp(elt=item) | ast.GeneratorExp(elt=item):
-                # The items of a comprehension are alike: one stands for all.
+                # The items of a comprehension are alike, so one represents all.
                 yield SourceCollection(ast.List([item]), scope)
             case ast.Call():
                 yield from self._call(node, scope)
 
     def within(self, function: Function, call: Call) -> Evaluation:
-        """Return the evaluation for one call of a function: the parameters have only the values of that call."""
+        """Return an evaluation for one call of a function: its parameters have only the values of that call."""
         return Evaluation(self.modules, {**self.calls, function: [call]})
 
     # Names
@@ -170,7 +170,7 @@ class Evaluation:
             self._open.discard(key)
 
     def attribute(self, value: Value, name: str) -> Iterator[Value]:
-        """Yield what an attribute of a value can be."""
+        """Yield the values that an attribute of a value can have."""
         match value:
             case LibraryModule(name=module) if module not in library.OTHER_HARDWARE:
                 if name in library.CONSTANTS:
@@ -200,7 +200,7 @@ class Evaluation:
             case Instance(of=LibraryClass()) | LibraryClass() if name in library.CONSTANTS:
                 yield library.CONSTANTS[name]
             case str() | int() | float() if name == "value":
-                # `value` of a member of an enumeration: members are evaluated as their values.
+                # A member of an enumeration is evaluated as its value, so its `value` is the same.
                 yield value
 
     def _read_class(self, scope: Scope, name: str, *, is_bound: bool) -> Iterator[Value]:
@@ -220,16 +220,23 @@ class Evaluation:
                     yield from self.attribute(base, name)
 
     def bases(self, scope: Scope) -> list[Value]:
-        """Return the classes that a class is based on."""
+        """Return the base classes of a class, which is given by its scope."""
         assert isinstance(scope.node, ast.ClassDef) and scope.outer is not None
         bases: list[Value] = []
         for base in scope.node.bases:
-            # A class may seem to be its own base, if its name is bound twice.
+            # A class whose name is bound twice may seem to be its own base.
             bases += [value for value in self.values(base, scope.outer) if value != OwnClass(scope)]
         return bases
 
     def method(self, scope: Scope, name: str) -> OwnFunction | LibraryClass | None:
-        """Return the method that a class has or inherits; if a class of the library has it, that class."""
+        """Return the method that a class has or inherits; the library's class if that may define it.
+
+        The result is None if it has none.
+
+        Args:
+            scope: The scope of the class.
+            name: The name of the method.
+        """
         seen: set[Scope] = set()
         while scope not in seen:
             seen.add(scope)
@@ -272,13 +279,13 @@ class Evaluation:
                 case SourceCollection():
                     yield from self.look_up(value, keys)
                 case OwnClass(scope=inner):
-                    # An enumeration by name.
+                    # A subscript of an enumeration selects a member by name.
                     for name in keys:
                         if isinstance(name, str):
                             yield from self._read_class(inner, name, is_bound=False)
 
     def look_up(self, table: SourceCollection, wanted_keys: Sequence[Value]) -> Iterator[Value]:
-        """Yield the items that a list or dict can have under one of some keys; all items if the keys are unknown."""
+        """Yield the items of a list or dict that some keys can select; all items if the keys are unknown."""
         keys = table.keys
         for key, item in zip(keys or range(len(table.items)), table.items, strict=True):
             of_key = (
@@ -330,7 +337,7 @@ class Evaluation:
                     yield from _add_call(node, self.find_returned(value))
 
     def _call_get(self, base: ast.expr, node: ast.Call, scope: Scope) -> Iterator[Value]:
-        """Yield what a call of `get` of a dict, or of `os.environ`, can return."""
+        """Yield the values that a call of a dict's `get`, or of that of `os.environ`, can return."""
         owners = self.values(base, scope)
         tables = [value for value in owners if isinstance(value, SourceCollection)]
         for table in tables:
@@ -339,7 +346,7 @@ class Evaluation:
             yield from self.values(node.args[1], scope)
 
     def find_returned(self, function: OwnFunction) -> Iterator[Value]:
-        """Yield what a function of the program can return or yield."""
+        """Yield the values that a function of the program can return or yield."""
         for node in function.scope.body:
             if isinstance(node, ast.Return | ast.Yield) and node.value is not None:
                 yield from self.values(node.value, function.scope)
@@ -347,7 +354,15 @@ class Evaluation:
     # Arguments
 
     def find_argument(self, call: Call, name: str, position: int | None) -> Sequence[Value] | None:
-        """Return what a call gives for a parameter; None if nothing, empty if unknown because of `*` or `**`."""
+        """Return the values that a call gives for a parameter.
+
+        The result is None if the call gives none, and empty if it is unknown because of `*` or `**`.
+
+        Args:
+            call: The call.
+            name: The name of the parameter.
+            position: Its index among the positional parameters; None if it is keyword-only.
+        """
         if (node := find_argument_node(call, name, position)) is not None:
             return self.values(node, call.scope)
         is_unpacked = any(isinstance(argument, ast.Starred) for argument in call.node.args) or any(
@@ -356,7 +371,10 @@ class Evaluation:
         return () if is_unpacked else None
 
     def arguments(self, parameter: Parameter) -> list[tuple[Value, Call | None]]:
-        """Return what a parameter can be, each value with the call that gives it; None for its default."""
+        """Return the values that a parameter can have, each with the call that gives it.
+
+        For the default, the call is None.
+        """
         name = parameter.argument.arg
         function = parameter.function
         owner = parameter.scope.outer
@@ -394,7 +412,7 @@ class Evaluation:
 
 
 def _add_call(call: ast.Call | None, values: Iterable[Value]) -> Iterator[Value]:
-    """Yield values; instances without a call get the one that makes them."""
+    """Yield values, with `call` added to instances that do not yet have the call through which they were created."""
     for value in values:
         yield (
             replace(value, via=call) if isinstance(value, Instance) and value.via is None else value
@@ -408,7 +426,7 @@ def _count_index(index: object, table: SourceCollection) -> int:
 def _drop_repeated(values: Iterable[Value]) -> tuple[Value, ...]:
     distinct: list[Value] = []
     for value in values:
-        # 1, 1.0 and True are equal, and stand for the same here.
+        # 1, 1.0 and True are equal and count as one value here.
         if value not in distinct:
             distinct.append(value)
         if len(distinct) >= MAX_VALUES:

@@ -12,7 +12,10 @@ _TURN_DEG = 360
 
 
 def find_formula_size(node: ast.AST) -> tuple[str, float] | None:
-    """Return the name of a size of wheels, and its number, if a node divides a way by a wheel's circumference."""
+    """Return field name and number of a wheel's size in an expression that divides by its circumference.
+
+    The result is None for others.
+    """
     match node:
         case ast.BinOp(op=ast.Div(), right=product) if isinstance(product, ast.BinOp):
             return read_girth(product)
@@ -38,7 +41,7 @@ def find_formula_size(node: ast.AST) -> tuple[str, float] | None:
 
 
 def read_girth(product: ast.expr) -> tuple[str, float] | None:
-    """Return the diameter or the radius in π · d or 2 · π · r; None for any other product."""
+    """Return the diameter in π · d, or the radius in 2 · π · r, with its name; None for any other product."""
     factors = [*_list_factors(product)]
     numbers = [
         float(factor.value)
@@ -67,6 +70,6 @@ def _list_factors(node: ast.expr) -> Iterator[ast.expr]:
 
 
 def _check_girth(girth_cm: float) -> tuple[str, float] | None:
-    # A whole number may be one of degrees.
+    # A whole number may be an angle in degrees, so only fractions are accepted.
     is_girth = MIN_GIRTH_CM <= girth_cm <= MAX_GIRTH_CM and not girth_cm.is_integer()
     return ("wheel_circumference_cm", girth_cm) if is_girth else None

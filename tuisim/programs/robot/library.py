@@ -1,4 +1,4 @@
-"""What the names of the libraries for a brick stand for: ports, devices, pairs of motors, wheels, moves.
+"""The names of the libraries for a brick and their meaning: ports, devices, pairs of motors, wheels, moves.
 
 To add a device: add its class to `DEVICES`. To add a class that drives two wheels: add it to `PAIRS`.
 """
@@ -18,7 +18,7 @@ COURSE_MODULE = "ev3dev2_glue"
 
 
 class DeviceKind(StrEnum):
-    """A kind of device that a program asks for on a port; the value is what people call it."""
+    """A kind of device that a program creates on a port; the value is its usual name."""
 
     LARGE = "large motor"
     MEDIUM = "medium motor"
@@ -35,12 +35,12 @@ class DeviceKind(StrEnum):
 
     @property
     def is_motor(self) -> bool:
-        """Whether the device belongs on an output port."""
+        """Whether the device is connected to an output port."""
         return self in (DeviceKind.LARGE, DeviceKind.MEDIUM, DeviceKind.MOTOR)
 
 
 SENSES_WALLS = frozenset({DeviceKind.ULTRASONIC, DeviceKind.INFRARED, DeviceKind.TOUCH})
-"""The kinds of sensors that can tell a wall."""
+"""The kinds of sensors that can sense a wall."""
 
 DEVICES: Mapping[str, DeviceKind] = {
     "LargeMotor": DeviceKind.LARGE,
@@ -78,7 +78,7 @@ MOTOR_SET = "MotorSet"
 
 @dataclass(frozen=True, slots=True)
 class PairClass:
-    """A class that is made with a left and a right motor, or with their ports, as its first two arguments."""
+    """A class of a library whose first two arguments are a left and a right motor, or their ports."""
 
     left: str
     right: str
@@ -92,7 +92,7 @@ class PairClass:
     usual: tuple[str, str] = ("", "")
     """The ports where the arguments are missing."""
     reverses: bool = False
-    """Whether it turns the polarity of its motors unless it is told not to."""
+    """Whether it inverts the polarity of its motors by default."""
     takes_motors: bool = False
     """Whether it is made with motors."""
 
@@ -176,7 +176,7 @@ CLASSES = frozenset({*DEVICES, *PAIRS, *WHEELS, *MEMBERS, MOTOR_SET, WHEEL})
 
 @dataclass(frozen=True, slots=True)
 class Moves:
-    """The methods of a library that move motors, one or two, and the names of their arguments."""
+    """A library's methods that move one or two motors, with the names of their arguments."""
 
     endless: frozenset[str]
     """Methods after which a motor keeps moving."""
@@ -267,19 +267,19 @@ def parse_port(text: object) -> str:
 
 
 def find_driver_kind(text: object) -> DeviceKind | None:
-    """Return the kind of device that a driver is for; None if it is not simulated."""
+    """Return the kind of device of a driver's name; None if it is not simulated."""
     return _DRIVERS.get(text) if isinstance(text, str) else None
 
 
 def find_mode_kind(text: object) -> DeviceKind | None:
-    """Return the kind of sensor to which a mode such as `US-DIST-CM` belongs; None if it is unknown."""
+    """Return the kind of sensor that has a mode such as `US-DIST-CM`; None if the mode is unknown."""
     if not isinstance(text, str):
         return None
     return next((kind for prefix, kind in _MODES.items() if text.startswith(prefix)), None)
 
 
 def list_names(node: ast.AST) -> tuple[str, ...]:
-    """Return the names and texts in an expression that may tell what a device is for; not those of ports."""
+    """Return the names and texts in an expression that may say what a device is for, without those of ports."""
     names = []
     for inner in ast.walk(node):
         match inner:

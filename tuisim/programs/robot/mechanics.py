@@ -24,7 +24,7 @@ from tuisim.programs.robot.words import is_forwards
 
 
 def read_mechanics(mentions: Mentions) -> Mechanics:
-    """Return what a program says about how its motors are mounted and how far they move."""
+    """Return how, according to a program, its motors are mounted and how far they move."""
     if mentions.evaluation is None:
         return Mechanics()
     evaluation = mentions.evaluation
@@ -66,10 +66,10 @@ class _MechanicsReader:
             if isinstance(scope.node, FUNCTIONS) and is_forwards(scope.node.name):
                 self._read_forwards(scope)
         for port in self.normal:
-            # A program that turns the polarity both ways only tries it out.
+            # A program that sets both polarities does not show how the motor is mounted.
             self.found.reversed.pop(port, None)
         for port, where in self.backwards.items():
-            # Negative speed to drive forwards, and inversed polarity too: the two cancel, so it is mounted as usual.
+            # If a motor with inversed polarity drives forwards at negative speed, it is mounted as usual.
             if self.found.reversed.pop(port, None) is None:
                 self.found.reversed[port] = where
         for port in {**self.targets, **self.found.turns}:
@@ -104,7 +104,14 @@ class _MechanicsReader:
                 self._read_call(node, name, base, scope)
 
     def _read_call(self, call: ast.Call, name: str, base: ast.expr, scope: Scope) -> None:
-        """Note what a call of a method says about a motor: a move, an end stop or a position."""
+        """Record what a method call shows about a motor: a move, an end stop or a position.
+
+        Args:
+            call: The call.
+            name: The name of the method.
+            base: The expression for its object.
+            scope: The scope that contains the call.
+        """
         if name in self.moves.ending:
             self._note_reach(call, name, self._find_motors(base, scope), scope)
         elif name in self.moves.stalling:
@@ -137,7 +144,7 @@ class _MechanicsReader:
             self.places.setdefault(port, set()).update(self._find_numbers(value, scope))
 
     def _read_forwards(self, scope: Scope) -> None:
-        """Note motors that a function named for driving forwards turns only backwards."""
+        """Record the motors that a function for driving forwards, by its name, turns only backwards."""
         speeds: dict[str, list[float]] = {}
         where: dict[str, Where] = {}
         for node in scope.body:
@@ -162,7 +169,7 @@ class _MechanicsReader:
                 self.backwards[port] = where[port]
 
     def _find_speeds(self, call: ast.Call, scope: Scope) -> Iterator[float]:
-        """Yield the speeds in a call that moves one motor, or both of a pair."""
+        """Yield the speeds in a call that moves one motor, or both motors of a pair."""
         assert isinstance(call.func, ast.Attribute)
         pairs = self._find_pairs(call.func.value, scope)
         first, last = (0, 1) if not pairs or call.func.attr in self.moves.of_both else (0, 2)
@@ -176,7 +183,7 @@ class _MechanicsReader:
             )
 
     def _find_lengths(self, call: ast.Call, name: str, scope: Scope) -> list[ast.expr]:
-        """Return the arguments that say how far, or to where, a call moves a motor."""
+        """Return the argument expressions that say how far, or to which position, a call moves a motor."""
         named = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.lengths]
         if name not in self.moves.length_at:
             return named
@@ -199,10 +206,13 @@ class _MechanicsReader:
     def _stall(
         self, base: ast.expr, scope: Scope, node: ast.AST, ways: Sequence[bool] | None = None
     ) -> None:
-        """Note an end stop of a motor, unless the program only prints whether the motor is stalled.
+        """Record an end stop of a motor, unless the program only prints whether the motor is stalled.
 
         Args:
-            ways: Whether a call moves it forwards there, for each time; without one its movements tell that.
+            base: The expression for the motor.
+            scope: The scope that contains it.
+            node: The call or test that shows the end stop.
+            ways: For each run of a call, whether it moves the motor forwards; None to use the motor's other moves.
         """
         if ways is None and scope.prints(node):
             return
@@ -214,7 +224,12 @@ class _MechanicsReader:
                 self.found.closed.add(port)
 
     def _convert_way(self, port: str, forwards: bool | None) -> bool | None:
-        """Return whether a motor itself turns forwards, if `forwards` is so in the program; None if it is not known."""
+        """Return whether a motor's own direction is forwards; None if that is not known.
+
+        Args:
+            port: The motor's port.
+            forwards: Whether it is forwards in the program; None if that is not known.
+        """
         mention = self.mentions.find_motor(port)
         return not forwards if forwards is not None and mention and mention.is_turned else forwards
 
@@ -238,7 +253,7 @@ class _MechanicsReader:
         return bool(self._find_calls(scope.body, ports, names, scope))
 
     def _is_endless(self, base: ast.expr, scope: Scope) -> bool:
-        """Return whether a motor moves in some part of the program, but only by calls without an end."""
+        """Return whether the program moves a motor, but only by calls that do not end by themselves."""
         ports = self._find_motors(base, scope)
         return self._moves(scope, ports, self.moves.endless) and not self._moves(
             scope, ports, self.moves.ending
@@ -247,7 +262,7 @@ class _MechanicsReader:
     def _find_ways(
         self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope
     ) -> Iterator[bool]:
-        """Yield, for each movement without an end in some nodes, whether it is forwards."""
+        """Yield for each endless move of motors in some nodes whether it is forwards."""
         ports = [*ports]
         for call in self._find_calls(nodes, ports, self.moves.endless, scope):
             named = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.speeds]
@@ -289,7 +304,7 @@ class _MechanicsReader:
     # Touch sensors
 
     def _read_press(self, statements: list[ast.stmt], scope: Scope) -> None:
-        """Note a motor that runs until a touch sensor is pressed, if no other motor moves before."""
+        """Record a motor that runs until a touch sensor is pressed, if no other motor moves before."""
         last = statements[-1]
         base = find_awaited_touch(last)
         if base is None:
@@ -313,7 +328,10 @@ class _MechanicsReader:
     # Devices
 
     def _find_known(self, node: ast.expr, scope: Scope) -> list[str]:
-        """Return the ports of the motors that an expression can be; none if for several in turn, as in a loop."""
+        """Return the ports of the motors that an expression can be.
+
+        The result is empty if it is one motor after another, as in a loop.
+        """
         calls = [
             value.call
             for value in self.evaluation.values(node, scope)
@@ -330,7 +348,7 @@ class _MechanicsReader:
         return self._find_ports(node, scope, DeviceKind.LARGE, DeviceKind.MEDIUM, DeviceKind.MOTOR)
 
     def _find_ports(self, node: ast.expr, scope: Scope, *kinds: DeviceKind) -> list[str]:
-        """Return the ports of the devices of some kinds that an expression can be."""
+        """Return the ports of the devices of given kinds that an expression can be."""
         if isinstance(node, ast.Attribute) and node.attr in ("left_motor", "right_motor"):
             pairs = self._find_pairs(node.value, scope)
             if pairs:
@@ -346,7 +364,7 @@ class _MechanicsReader:
         return list(dict.fromkeys(ports))
 
     def _evaluate(self, node: ast.expr, scope: Scope) -> Sequence[Value]:
-        """Return what an expression can be at its place: by the nearest assignment above it, and within its object."""
+        """Return the values of an expression where it is: after the nearest assignment above, within its object."""
         match node:
             case ast.Name(id=name):
                 known = [
@@ -374,7 +392,7 @@ class _MechanicsReader:
         return self.evaluation.values(node, scope)
 
     def _enter_object(self, value: Value) -> Evaluation:
-        """Return the evaluation of expressions within one object of a class of the program."""
+        """Return an evaluation of expressions within one object of a class of the program."""
         match value:
             case Instance(of=OwnClass(scope=scope), call=ast.Call() as call):
                 if call not in self.inside:

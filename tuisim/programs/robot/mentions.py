@@ -34,7 +34,7 @@ _MAX_WAYS = 40
 
 @dataclass(frozen=True, slots=True)
 class Where:
-    """A line of a program."""
+    """A line of a program, with its file."""
 
     file: str
     line: int
@@ -45,7 +45,7 @@ class Where:
 
 @dataclass(frozen=True, slots=True)
 class Mention:
-    """A device that a program makes."""
+    """A device that a program creates, with its port and the names that the program gives it."""
 
     kind: DeviceKind
     port: str
@@ -67,13 +67,13 @@ class Mention:
     """Turns of the motor per turn of what it drives, as the program says."""
 
     def makes(self, value: Instance) -> bool:
-        """Return whether this call makes an instance, or is in the `__init__` of its class."""
+        """Return whether the device's call creates an instance, or is in the `__init__` of the instance's class."""
         return _is_maker(self.call, self.owner, value)
 
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two motors that a program drives together."""
+    """Two motors that a program drives together through one object."""
 
     left: str
     right: str
@@ -95,13 +95,13 @@ class Pair:
     """The polarity that the program gives for the motors, for a class that takes one."""
 
     def makes(self, value: Instance) -> bool:
-        """Return whether this call makes an instance, or is in the `__init__` of its class."""
+        """Return whether the pair's call creates an instance, or is in the `__init__` of the instance's class."""
         return _is_maker(self.call, self.owner, value)
 
 
 @dataclass(frozen=True, slots=True)
 class Mentions:
-    """The devices that a program makes, and the code that can tell more about them."""
+    """The devices that a program creates, and the code that may show more about them."""
 
     devices: tuple[Mention, ...] = ()
     pairs: tuple[Pair, ...] = ()
@@ -115,7 +115,7 @@ class Mentions:
     """The hub that it is for, one of `HUBS`, on whose ports it names motors and sensors; empty for the EV3."""
 
     def find_motor(self, port: str) -> Mention | None:
-        """Return the first motor that the program makes on a port."""
+        """Return the first motor that the program creates on a port; None if there is none."""
         return next(
             (device for device in self.devices if device.port == port and device.kind.is_motor),
             None,
@@ -123,7 +123,7 @@ class Mentions:
 
 
 def read_mentions(modules: dict[str, Module]) -> Mentions:
-    """Return what a program, with its own modules, says about its robot."""
+    """Return the devices that a program and its own modules create."""
     scopes = {name: build_scope(module) for name, module in modules.items()}
     hub = find_hub(modules)
     mentions = _Reader(scopes, hub).read()
@@ -170,7 +170,7 @@ class _Reader:
         pairs: list[Pair] = []
         whole = self.evaluation
         of_ports = [pair for pair in self.made if not _needs_motors(pair[0])]
-        # Classes that take motors come last, when the motors are known.
+        # Classes that take motors are read last, when the motors are known.
         for name, call in (*of_ports, *(pair for pair in self.made if _needs_motors(pair[0]))):
             for inside, via in self._list_ways(name, call, whole):
                 self.evaluation = inside
@@ -183,7 +183,7 @@ class _Reader:
                 elif name in library.DEVICES:
                     devices += self._find_devices(name, call)
         self.evaluation = whole
-        # A port may be known in one call of a function and not in another, such as its own recursive one.
+        # A call with a known port replaces the same one without: recursive calls may lack the port.
         known = {pair.call for pair in devices if pair.port}
         devices = [pair for pair in devices if pair.port or pair.is_any or pair.call not in known]
         return Mentions(
@@ -193,9 +193,15 @@ class _Reader:
     def _list_ways(
         self, name: str, call: Call, whole: Evaluation
     ) -> Iterator[tuple[Evaluation, Call | None]]:
-        """Yield the evaluation in each call of the function in which a device is made, with that call.
+        """Yield an evaluation for each call of the function in which a device is created, with that call.
 
-        Without a call, the whole evaluation, if the function has fewer than two calls, or too many.
+        If the function has only one call or none, or too many calls, yield only the evaluation of the whole program,
+        and None.
+
+        Args:
+            name: The library class of the device.
+            call: The call that creates the device.
+            whole: The evaluation of the program.
         """
         function = call.scope.node
         calls = whole.calls.get(function, ()) if isinstance(function, FUNCTIONS) else ()
@@ -205,7 +211,7 @@ class _Reader:
         for via in calls:
             inside = whole.within(function, via)
             values = inside.values(call.node.func, call.scope)
-            # A class that is given to the function is another one in another call.
+            # If the function gets the class as an argument, only the calls that pass this class are yielded.
             if (
                 not any(isinstance(value, LibraryClass) for value in values)
                 or LibraryClass(name) in values
@@ -215,7 +221,7 @@ class _Reader:
     # Calls
 
     def _sort(self, call: Call, calls: dict[Function, list[Call]]) -> None:
-        """Note what a call calls: a function or class of the program, or a class of the library."""
+        """Record the callee of a call: a function or class of the program, or a class of the library."""
         match call.node.func:
             case ast.Attribute(value=base, attr="__init__"):
                 for value in self.evaluation.values(base, call.scope):
@@ -231,7 +237,7 @@ class _Reader:
                     calls.setdefault(node, []).append(replace(call, is_bound=is_bound))
 
     def _sort_init(self, value: Value, call: Call, calls: dict[Function, list[Call]]) -> None:
-        """Note the class on which a call of `super().__init__` or `Base.__init__` works."""
+        """Record the class whose `__init__` a call such as `super().__init__` or `Base.__init__` runs."""
         match value:
             case Parent(of=scope):
                 for base in self.evaluation.bases(scope):
@@ -346,7 +352,7 @@ class _Reader:
             else list(self._find_ports(call, word, 0, names))
         )
         if not ports and not any(isinstance(value, str) for value in self._read_given(call, word)):
-            # A text that is no port of the brick names something that is not simulated.
+            # A text other than a port names a device that is not simulated, so only calls without texts are kept.
             yield replace(device, is_any=self._has_any(call, word))
         for port, called in dict(ports).items():
             if port and not self.hub and port.startswith("out") != kind.is_motor:
@@ -355,14 +361,14 @@ class _Reader:
             yield self._mount(placed, call) if kind.is_motor else placed
 
     def _mount(self, motor: Mention, call: Call) -> Mention:
-        """Return a motor with the direction and the gears in the call that makes it."""
+        """Return a motor with the direction and the gears from the call that creates it."""
         is_turned = library.INVERSED in (
             self.evaluation.find_argument(call, library.DIRECTION, 1) or ()
         )
         return replace(motor, is_turned=is_turned, gear_ratio=self._read_gears(call))
 
     def _read_gears(self, call: Call) -> float:
-        """Return the turns of a motor per turn of what it drives, from a list of gears, or a list of such lists."""
+        """Return a motor's turns per turn of what it drives, from a list of gears, or a list of lists, in a call."""
         parts = [*self._flatten(self.evaluation.find_argument(call, library.GEARS, 2) or ())]
         trains = [
             [*self._flatten([part])] for part in parts if isinstance(part, SourceCollection)
@@ -375,7 +381,7 @@ class _Reader:
         return ratio
 
     def _find_names(self, call: Call) -> tuple[str, ...]:
-        """Return the program's names for the object that a call makes."""
+        """Return the program's names for the object that a call creates."""
         outside = self.hints.get(self.via.node, ()) if self.via else ()
         return tuple(dict.fromkeys((*self.hints.get(call.node, ()), *outside)))
 
@@ -430,7 +436,7 @@ class _Reader:
                 yield value
 
     def _find_kind(self, call: Call) -> DeviceKind | None:
-        """Return the kind of a sensor from the mode that the program sets; None if it sets none."""
+        """Return the kind of a sensor from the mode that the program sets; None if it sets no mode."""
         names = self.hints.get(call.node, ())
         for scope in self.scopes:
             for node in scope.body:
@@ -475,10 +481,12 @@ class _Reader:
     # Pairs
 
     def _find_pairs(self, name: str, call: Call, devices: Sequence[Mention]) -> Iterator[Pair]:
-        """Yield the pairs of motors that a call makes.
+        """Yield the pairs of motors that a call creates.
 
         Args:
-            devices: The devices that the program makes, among them the motors for a class that takes motors.
+            name: The name of the class that is called.
+            call: The call.
+            devices: The devices that the program creates, among them the motors for a class that takes motors.
         """
         known = library.PAIRS[name]
         names = self._find_names(call)
@@ -504,7 +512,7 @@ class _Reader:
     def _find_ends(
         self, known: PairClass, call: Call, names: tuple[str, ...], devices: Sequence[Mention]
     ) -> Iterable[tuple[str, str]]:
-        """Return the ports of the left and the right motor of each pair that a call can make."""
+        """Return the ports of the left and the right motor of each pair that a call can create."""
         if known.takes_motors:
             left, right = (
                 self._find_driven(call, known.left, 0, devices),
@@ -512,7 +520,7 @@ class _Reader:
             )
             if len(left) == 2 and right in ([], left):
                 # With `motors = [Motor(port) for port in ports]`, `motors[0]` and `motors[1]` can each be both ports:
-                # take the ports in order.
+                # the ports are taken in order.
                 left, right = left[:1], left[1:]
         else:
             # `GyroBalancer` alone has usual ports; its motor ports are the arguments 10 and 11, counted from 0.
@@ -526,7 +534,14 @@ class _Reader:
         return dict.fromkeys(zip(left, right, strict=False))
 
     def _find_driven(self, call: Call, name: str, at: int, devices: Sequence[Mention]) -> list[str]:
-        """Return the ports of the motors that an argument can be."""
+        """Return the ports of the motors that an argument of a call can be.
+
+        Args:
+            call: The call.
+            name: The name of the parameter.
+            at: Its index.
+            devices: The devices that the program creates.
+        """
         instances = [
             one
             for one in self.evaluation.find_argument(call, name, at) or ()
@@ -549,7 +564,10 @@ class _Reader:
     def _read_sizes(
         self, known: PairClass, call: Call
     ) -> tuple[tuple[float, float | None] | None, float | None]:
-        """Return diameter and width of the wheels, and their distance, in mm; None for what the call does not give."""
+        """Return diameter and width of the wheels, and their distance, in mm.
+
+        A size that the call does not give is None.
+        """
         if known.takes_motors:
             diameter_mm = self._read_size(call, library.WHEEL_DIAMETER, 2)
             wheel_mm = (diameter_mm, None) if diameter_mm is not None else None
@@ -615,7 +633,7 @@ def _needs_motors(name: str) -> bool:
 
 
 def _is_maker(call: ast.Call | None, owner: Scope | None, value: Instance) -> bool:
-    """Return whether a call makes an instance: it is that of the instance, or of `__init__` in its class `owner`."""
+    """Return whether a call creates an instance: it is the instance's own, or calls `__init__` in its class `owner`."""
     if value.call is not None and value.call is call:
         return True
     from_init = (
@@ -629,6 +647,6 @@ def _find_where(call: Call) -> Where:
 
 
 def _find_motor_kind(value: Value) -> DeviceKind | None:
-    """Return the kind of motor that a class of the library is for."""
+    """Return the kind of motor of a library class; None for other values."""
     kind = library.DEVICES.get(value.name) if isinstance(value, LibraryClass) else None
     return kind if kind and kind.is_motor else None

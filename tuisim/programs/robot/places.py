@@ -25,7 +25,7 @@ _ROW = (Side.LEFT, Side.MIDDLE, Side.RIGHT)
 
 
 def add_sides(mentions: Sequence[Mention]) -> list[Mention]:
-    """Return mentions; three colour sensors that one line makes without sides get them, from left to right."""
+    """Return mentions, in which three colour sensors that one line creates without sides are left, centre and right."""
     calls = [
         mention.call for mention in mentions if mention.kind is DeviceKind.COLOR and mention.port
     ]
@@ -43,12 +43,12 @@ def add_sides(mentions: Sequence[Mention]) -> list[Mention]:
 
 
 def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorSpec]) -> bool:
-    """Return whether a program's colour sensors are placed otherwise: one is on another side than in the usual robot.
+    """Return whether, by its names, one of a program's colour sensors is on another side than in the usual robot.
 
-    Names that say a side for some of the usual sensors only count beside a new one.
+    Names with a side for only some of the usual sensors are ignored, unless there is a new colour sensor.
 
     Args:
-        mentions: The devices that the program makes, by port.
+        mentions: The devices that the program creates, by port.
         usual: The sensors of the usual robot, by port.
     """
     colors = {
@@ -65,7 +65,7 @@ def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorS
 
 
 def choose_likeliest(sensors: list[SensorSpec], mention: Mention) -> SensorSpec:
-    """Return the sensor that a program most likely means, by its name for the sensor."""
+    """Return the sensor among some that a program most likely means, by its name for the sensor."""
     side = find_side(mention.names)
     return next((sensor for sensor in sensors if sensor.name == side), sensors[0])
 
@@ -76,12 +76,13 @@ def place_sensors(
     body: Body,
     doubts: list[str],
 ) -> dict[str, SensorSpec]:
-    """Return new sensors by port, with places and names that no other sensor has.
+    """Return new sensors by port, with positions and names that no other sensor has.
 
     Args:
-        new: What the program says of the sensors that the usual robot does not have, by port.
+        new: The devices that the program creates and the usual robot does not have, by port.
         placed: The other sensors, by port.
-        doubts: Gets a sentence for each sensor that cannot be built.
+        body: The robot's body.
+        doubts: A list to which a sentence is added for each sensor that cannot be built.
     """
     sensors: dict[str, SensorSpec] = {}
     for kind, spec in SENSOR_SPECS.items():
@@ -118,10 +119,12 @@ SENSOR_SPECS: Mapping[DeviceKind, type[SensorSpec]] = {
 def _choose_sides(
     mentions: Mapping[str, Mention], *, first_free: bool, kind: DeviceKind
 ) -> dict[str, Side]:
-    """Return the side of each sensor: the one that its name says, else the next that is free.
+    """Return the side of each sensor by port: the one that its name says, else the next free one.
 
     Args:
+        mentions: The sensors, by port.
         first_free: Whether no other sensor of the kind is on the robot.
+        kind: The kind of the sensors.
     """
     sides = {port: find_side(mention.names) for port, mention in mentions.items()}
     if kind is DeviceKind.TOUCH and first_free and len(sides) == 1 and Side.NONE in sides.values():
@@ -139,13 +142,16 @@ def _choose_sides(
 
 
 def on_port(sensor: Any, port: str) -> SensorSpec:
-    """Return a sensor on another port."""
+    """Return a copy of a sensor on another port."""
     moved: SensorSpec = replace(sensor, port=port)
     return moved
 
 
 def mount(sensor: SensorSpec, mention: Mention) -> SensorSpec:
-    """Return a sensor for distances that looks aside or back if the program's name for it says so; others unchanged."""
+    """Return a distance sensor turned to the side or back if the program's name for it says so.
+
+    Other sensors are returned unchanged.
+    """
     side = find_side(mention.names) or (Side.RIGHT if is_aside(mention.names) else Side.NONE)
     if not isinstance(sensor, UltrasonicSpec | InfraredSpec) or side not in _ASIDE:
         return sensor
@@ -154,7 +160,7 @@ def mount(sensor: SensorSpec, mention: Mention) -> SensorSpec:
 
 
 def build_fields(placed: Mapping[str, SensorSpec], usual: RobotSpec) -> dict[str, Any]:
-    """Return the sensors as fields of a robot, those of the usual robot first and in its order."""
+    """Return sensors as fields of a robot, those of the usual robot first and in its order."""
     order = [sensor.name for sensor in usual.sensors]
     sensors = sorted(
         placed.values(),
@@ -181,7 +187,7 @@ KINDS: Mapping[type, DeviceKind] = {spec: kind for kind, spec in SENSOR_SPECS.it
 
 
 def name_sensor(sensor: SensorSpec) -> str:
-    """Return what a sensor is called in words."""
+    """Return a sensor's name in words."""
     kind = KINDS[type(sensor)]
     return f"{sensor.name} {kind}" if kind is DeviceKind.COLOR else str(kind)
 

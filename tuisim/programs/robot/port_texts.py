@@ -15,7 +15,7 @@ _PORT = re.compile(r"(?:ev3-ports:)?(out[A-D])")
 
 
 def add_port_texts(mentions: Mentions, modules: Iterable[Module]) -> Mentions:
-    """Return what a program says about its robot, with motors on the ports in its texts if it makes no device."""
+    """Return a program's mentions; if it creates no device, with motors on the ports that its texts name."""
     if mentions.devices or mentions.pairs:
         return mentions
     motors: dict[str, Mention] = {}

@@ -45,7 +45,7 @@ ARGUMENTS: Mapping[str, Collection[str]] = {
 
 
 def find_version_4_name(modules: Iterable[Module]) -> str:
-    """Return a name in a program for Pybricks that only version 4 of it has; empty for none."""
+    """Return a name that a Pybricks program uses and only version 4 has; empty if it uses none."""
     trees = [module.tree for module in modules]
     own = {name for tree in trees for name in find_definitions(tree)}
     names = (name for tree in trees for node in ast.walk(tree) for name in _list_names(node, own))
@@ -53,9 +53,10 @@ def find_version_4_name(modules: Iterable[Module]) -> str:
 
 
 def _list_names(node: ast.AST, own: set[str]) -> Iterator[str]:
-    """Yield the names of version 4 of Pybricks in one node of a syntax tree.
+    """Yield the names that only version 4 of Pybricks has in one node of a syntax tree.
 
     Args:
+        node: The node.
         own: The names that the program defines itself.
     """
     match node:
@@ -71,7 +72,7 @@ def _list_names(node: ast.AST, own: set[str]) -> Iterator[str]:
 
 
 def _list_call_names(call: ast.Call, name: str) -> Iterator[str]:
-    """Yield the names of version 4 in a call of a function or method that the program does not define."""
+    """Yield the names of Pybricks 4 in a call of a function or method that the program does not define."""
     known = ARGUMENTS.get(name, ())
     yield from (f"{keyword.arg}= of {name}()" for keyword in call.keywords if keyword.arg in known)
     if name == "Color" and len(call.args) > 1:

@@ -10,9 +10,9 @@ from tuisim.programs.robot.scopes import Scope
 
 
 def find_reachable(modules: Mapping[str, Scope]) -> list[Scope]:
-    """Return the scopes that can run, those of the program itself first.
+    """Return the scopes of a program that can run, those of the program itself before those of its modules.
 
-    A function can run if its name is used anywhere in code that can run; the body of a class runs in any case.
+    A function can run if its name is used anywhere in code that can run; the body of a class always runs.
     """
     scopes: list[Scope] = []
     names: set[str] = set()
@@ -48,7 +48,7 @@ def _list_names(scope: Scope) -> Iterator[str]:
             case ast.Name(id=name, ctx=ast.Load()) | ast.Attribute(attr=name):
                 yield name
             case ast.Constant(value=str(name)) if name.isidentifier():
-                # The name is that of an attribute, as in `getattr(robot, "lift")`.
+                # A text may be the name of an attribute, as in `getattr(robot, "lift")`.
                 yield name
 
 
@@ -64,7 +64,7 @@ def _is_used(scope: Scope, names: set[str]) -> bool:
         return False
     if node.name in names or node.decorator_list:
         return True
-    # Special methods are called by Python, others perhaps by a base class that is not the program's.
+    # Python calls special methods, and a base class from a library may call others.
     return (node.name.startswith("__") and node.name.endswith("__")) or any(
         map(_is_foreign, owner.node.bases)
     )

@@ -33,7 +33,7 @@ USUAL = ROBOTS[DEFAULT_ROBOT]
 
 
 def find_usual(hub: str) -> RobotSpec:
-    """Return the robot from which that of a program is made.
+    """Return the usual robot, which is changed into that of a program.
 
     Args:
         hub: One of `HUBS`; empty for the EV3.
@@ -46,7 +46,7 @@ def find_usual(hub: str) -> RobotSpec:
 
 
 def has_hidden_parts(mentions: Mentions) -> bool:
-    """Return whether a program uses classes of motors or sensors, but its text does not show any part that it makes."""
+    """Return whether a program uses classes of motors or sensors, but its text shows no part that it creates."""
     if mentions.devices or mentions.pairs:
         return False
     for scope in mentions.scopes:
@@ -59,13 +59,13 @@ def has_hidden_parts(mentions: Mentions) -> bool:
 
 
 def describe_robot(built: BuiltRobot) -> str:
-    """Return how a robot differs from the default one, in words."""
+    """Return in words how a program's robot differs from the default one."""
     return ", ".join(part.what for part in built.parts if part.changes)
 
 
 @dataclass(frozen=True, slots=True)
 class ProgramRobot:
-    """The robot that a program needs, as a robot file."""
+    """The robot that a program needs, for a robot file."""
 
     program: str
     """The name of the program."""
@@ -74,11 +74,11 @@ class ProgramRobot:
 
     @property
     def spec(self) -> RobotSpec:
-        """The robot."""
+        """The specification of the robot."""
         return self.built.choice.spec if self.built else USUAL
 
     def list_lines(self) -> list[str]:
-        """Return the lines of a robot file with what the program changes in the default robot, and why."""
+        """Return the lines of a robot file with the changes to the default robot, and the reason for each."""
         base = HUB_ROBOT if self.spec.hub else DEFAULT_ROBOT
         lines = [
             f"# The robot that {self.program} describes: {base} with these parts changed. "
@@ -106,7 +106,7 @@ class ProgramRobot:
         return [*lines, "", top, *_format_lines(changed, "", comments)]
 
     def save(self, path: Path) -> None:
-        """Write the robot atomically to a robot file; comments in an existing file stay.
+        """Write the robot atomically to a robot file; comments in an existing file are kept.
 
         Raises:
             RobotError: the file cannot be written, or is no robot file.

@@ -17,7 +17,7 @@ UNITS = (*FUNCTIONS, ast.ClassDef)
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """An expression that a name may be bound to."""
+    """A binding of a name to an expression."""
 
     node: ast.expr
     scope: Scope
@@ -29,7 +29,7 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class Defined:
-    """A function or class that a name is bound to."""
+    """A binding of a name to a function or class."""
 
     node: Function | ast.ClassDef
     scope: Scope
@@ -37,7 +37,7 @@ class Defined:
 
 @dataclass(frozen=True, slots=True)
 class Imported:
-    """The module, or the name in it, to which an import binds a name."""
+    """A binding of a name by an import: to a module, or to a name in it."""
 
     module: str
     name: str = ""
@@ -46,7 +46,7 @@ class Imported:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter of a function."""
+    """A binding of a name to a parameter of a function."""
 
     function: Function
     argument: ast.arg
@@ -76,23 +76,23 @@ class Scope:
 
     @property
     def owner(self) -> Scope | None:
-        """The class whose method or body this is."""
+        """The class of which this scope is the body or a method; None for others."""
         if isinstance(self.node, ast.ClassDef):
             return self
         return self.outer.owner if self.outer is not None else None
 
     def find_bindings(self, name: str) -> list[Binding]:
-        """Return what a name can be bound to where this scope uses it; empty if the program does not bind it."""
+        """Return the bindings of a name that this scope uses; empty if the program does not bind it."""
         scope: Scope | None = self
         while scope is not None:
-            # The names of a class are not seen in its methods.
+            # Methods do not see the names in the body of their class, so that scope is skipped.
             if name in scope.names and (scope is self or not isinstance(scope.node, ast.ClassDef)):
                 return scope.names[name]
             scope = scope.outer
         return []
 
     def prints(self, node: ast.AST) -> bool:
-        """Return whether a node is in what a `print` or an f-string of the scope shows."""
+        """Return whether a node is in an argument of `print` or in an f-string of the scope."""
         return any(
             node is inner
             for shown in self.body
@@ -103,12 +103,12 @@ class Scope:
 
     @property
     def top(self) -> Scope:
-        """The scope of the module."""
+        """The scope of the module that contains this scope."""
         return self if self.outer is None else self.outer.top
 
 
 def build_scope(module: Module) -> Scope:
-    """Return the scopes of a module."""
+    """Return the scope of a module, with the scopes in it."""
     top = Scope(module, module.tree, None)
     _fill(top, module.tree.body)
     return top
@@ -133,7 +133,7 @@ def _fill(scope: Scope, body: list[ast.stmt]) -> None:
 
 
 def _walk(node: ast.AST) -> Iterator[ast.AST]:
-    """Yield a node and those inside it in the order of the text, without the bodies of functions and classes."""
+    """Yield a node and the nodes inside it in the order of the text, without the bodies of functions and classes."""
     yield node
     if isinstance(node, FUNCTIONS):
         arguments = node.args
@@ -211,7 +211,7 @@ def _bind_target(scope: Scope, target: ast.expr, bound: Bound) -> None:
 
 
 def list_blocks(scope: Scope) -> Iterator[list[ast.stmt]]:
-    """Yield every sequence of statements of a scope."""
+    """Yield each list of statements in a scope: its body, and those of its loops and branches."""
     yield scope.node.body
     for node in scope.body:
         for name in ("body", "orelse", "finalbody"):

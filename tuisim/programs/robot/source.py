@@ -67,6 +67,7 @@ class Module:
         """Return the absolute name of a module that this one imports.
 
         Args:
+            name: The name after `from`; None for none.
             level: The number of dots before the name: 0 for an absolute import.
         """
         if not level:
@@ -81,7 +82,7 @@ def parse(text: str) -> ast.Module | None:
     """Return the syntax tree of a text, which callers must not change; None if the text is not Python."""
     try:
         with warnings.catch_warnings():
-            # Python shows the warnings when the program runs.
+            # Warnings are ignored here; Python shows them when the program runs.
             warnings.simplefilter("ignore")
             return parse_module(text)
     # When the program runs, Python reports what is wrong with it.
@@ -110,7 +111,10 @@ def read_modules(program: Program) -> dict[str, Module]:
 
 
 def find_missing_module(program: Program, modules: dict[str, Module]) -> str:
-    """Return in which folder of its repository a module is that a program imports and cannot find; empty for none."""
+    """Return the folder of its repository with a module that a program imports and cannot find.
+
+    The result is empty if there is none.
+    """
     known = {"", *modules, *LIBRARIES, *SPIKE_MODULES, *sys.stdlib_module_names}
     named = (name.split(".")[0] for module in modules.values() for name in _list_imported(module))
     for name in dict.fromkeys(named):
@@ -131,14 +135,17 @@ class _Search:
         self._folders = list_first_folders(program)
 
     def extend(self, tree: ast.Module, file: str) -> None:
-        """Add the folders that a module puts into `sys.path`; a relative one is beside the program, as on the brick."""
+        """Add the folders that a module adds to `sys.path`.
+
+        A relative one is relative to the program, as on the brick.
+        """
         if os.path.isdir(self._own):
             own = os.path.abspath(self._own)
             places = (place_folder(folder, own) for folder in find_added_folders(tree, file))
             self._folders += [os.path.join(own, place) for place in places]
 
     def module(self, name: str) -> Module | None:
-        """Return a module by its name; None if it is in none of the folders."""
+        """Return the module of a name; None if it is in none of the folders."""
         if not all(part.isidentifier() for part in name.split(".")):
             return None
         for folder in self._folders:
@@ -163,7 +170,7 @@ class _Search:
 
 
 def _list_imported(module: Module) -> Iterator[str]:
-    """Yield the names in the imports of a module that can be modules, packages before what is in them."""
+    """Yield the names in the imports of a module that can be modules, packages before the modules in them."""
     for node in ast.walk(module.tree):
         match node:
             case ast.Import(names=names):
@@ -178,7 +185,7 @@ def _list_imported(module: Module) -> Iterator[str]:
 
 
 def is_for_other_hub(modules: dict[str, Module]) -> bool:
-    """Return whether a program, or one of its own modules, imports what only LEGO's Python for SPIKE hubs has."""
+    """Return whether a program or one of its own modules imports one that only LEGO's Python for SPIKE hubs has."""
     names = {name for module in modules.values() for name in _list_imported(module)} - {*modules}
     return bool(names & {*SPIKE_MODULES}) and not names & {
         *EV3_MODULES,
@@ -192,7 +199,7 @@ EV3_MODULES = frozenset({"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3de
 
 
 def find_hub(modules: dict[str, Module]) -> str:
-    """Return the hub, one of `HUBS`, that a program or one of its own modules is for; empty for the EV3, or none."""
+    """Return the hub, one of `HUBS`, for which a program or one of its own modules is; empty for the EV3 or no hub."""
     names = {name: None for module in modules.values() for name in _list_imported(module)}
     if not names.keys().isdisjoint(EV3_MODULES):
         return ""
@@ -232,7 +239,7 @@ def list_first_folders(program: Program) -> list[str]:
 
 
 def find_added_folders(tree: ast.Module, file: str) -> list[str]:
-    """Return the folders that a module puts into `sys.path`.
+    """Return the folders that a module adds to `sys.path`.
 
     Args:
         tree: The module.
@@ -248,7 +255,7 @@ def find_added_folders(tree: ast.Module, file: str) -> list[str]:
 
 
 def _find_added(tree: ast.Module) -> Iterator[ast.expr]:
-    """Yield the expressions, for folders, that a module puts into `sys.path`."""
+    """Yield the expressions for the folders that a module adds to `sys.path`."""
     for node in ast.walk(tree):
         match node:
             case ast.Call(func=ast.Attribute(value=base, attr="append"), args=[folder]):
@@ -273,7 +280,7 @@ def _is_name(node: ast.expr, name: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Folders:
-    """Works out the paths that expressions of a module stand for; empty where its text does not show them.
+    """Computes the paths of expressions in a module; a path is empty if the text does not show it.
 
     Args:
         assigned: The last expression that is assigned to each name.
@@ -285,7 +292,7 @@ class _Folders:
     depth: int = 0
 
     def path(self, node: ast.expr) -> str:
-        """Return the path that an expression stands for."""
+        """Return the path that an expression computes; empty if it is not known."""
         if self.depth > _MAX_DEPTH:
             return ""
         inside = replace(self, depth=self.depth + 1)
@@ -315,7 +322,7 @@ class _Folders:
         return ""
 
     def result(self, call: ast.Call) -> str:
-        """Return the path that a call returns."""
+        """Return the path that a call returns; empty if it is not known."""
         match call:
             case ast.Call(func=ast.Attribute(attr="getcwd" | "cwd")):
                 return os.path.dirname(self.file) or os.curdir
@@ -335,7 +342,7 @@ class _Folders:
 
 
 def _climb(path: str, steps: int) -> str:
-    """Return the folder some steps above a path; empty for an empty path."""
+    """Return the folder a number of steps above a path; empty for an empty path."""
     if not path:
         return ""
     path = os.path.abspath(path)

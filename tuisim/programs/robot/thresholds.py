@@ -21,7 +21,7 @@ from tuisim.programs.robot.source import SIGNS, TURNED, Module, parse, read_modu
 from tuisim.programs.robot.values import Instance
 
 AIM = "-"
-"""The sign of a difference: the program drives toward that value."""
+"""The sign for a value to which the program controls the reading."""
 _KEPT = {"int", "float", "round", "abs", "max", "min"}
 """Functions of a reading that is then still compared."""
 _READS = {str(read): read for read in LightRead}
@@ -32,7 +32,7 @@ _PRELUDE = "*prelude"
 
 @dataclass(frozen=True, slots=True)
 class ProgramThreshold:
-    """A comparison of a colour sensor's reading in a program, or a value that the program drives toward."""
+    """A value in a program with which it compares a colour sensor's reading, or which it controls the reading to."""
 
     read: LightRead
     sign: str
@@ -43,17 +43,20 @@ class ProgramThreshold:
     """Where, in the program itself."""
 
     def holds(self, value: float) -> bool | None:
-        """Return whether the comparison is true for a value; None if the program only drives toward its value."""
+        """Return whether the comparison is true for a reading; None if the value is one to control the reading to."""
         return None if self.is_aim else bool(COMPARE[self.sign](value, self.value))
 
     @property
     def is_aim(self) -> bool:
-        """Whether the program drives toward the value."""
+        """Whether the value is one to control the reading to, not one of a comparison."""
         return self.sign == AIM
 
     @property
     def words(self) -> str:
-        """The comparison without the reading, such as `> 90`, `== Red`, `aim 50`."""
+        """The comparison without the reading, such as `> 90` or `== Red`.
+
+        `aim 50` for a value to control the reading to.
+        """
         number = COLOR_NAMES[int(self.value)] if self.read.is_color else f"{self.value:g}"
         return f"{'aim' if self.is_aim else self.sign} {number}"
 
@@ -62,16 +65,16 @@ _READ = re.compile("|".join(rf"\.{read}\b" for read in LightRead if not read.is_
 
 
 def find_light_read(text: str) -> LightRead:
-    """Return which number of a colour sensor the text of a program reads first; percent if it reads none."""
+    """Return which reading of a colour sensor the text of a program has first; percent if it has none."""
     match = _READ.search(text)
     return LightRead(match[0][1:]) if match else LightRead.PERCENT
 
 
 @lru_cache(maxsize=4)
 def find_light_reads(program: Program, robot: RobotSpec) -> Mapping[str, LightRead]:
-    """Return which number of each colour sensor a program compares first, or else reads first, by name of the sensor.
+    """Return which reading of each colour sensor a program compares first or, without one, reads first, by sensor name.
 
-    Of a sensor of which its text shows none it is `find_light_read`.
+    For a sensor without a reading in the text it is that of `find_light_read`.
     """
     usual = find_light_read(program.text)
     reads: dict[str, tuple[int, LightRead]] = {}
@@ -94,10 +97,10 @@ def find_light_reads(program: Program, robot: RobotSpec) -> Mapping[str, LightRe
 def find_thresholds(
     program: Program, robot: RobotSpec
 ) -> Mapping[str, tuple[ProgramThreshold, ...]]:
-    """Return what a program compares its colour sensors with, in the order of its lines, by name of the sensor.
+    """Return the values with which a program compares its colour sensors, in the order of its lines, by sensor name.
 
-    The values are read from its syntax tree, so those that it computes while it runs are missing. Empty for a program
-    that is not Python, or too deeply nested to be read.
+    They are read from its syntax tree, so values that it computes while it runs are missing. Empty for a program that
+    is not Python, or too deeply nested to be read.
     """
     try:
         return _find_thresholds(program, robot)
@@ -124,7 +127,7 @@ def _find_thresholds(
 
 
 def _list_reads(mentions: Mentions) -> Iterator[tuple[int, str, LightRead]]:
-    """Yield each place that reads a number of a colour sensor: its line, the sensor's port, and which number."""
+    """Yield each reading of a colour sensor in the text: its line, the sensor's port, and which reading it is."""
     for scope in mentions.scopes:
         for node in scope.body if not scope.module.name else ():
             if isinstance(node, ast.Attribute) and node.attr in _READS:
@@ -135,7 +138,7 @@ def _list_reads(mentions: Mentions) -> Iterator[tuple[int, str, LightRead]]:
 
 @lru_cache(maxsize=1)
 def _read_mentions(program: Program) -> Mentions | None:
-    """Return what a program and its prelude mention; None if it is not Python."""
+    """Return the devices that a program and its prelude create; None if the program is not Python."""
     modules = read_modules(program)
     if not modules:
         return None
@@ -172,13 +175,13 @@ def _build_pair(
 ) -> Iterator[tuple[str, ProgramThreshold]]:
     for port, read in dict.fromkeys(_find_reads(mentions, scope, reading, 0)):
         values = _find_numbers(mentions, scope, other, read)
-        # An aim is a single number.
+        # A value to control the reading to must be a single number.
         if values and (sign != AIM or (len(values) == 1 and not read.is_color)):
             yield port, ProgramThreshold(read, sign, values[0], reading.lineno)
 
 
 def _find_numbers(mentions: Mentions, scope: Scope, node: ast.expr, read: LightRead) -> list[float]:
-    """Return the numbers that an expression can be, the likeliest first; a colour is its code."""
+    """Return the numbers that an expression can be, the likeliest first; for a colour its code."""
     assert mentions.evaluation is not None
     values = mentions.evaluation.values(node, scope)
     if not read.is_color:
@@ -189,7 +192,7 @@ def _find_numbers(mentions: Mentions, scope: Scope, node: ast.expr, read: LightR
 
 
 def _parse_color(node: ast.expr) -> str | None:
-    """Return the name of a colour that is written as `Color.RED` or `ColorSensor.COLOR_RED`."""
+    """Return the name of a colour written as `Color.RED` or `ColorSensor.COLOR_RED`; None for other expressions."""
     match node:
         case ast.Attribute(attr=name) | ast.Name(id=name):
             word = name.removeprefix("COLOR_").title().replace("Nocolor", "NoColor")
@@ -203,6 +206,9 @@ def _find_reads(
     """Yield port and kind of each reading of a colour sensor that an expression can be, directly or through variables.
 
     Args:
+        mentions: The devices of the program.
+        scope: The scope that contains the expression.
+        node: The expression.
         steps: How many variables were followed to the expression; after `_MAX_STEPS` no more are followed.
     """
     match node:

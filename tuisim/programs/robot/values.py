@@ -12,35 +12,35 @@ from tuisim.programs.robot.scopes import Function, Scope
 
 @dataclass(frozen=True, slots=True)
 class LibraryModule:
-    """A module of one of the libraries for a brick."""
+    """A value: a module of one of the libraries for a brick."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class LibraryClass:
-    """A class of a library."""
+    """A value: a class of a library for a brick."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class SourceModule:
-    """A module of the program."""
+    """A value: a module of the program."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class OwnClass:
-    """A class of the program."""
+    """A value: a class of the program."""
 
     scope: Scope
 
 
 @dataclass(frozen=True, slots=True)
 class OwnFunction:
-    """A function of the program."""
+    """A value: a function of the program."""
 
     node: Function
     scope: Scope
@@ -51,7 +51,7 @@ class OwnFunction:
 
 @dataclass(frozen=True, slots=True)
 class Instance:
-    """An object that a call of a class makes."""
+    """A value: an object that a call of a class creates."""
 
     of: OwnClass | LibraryClass
     call: ast.Call | None = None
@@ -62,26 +62,26 @@ class Instance:
 
 @dataclass(frozen=True, slots=True)
 class Parent:
-    """The value of `super()` in a method of a class."""
+    """A value: the result of `super()` in a method of a class."""
 
     of: Scope
 
 
 @dataclass(frozen=True, slots=True)
 class SourceCollection:
-    """A list, tuple, set or dict that is written out."""
+    """A value: a list, tuple, set or dict with its items in the program's text."""
 
     node: ast.List | ast.Tuple | ast.Set | ast.Dict
     scope: Scope
 
     @property
     def keys(self) -> list[ast.expr | None]:
-        """The keys of a dict; empty for others."""
+        """The keys of a dict; empty for other collections."""
         return list(self.node.keys) if isinstance(self.node, ast.Dict) else []
 
     @property
     def items(self) -> list[ast.expr]:
-        """The values of a dict, else the items."""
+        """The values of a dict, or the items of another collection."""
         return self.node.values if isinstance(self.node, ast.Dict) else self.node.elts
 
 

@@ -10,7 +10,7 @@ from tuisim.base.data_class import dataclass
 
 @dataclass(frozen=True, slots=True)
 class StateTest:
-    """A test of the state of a motor."""
+    """A test of a motor's state in a program, such as whether it is stalled."""
 
     motor: ast.expr
     state: ast.expr
@@ -20,7 +20,7 @@ class StateTest:
 
 
 def find_state_test(node: ast.expr) -> StateTest | None:
-    """Return the test of a motor's state that an expression is; None if it is none."""
+    """Return an expression as a test of a motor's state; None if it is something else."""
     match node:
         case ast.Compare(left=state, comparators=[ast.Attribute(value=motor, attr="state")]):
             return StateTest(motor, state, waits=False)
@@ -36,7 +36,7 @@ def find_state_test(node: ast.expr) -> StateTest | None:
 
 
 def find_stopped_motors(loop: ast.While) -> Iterator[tuple[ast.expr, bool]]:
-    """Yield the motor that a loop lets run until it is slow or stands still, and whether it can mean nothing else."""
+    """Yield the motor that runs in a loop until it is slow or stands still, and whether that is certain."""
     match loop.test:
         case ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.NotEq()], comparators=[right]):
             pass
@@ -44,14 +44,14 @@ def find_stopped_motors(loop: ast.While) -> Iterator[tuple[ast.expr, bool]]:
             return
     if (motor := _find_speed_owner(left)) is not None:
         yield motor, False
-    # The position is compared with that of the turn before.
+    # The loop may compare the motor's position with that of the previous iteration.
     stored = [node.value for node in loop.body if isinstance(node, ast.Assign)]
     if any(map(_find_position_owner, stored)):
         yield from ((motor, True) for motor in map(_find_position_owner, (left, right)) if motor)
 
 
 def _find_speed_owner(node: ast.expr) -> ast.expr | None:
-    """Return the motor whose speed, or absolute speed, an expression is; None if it is not a speed."""
+    """Return the motor of which an expression is the speed or absolute speed; None for other expressions."""
     match node:
         case ast.Call(func=ast.Name(id="abs"), args=[inner]):
             return _find_speed_owner(inner)
@@ -68,7 +68,7 @@ def _find_position_owner(node: ast.expr) -> ast.expr | None:
 
 
 def find_awaited_touch(statement: ast.stmt) -> ast.expr | None:
-    """Return the touch sensor for which a statement waits until it is pressed; None if it waits for something else."""
+    """Return the touch sensor for whose press a statement waits; None if it waits for something else."""
     match statement:
         case ast.Expr(value=ast.Call(func=ast.Attribute(value=base, attr="wait_for_pressed"))):
             return base
@@ -80,7 +80,7 @@ def find_awaited_touch(statement: ast.stmt) -> ast.expr | None:
 
 
 def _find_ends(loop: ast.While) -> Iterator[ast.expr]:
-    """Yield the sensors whose press ends a loop."""
+    """Yield the touch sensors whose press ends a loop."""
     for node in loop.body:
         match node:
             case ast.If(test=test, body=[*_, ast.Break() | ast.Return()]):
@@ -89,7 +89,7 @@ def _find_ends(loop: ast.While) -> Iterator[ast.expr]:
 
 
 def _find_released(test: ast.expr) -> ast.expr | None:
-    """Return the sensor that is not pressed if a test is true."""
+    """Return the touch sensor that is not pressed if a test is true; None for other tests."""
     match test:
         case ast.UnaryOp(op=ast.Not(), operand=value):
             return _find_pressed(value)
@@ -107,7 +107,7 @@ def _find_released(test: ast.expr) -> ast.expr | None:
 
 
 def _find_pressed(test: ast.expr) -> ast.expr | None:
-    """Return the sensor that is pressed if a test is true."""
+    """Return the touch sensor that is pressed if a test is true; None for other tests."""
     match test:
         case (
             ast.Attribute(value=base, attr="is_pressed")

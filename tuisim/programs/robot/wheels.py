@@ -45,7 +45,7 @@ _USUAL = (
 
 @dataclass(frozen=True, slots=True)
 class WheelMotors:
-    """The motors that drive the wheels."""
+    """The ports of the motors that drive the wheels."""
 
     left: str
     right: str
@@ -68,13 +68,14 @@ def find_wheels(
     Their ports are `NO_PORT` if every port is taken by a motor that does something else.
 
     Args:
+        mentions: The devices that the program creates.
         kinds: The motors that the program names, by port.
         usual: The robot whose wheels are taken if nothing says otherwise.
         tools: Ports of motors that drive no wheel, unless the program drives them as a pair.
     """
     devices = mentions.devices
     if mentions.hub:
-        # Motors of the EV3 with such names are medium ones.
+        # On a hub, motors with names of tools drive no wheel; on the EV3, `add_tools` makes them medium motors.
         named = [device for device in devices if device.kind.is_motor and is_tool(device.names)]
         tools = {*tools, *(device.port for device in named)}
     wheels = (
@@ -100,7 +101,7 @@ def _steers(devices: Sequence[Mention]) -> bool:
 
 
 def _turns_sensor(devices: Sequence[Mention], wheels: Collection[str]) -> bool:
-    """Return whether a program has a sensor of distance, and a motor whose name says that it turns the sensor."""
+    """Return whether a program has a distance sensor and a motor, not of a wheel, that by its name turns the sensor."""
     has_sensor = any(
         device.kind in (DeviceKind.ULTRASONIC, DeviceKind.INFRARED) for device in devices
     )
@@ -127,7 +128,7 @@ def _choose_pair(pairs: Sequence[Pair]) -> WheelMotors | None:
 def _choose_single(
     devices: Sequence[Mention], kinds: Mapping[str, DeviceKind], tools: Collection[str]
 ) -> WheelMotors | None:
-    """Return two motors that are made separately and must be the wheels, by names, class or number; None if unclear."""
+    """Return two separately created motors that must be the wheels by their names, class or number; None if unclear."""
     by_port: dict[str, Mention] = {}
     for device in devices:
         if device.kind.is_motor and device.port and device.port not in tools:
@@ -160,11 +161,14 @@ def _sort_sides(motors: Sequence[Mention], *, of_class: bool) -> WheelMotors | N
 
 
 def _order_motors(motors: Sequence[Mention]) -> WheelMotors:
-    """Return the two motors on usual ports for wheels; the left port is the left wheel unless names say otherwise."""
+    """Return the two motors on the usual ports of wheels as left and right.
+
+    The lower port is left unless names say otherwise.
+    """
     by_port = {motor.port: motor for motor in motors}
     left, right = next(pair for pair in _USUAL if by_port.keys() >= set(pair))
     sides = find_side(by_port[left].names), find_side(by_port[right].names)
-    # One name for both, such as that of a list of ports, says nothing.
+    # A common name of both motors, such as that of a list of ports, says nothing about sides.
     if sides[0] is not sides[1] and (sides[0] is Side.RIGHT or sides[1] is Side.LEFT):
         left, right = right, left
     rest = ", ".join(port for port in by_port if port not in (left, right))
@@ -182,7 +186,7 @@ def _choose_usual(
     usual: RobotSpec,
     other_tools: Collection[str],
 ) -> WheelMotors:
-    """Return the usual ports of the wheels, or others if motors of the program take these."""
+    """Return the usual ports of the wheels, or others if motors of the program take the usual ones."""
     ports = (usual.left_port, usual.right_port)
     sensors = {device.port for device in devices if not device.kind.is_motor}
     if (
@@ -239,9 +243,15 @@ def add_others(kinds: Mapping[str, DeviceKind], mentions: Mentions) -> dict[str,
 def _add_medium(
     kinds: Mapping[str, DeviceKind], mentions: Mentions, others: list[str]
 ) -> dict[str, DeviceKind]:
-    """Return the kinds of motors, with medium for those of `others` of unknown kind whose names do not say large.
+    """Return the kinds of motors, in which `others` of unknown kind become medium unless their names say large.
 
-    Nothing changes outside Pybricks on an EV3, or if `others` are more ports than LEGO's EV3 sets have medium motors.
+    This is done only for Pybricks on an EV3, and only for up to `_MAX_MEDIUM` others, as EV3 sets have few medium
+        motors.
+
+    Args:
+        kinds: The kind of each motor, by port.
+        mentions: The devices that the program creates.
+        others: The ports of the motors that drive no wheel.
     """
     if mentions.library is not Library.PYBRICKS or mentions.hub or len(others) > _MAX_MEDIUM:
         return dict(kinds)
@@ -264,20 +274,20 @@ _SPACINGS_MM = (50.0, 350.0)
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """A length, and the line that says it."""
+    """A length in a program, with its line."""
 
     mm: float
     where: Where | None = None
 
 
 def find_sizes(mentions: Mentions) -> dict[str, Size | None]:
-    """Return the diameter of the wheels and their distance, from numbers with such names in a program.
+    """Return the wheels' diameter and distance in mm, by field of `RobotSpec`, from numbers with such names.
 
-    By their fields of `RobotSpec`; None for one that the program does not name, or not clearly.
+    A size is None if the program does not name it, or not clearly.
     """
     named = [*_find_named(mentions)]
     wheels = [pair for pair in named if not is_spacing(pair[0])]
-    # A constant `track` without wheels may be a track of music.
+    # Without sizes of wheels, a constant such as `track` is ignored, as it may be about music.
     spacings = [pair for pair in named if is_spacing(pair[0])]
     if not wheels:
         spacings = [pair for pair in spacings if pair[0].lower() != "track"]
@@ -302,7 +312,7 @@ def _pick_diameter(named: Sequence[tuple[str, Size]]) -> Size | None:
 
 
 def _find_in_formulas(mentions: Mentions) -> Iterator[tuple[str, Size]]:
-    """Yield the sizes of wheels in formulas, by the names that they could have."""
+    """Yield the wheel sizes in a program's formulas, each with the name of its size."""
     for scope in mentions.scopes:
         for node in scope.body:
             if (size := find_formula_size(node)) and isinstance(node, ast.expr):
@@ -310,7 +320,7 @@ def _find_in_formulas(mentions: Mentions) -> Iterator[tuple[str, Size]]:
 
 
 def _find_named(mentions: Mentions) -> Iterator[tuple[str, Size]]:
-    """Yield the numbers that have the name of a size, in the unit in which they are written."""
+    """Yield the numbers in a program with the name of a wheel size, in the unit in which they are written."""
     evaluation = mentions.evaluation
     if evaluation is None:
         return
@@ -356,11 +366,11 @@ def _read_number(value: object) -> float:
 
 
 def _pick_only(named: list[tuple[str, Size]], limits: tuple[float, float]) -> Size | None:
-    """Return the size in mm that all names agree on; None if they differ, or it is not within the limits."""
+    """Return the size in mm if all named sizes agree; None if they differ, or if it is not within the limits."""
     low, high = limits
     sizes: list[Size] = []
     for name, size in named:
-        # A number without a unit is in mm, cm or m: the one that is within the limits.
+        # A number without a unit may be in mm, cm or m; the unit that gives a size within the limits is taken.
         units = [unit] if (unit := parse_unit_mm(name)) else [1.0, 10.0, 1000.0]
         sizes += [
             Size(round(size.mm * unit, 1), size.where)

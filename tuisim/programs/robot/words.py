@@ -16,7 +16,7 @@ _PART = re.compile(
 
 
 class Side(StrEnum):
-    """Where on the robot a part is."""
+    """The side of the robot on which a part is."""
 
     LEFT = "left"
     RIGHT = "right"
@@ -24,7 +24,7 @@ class Side(StrEnum):
     BACK = "back"
     MIDDLE = "middle"
     NONE = ""
-    """Nothing says it."""
+    """The names give no side."""
 
 
 _SIDES = {
@@ -97,7 +97,7 @@ def _split_name(name: str) -> list[str]:
 
 
 def find_side(names: Iterable[str]) -> Side:
-    """Return the side in the first name that says one, such as `left_motor`; `Side.NONE` if none does."""
+    """Return the side that the first name with one says, as in `left_motor`; `Side.NONE` if no name has one."""
     for name in names:
         for part in _split_name(name):
             if part in _SIDES_BY_WORD:
@@ -109,7 +109,7 @@ def find_side(names: Iterable[str]) -> Side:
 
 
 def is_aside(names: Iterable[str]) -> bool:
-    """Return whether names say that a part looks aside, to whichever side."""
+    """Return whether names say that a part faces left or right."""
     return any(part in ("side", "aside") for name in names for part in _split_name(name))
 
 
@@ -124,7 +124,7 @@ def is_radius(name: str) -> bool:
 
 
 def is_girth(name: str) -> bool:
-    """Return whether a name is that of the circumference of a wheel, or of its way per turn: `CM_PER_ROTATION`."""
+    """Return whether a name means a wheel's circumference, or its distance per turn such as `CM_PER_ROTATION`."""
     parts = {*_split_name(name)}
     way = parts & _UNITS_MM.keys() or parts & _APART
     is_way_per_turn = bool(parts & _PER and parts & _PER_TURN and way)
@@ -132,7 +132,10 @@ def is_girth(name: str) -> bool:
 
 
 def find_girth(name: str, number: float) -> float:
-    """Return the circumference of a wheel by a number like `MM_PER_DEGREE` or `DEGREES_PER_CM`; 0 for others."""
+    """Return a wheel's circumference from a number with a name such as `MM_PER_DEGREE` or `DEGREES_PER_CM`; else 0.
+
+    It is in the name's unit of length.
+    """
     parts = _split_name(name)
     if len(parts) != 3 or parts[1] not in _PER or not number:
         return 0.0
@@ -142,7 +145,7 @@ def find_girth(name: str, number: float) -> float:
 
 
 def _is_alone(name: str, measure: frozenset[str]) -> bool:
-    """Return whether a name is a long word for a measure, perhaps with a unit: then it can only be that of a wheel."""
+    """Return whether a name is only a long word of a measure, such as `diameter_mm`, which must be that of a wheel."""
     parts = {*_split_name(name)} - _UNITS_MM.keys()
     return len(parts) == 1 and parts <= measure and len(*parts) >= _LONG_WORD
 
@@ -162,7 +165,7 @@ def is_spacing(name: str) -> bool:
 
 
 def parse_unit_mm(name: str) -> float:
-    """Return the unit with which a name ends, in mm; 0 if it has none."""
+    """Return the length in mm of the unit with which a name ends; 0 if it has none."""
     return next((_UNITS_MM[part] for part in _split_name(name) if part in _UNITS_MM), 0.0)
 
 
@@ -173,7 +176,7 @@ def is_forwards(name: str) -> bool:
 
 
 def is_large(names: Iterable[str]) -> bool:
-    """Return whether names say that a motor is a large one."""
+    """Return whether names say that a motor is a large motor."""
     return any(part in _LARGE for name in names for part in _split_name(name))
 
 
