@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 VERSION = "%(prog)s %(version)s"
 _WORLD = frozenset({"background", "robot", "obstacles"})
-"""Settings of somebody who knows what to open."""
+"""Settings of a world: with one of these, the user has chosen what to open."""
 
 
 OPENED: Sequence[click.Parameter] = (
@@ -48,7 +48,7 @@ OPENED: Sequence[click.Parameter] = (
 
 @dataclass(frozen=True, slots=True)
 class Opened:
-    """What the app opens, read and checked."""
+    """What the app opens: a program in its world with goals, or a stored run; read and checked."""
 
     prepared: Prepared
     goals: GoalsFile | None
@@ -58,9 +58,10 @@ class Opened:
 
 
 def read_opened(arguments: Arguments, *, can_begin: bool = False) -> Opened | None:
-    """Return what the app is asked to open; None if the cells of a notebook have been listed instead.
+    """Return what the arguments say the app opens; None if the programs of a notebook were listed instead.
 
     Args:
+        arguments: The arguments of the command line.
         can_begin: Whether a Python file that does not exist is a new program.
 
     Raises:
@@ -111,7 +112,10 @@ def read_opened(arguments: Arguments, *, can_begin: bool = False) -> Opened | No
     """,
 )
 def open_app(**given: Any) -> int:
-    """Start the app.
+    """Start the app, block until it ends, and return the exit code.
+
+    Args:
+        **given: The arguments of the command line.
 
     Raises:
         ConfigError: a program, a world, a run or an option is wrong, or there is no terminal.
@@ -146,7 +150,7 @@ def open_app(**given: Any) -> int:
 
 
 def _select_app_settings(settings: Settings) -> dict[str, Any]:
-    """Return the settings that are about the app and not about a run, by the names of the fields of `AppSettings`."""
+    """Return the settings of the app itself, without those of a run, by the field names of `AppSettings`."""
     return {
         "quiet": settings["quiet"],
         "rays": settings["rays"],
@@ -159,11 +163,11 @@ def _select_app_settings(settings: Settings) -> dict[str, Any]:
 
 
 def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
-    """Start the app with a lesson.
+    """Start the app with a lesson, block until it ends, and return the exit code.
 
     Args:
         lesson: The lesson.
-        folder: The folder of own lessons, if one was named.
+        folder: The folder with the user's own lessons, if one was named.
 
     Raises:
         ConfigError: the student's program of the lesson cannot be read or written.
@@ -197,7 +201,7 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
 
 
 def has_terminal() -> bool:
-    """Return whether there is a terminal for the app, in a browser or not."""
+    """Return whether the app can be shown: in a terminal, or in a browser by `tuisim serve`."""
     return _is_in_browser() or (sys.stdin.isatty() and sys.stdout.isatty())
 
 
@@ -224,7 +228,7 @@ def _load_world_goals(world: WorldFile | None, mats: str | None) -> GoalsFile | 
 
 
 def _list_words(arguments: Arguments, goals: GoalsFile | None) -> tuple[str, ...]:
-    """Return the words of the command line, with the goals file before them as the world if they name no other one."""
+    """Return the words of the command line, with the goals file in front as the world if they name no world."""
     from tuisim.settings.worlds import is_world_name
 
     words: tuple[str, ...] = arguments.words
@@ -244,7 +248,10 @@ def _list_words(arguments: Arguments, goals: GoalsFile | None) -> tuple[str, ...
     """,
 )
 def analyse(**given: Any) -> int:
-    """Start the analyser.
+    """Start the analyser of logs, block until it ends, and return the exit code.
+
+    Args:
+        **given: The arguments of the command line.
 
     Raises:
         ConfigError: the logs are wrong, or there is no terminal.
@@ -264,7 +271,7 @@ def analyse(**given: Any) -> int:
 
 
 def _read_terminal_keys() -> None:
-    """Let `sys.stdin` read the log from the original standard input; keys come from the terminal, as file descriptor 0.
+    """Move standard input, which has the log, to a new `sys.stdin`; file descriptor 0 becomes the terminal, for keys.
 
     Raises:
         ConfigError: there is no terminal.
@@ -282,7 +289,7 @@ def _read_terminal_keys() -> None:
 
 @contextmanager
 def _draw_on_stdout() -> Iterator[None]:
-    """Redirect stderr to the terminal of stdout: Textual draws on stderr, which may be redirected to a file."""
+    """In a `with` block, redirect stderr to the terminal of stdout: Textual draws on stderr, which may be a file."""
     if _is_in_browser():
         yield
         return

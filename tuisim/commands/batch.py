@@ -45,7 +45,7 @@ _SHARED = [
     for option in build_shared_options(hidden=(APP, PANEL), names=list_names)
     if option.name != "speed"
 ]
-"""A batch runs as fast as possible."""
+"""The shared options, except that of the speed, as a batch runs as fast as possible."""
 MAX_LINES = 100
 """A summary has at most this many lines."""
 _MAX_REASONS = 5
@@ -90,7 +90,7 @@ def batch(**given: Any) -> int:
 
 
 class _Batch:
-    """Runs a batch in this process and its workers, and shows how far it is and what came out."""
+    """Runs a batch in this process and its workers, and prints the progress and the results."""
 
     def __init__(self, request: Request, *, as_json: bool) -> None:
         self.request = request
@@ -101,7 +101,7 @@ class _Batch:
         self.rows = self.sweep.rows
 
     def run(self) -> int:
-        """Run what has not been run before, write the table, print the results and return the exit code."""
+        """Run the tasks without results, write the table, print the results and return the exit code."""
         plan = self.request.plan
         code = 0
         with Progress(counted(len(plan), "run"), len(plan), in_lines=True):
@@ -125,7 +125,7 @@ class _Batch:
         return max([code, *map(_exit_code, self.rows.values())])
 
     def _rate(self) -> Any:
-        """Return a function to call after each run: it shows how many are done, their rate and the time left."""
+        """Return a function that shows after each run how many are finished, their rate and the time left."""
         total, before, begun = len(self.request.plan), len(self.rows), time.monotonic()
 
         def tell_row(_: Row) -> None:
@@ -181,7 +181,7 @@ class _Batch:
 
 
 def _format_summary(lines: Sequence[ColumnSummary], width: int) -> str:
-    """Return a summary as text; fewer quantiles, or none, if it is wider than `width` characters."""
+    """Return a summary as text; if it is wider than `width` characters, with fewer quantiles or none."""
     text = ""
     for quantiles in (QUANTILES, QUANTILES[1:-1], ()):
         heads = [
@@ -212,12 +212,12 @@ def _exit_code(row: Row) -> int:
 
 
 def _round_figure(value: float) -> FigureCell:
-    """Return a number as a cell with four digits; a number so near to 0 that only rounding makes it differ is 0."""
+    """Return a number as a table cell with four digits; a tiny number from rounding errors becomes 0."""
     return FigureCell(0.0 if abs(value) < _ROUNDING else value, ".4g")
 
 
 def _format_duration(seconds: float) -> str:
-    """Return a time in words: `12 s`, `3 min 5 s`, `2 h 10 min`."""
+    """Return a duration in words: `12 s`, `3 min 5 s`, `2 h 10 min`."""
     whole = math.ceil(seconds)
     minutes, rest = divmod(whole, 60)
     if minutes >= 60:

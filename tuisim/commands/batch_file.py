@@ -24,7 +24,7 @@ MAX_PROGRAMS = 10_000
 
 
 class _BatchTable(Struct):
-    """The keys of the table `[batch]`; those of type `Any` are checked by other functions."""
+    """The keys of the table `[batch]` in a batch file; other functions check those of type `Any`."""
 
     program: str | list[str] | UnsetType = UNSET
     world: str | UnsetType = UNSET
@@ -39,7 +39,7 @@ class _BatchTable(Struct):
 
 @dataclass(frozen=True, slots=True)
 class BatchFile:
-    """The contents of a batch file, with paths resolved from its folder."""
+    """The contents of a batch file, with paths resolved relative to its folder."""
 
     path: Path
     programs: tuple[str, ...] = ()
@@ -55,10 +55,11 @@ class BatchFile:
 
 
 def load_batch(path: Path, mats: str | None = None) -> BatchFile:
-    """Read a batch file.
+    """Read a batch file, with the world that it names.
 
     Args:
-        mats: As for `settings.worlds.load_world`.
+        path: The file.
+        mats: A folder of mats if the file names none, as for `settings.worlds.load_world`.
 
     Raises:
         ConfigError: the file, or its world, cannot be read or is wrong.
@@ -103,7 +104,10 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
 
 
 def _find_program_beside(folder: Path, word: str) -> str:
-    """Return the path of a program beside the file; a name without such a file stays, since it may be an example's."""
+    """Return the path of a program in the batch file's folder.
+
+    If there is none, return the name itself, as it may be an example's.
+    """
     path, _, cell = word.partition("#")
     file = folder / user_path(path)
     return (
@@ -143,7 +147,7 @@ def _parse_choices(table: _BatchTable, location: Location) -> dict[str, Choice]:
 
 
 def _flatten_table(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Return nested tables with dots in the keys."""
+    """Return nested tables as one, whose keys are joined by dots."""
     values: dict[str, Any] = {}
     for key, value in table.items():
         values |= (
@@ -155,7 +159,7 @@ def _flatten_table(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]
 
 
 def _parse_choice(values: object, location: Location) -> Choice:
-    """Return the values of a parameter: those of a list, or of a text such as on the command line."""
+    """Return the values of a parameter in a batch file: a list, or a text in the form of the command line."""
     try:
         if isinstance(values, str):
             return parse_values(values, "")

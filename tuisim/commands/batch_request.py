@@ -99,7 +99,7 @@ OPTIONS = (
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """A batch as the user has asked for it."""
+    """A batch that the user requests: its plan, workers, and output."""
 
     plan: Plan
     expressions: Mapping[str, str]
@@ -110,7 +110,7 @@ class Request:
 
 
 def read_request(arguments: Arguments) -> Request:
-    """Return the batch of a command line.
+    """Return the batch that the arguments of the command line describe.
 
     Raises:
         ConfigError: a program, a parameter, a goal, an expression or an option is wrong.
@@ -127,7 +127,7 @@ def read_request(arguments: Arguments) -> Request:
     }
     choices = {**free_choices, **typed}
     if SEED in choices:
-        # The seed varies fastest: runs that differ in nothing else follow each other.
+        # The seed comes last and so varies fastest: runs that differ only in the seed follow each other.
         choices[SEED] = choices.pop(SEED)
     plan = Plan(
         subjects,
@@ -164,7 +164,7 @@ def _choose_workers(arguments: Arguments, file: BatchFile) -> Workers:
 
 
 def _find_goals_world(arguments: Arguments) -> str | None:
-    """Return the first world file that the user names and that has goals; None if there is none."""
+    """Return the first world file in the arguments that has goals; None if there is none."""
     words: list[str] = [
         *filter(is_world_name, arguments.programs),
         *filter(None, [arguments.world]),
@@ -177,9 +177,9 @@ def _find_goals_world(arguments: Arguments) -> str | None:
 
 
 def _take_batch_file(arguments: Arguments) -> BatchFile:
-    """Return the batch file that is among the programs, an empty one if there is none.
+    """Return the batch file among the programs in the arguments, or an empty one if there is none.
 
-    The file is removed from the programs; its own programs take its place unless the user names some.
+    It is removed from the arguments; its own programs are added to them unless the user names some.
     """
     named = [word for word in arguments.programs if is_batch_file(word)]
     if len(named) > 1:
@@ -196,7 +196,7 @@ def _take_batch_file(arguments: Arguments) -> BatchFile:
 def _prepare_subjects(
     arguments: Arguments, file: BatchFile, goals: GoalsFile | None
 ) -> tuple[Subject, ...]:
-    """Return the programs with their settings; a batch file without a world uses that of its goals."""
+    """Return the programs of a batch with their settings; without another world, they run in that of the goals."""
     check_arguments(arguments.programs, arguments)
     world = file.world
     if world is None and goals is not None:
@@ -255,9 +255,9 @@ def _parse_expression(text: str) -> tuple[str, str]:
 
 
 def is_batch_file(word: str) -> bool:
-    """Return whether a word of the command line names a batch file: one with a table `[batch]`, unlike a world file.
+    """Return whether a word of the command line names a batch file, which has a table `[batch]`.
 
-    False for a file that cannot be read.
+    The result is False for a file that cannot be read.
     """
     path = user_path(word)
     if path.suffix.lower() != WORLD_SUFFIX:
@@ -270,10 +270,10 @@ def is_batch_file(word: str) -> bool:
 
 
 def parse_set(text: str) -> tuple[str, Choice]:
-    """Parse `NAME=VALUES`; return the name and the values.
+    """Return the parameter's name and values in a text `NAME=VALUES`.
 
     Raises:
-        ConfigError: there is no name, or the values are wrong; errors blame `--set`.
+        ConfigError: there is no name, or the values are wrong; errors name the option `--set`.
     """
     name, equals, values = text.partition("=")
     name = name.strip()

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 _BAND_TOP_MM, _BAND_BOTTOM_MM = 993, 242
-"""As on the mat Grey_bands."""
+"""The y of the bands' ends, as on the mat Grey_bands."""
 _FIRST_MM, _LAST_MM = 300.0, 1850.0
-"""Between these are all bands: the robot starts before the first, and stops behind the last."""
+"""All bands are between these x: the robot starts before the first, and stops behind the second."""
 _GREY_STEP = 28
-"""So much at least differ the greys of two bands, and those of a band and of the mat, of 255."""
+"""The least difference of the greys of two bands, or of a band and the mat, from 0 to 255."""
 _LINE_MM = 30.0
 _WAVES = ((1700.0, 190.0), (900.0, 90.0), (520.0, 35.0))
 """Length and largest height of the waves that make up a line; it can be followed everywhere, and stays on the mat."""
@@ -30,7 +30,7 @@ _LINE_START_MM, _LINE_END_MM = 150.0, 2200.0
 
 @dataclass(frozen=True, slots=True)
 class DrawnMat:
-    """A mat that was drawn at random, and what the author of a task needs to know of it."""
+    """A mat that was drawn at random, with its start and bands."""
 
     pixels: Array
     """A mm each, shape (h, w, 3)."""
@@ -41,7 +41,7 @@ class DrawnMat:
 
     @property
     def png(self) -> bytes:
-        """The image."""
+        """The image of the mat as a PNG file."""
         from PIL import Image
 
         content = io.BytesIO()
@@ -49,10 +49,10 @@ class DrawnMat:
         return content.getvalue()
 
     def format_world_lines(self, image: str) -> list[str]:
-        """Return the lines of a task's file that make a hidden world of a mat.
+        """Return the lines of a goals file that make the mat a hidden world.
 
         Args:
-            image: The name of its file, beside that of the task.
+            image: The name of the mat's file, in the folder of the goals file.
         """
         x_mm, y_mm, heading_deg = self.start
         lines = [
@@ -83,7 +83,7 @@ def _build_white_mat() -> Array:
 
 
 def _draw_bands(chance: Random) -> DrawnMat:
-    """Return a mat with three to five upright bands, the last one black."""
+    """Return a mat with three to five vertical bands, the last one black."""
     pixels = _build_white_mat()
     count = 3 + int(3 * chance.random())
     greys: list[int] = [0]
@@ -95,7 +95,7 @@ def _draw_bands(chance: Random) -> DrawnMat:
     bands = []
     for number, grey in enumerate(greys):
         width_mm = int(room_mm * (0.35 + 0.25 * chance.random()))
-        # A sensor finds white between two bands.
+        # The factor 0.85 leaves enough white between two bands for a sensor.
         left_mm = int(_FIRST_MM + room_mm * number + (room_mm * 0.85 - width_mm) * chance.random())
         pixels[
             FIELD_HEIGHT_MM - _BAND_TOP_MM : FIELD_HEIGHT_MM - _BAND_BOTTOM_MM,
@@ -106,7 +106,7 @@ def _draw_bands(chance: Random) -> DrawnMat:
 
 
 def _draw_line(chance: Random) -> DrawnMat:
-    """Return a mat with a black line from left to right, in bends."""
+    """Return a mat with a curved black line from left to right."""
     import numpy as np
 
     pixels = _build_white_mat()
@@ -116,7 +116,7 @@ def _draw_line(chance: Random) -> DrawnMat:
     ]
 
     def at(x_mm: Any) -> tuple[Any, Any]:
-        """Return y and slope of the line at some x."""
+        """Return y in mm and slope of the line at some x."""
         turns = [
             (height, math.tau / length, math.tau * x_mm / length + begin)
             for length, height, begin in waves

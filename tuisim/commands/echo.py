@@ -36,19 +36,19 @@ def echo(line: str = "") -> None:
 
 
 def echo_wrapped(line: str) -> None:
-    """Write one line to stdout, broken between words where a terminal is narrower."""
+    """Write one line to stdout, wrapped between words to the width of a terminal."""
     _print(_wrap(line, sys.stdout), sys.stdout)
 
 
 def _wrap(line: str, stream: TextIO) -> list[str]:
-    """Return the lines of a line where a terminal is narrower; words stay whole."""
+    """Return a line as several lines that fit the terminal of a stream; words are not cut."""
     if not stream.isatty() or len(line) <= (width := _measure_columns()):
         return [line]
     return wrap(printable(line), max(width, 1), break_long_words=False, break_on_hyphens=False)
 
 
 def _measure_columns() -> int:
-    """Return the width of the terminal."""
+    """Return the width of the terminal in columns."""
     # Imported on demand: only text for a terminal needs the width.
     import shutil
 
@@ -89,7 +89,7 @@ def _stream_json(items: Iterable[Any]) -> None:
 
 
 def replace_infinite(row: Mapping[Any, Any]) -> dict[Any, Any]:
-    """Return a row with None for infinite numbers and NaN, which JSON does not have."""
+    """Return a row with None in place of infinite numbers and NaN, which JSON does not have."""
     return {
         name: None if isinstance(value, float) and not math.isfinite(value) else value
         for name, value in row.items()
@@ -101,12 +101,17 @@ def _encode_json(data: Any) -> str:
 
 
 def echo_error(line: str) -> None:
-    """Write one line to stderr, broken between words where a terminal is narrower."""
+    """Write one line to stderr, wrapped between words to the width of a terminal."""
     _print(_wrap(line, sys.stderr), sys.stderr)
 
 
 def echo_written(file: str | Path, what: str = "") -> None:
-    """Print on stderr which files a command has written, and what is in them, if that is worth saying."""
+    """Print on stderr which file a command has written.
+
+    Args:
+        file: The file or files.
+        what: What is in them; empty to leave it out.
+    """
     from tuisim.logs.export import describe_files
 
     echo_error(f"written: {describe_files(Path(file))}{what and f'; {what}'}")
@@ -127,14 +132,14 @@ def echo_drawn(draw: Callable[[bool], Text], width: int) -> None:
     """Write a chart to stdout; its texts must already be printable.
 
     Args:
-        draw: Return the chart; the argument tells whether the terminal has colours.
-        width: In characters.
+        draw: Returns the chart; its argument says whether the terminal has colours.
+        width: The width of the chart in characters.
     """
     from rich.console import Console
 
     console = Console(file=sys.stdout, width=width, highlight=False, markup=False, emoji=False)
     colors = console.color_system is not None and not console.no_color
-    # Not printed by the console, which exits the process when a pipe is closed.
+    # The console only captures the text: if it printed to a closed pipe, it would exit the process.
     with console.capture() as captured:
         console.print(draw(colors), soft_wrap=True)
     with hide_progress(sys.stdout):
@@ -145,7 +150,7 @@ class CsvOut:
     """A text file that writes CSV to stdout: unchanged to a pipe, without control characters to a terminal."""
 
     def write(self, text: str) -> None:
-        """Write text."""
+        """Write a part of the CSV to stdout."""
         with hide_progress(sys.stdout):
             sys.stdout.write(
                 "\n".join(map(printable, text.split("\n"))) if sys.stdout.isatty() else text
@@ -153,13 +158,13 @@ class CsvOut:
 
 
 class FigureCell(float):
-    """A number in a table, written with its own format spec; NaN is written as an empty text."""
+    """A number in a table with its own format; NaN is written as an empty text."""
 
     how: str
     """The format spec, such as `.2f`."""
 
     def __new__(cls, value: float, how: str) -> Self:
-        """Return a number with a format spec, such as `.2f`."""
+        """Return a number with a format specification `how`, such as `.2f`."""
         figure = super().__new__(cls, value)
         figure.how = how
         return figure
@@ -173,7 +178,7 @@ _GOOD_CELLS, _MIN_CELLS = 20, 8
 
 
 def draw_table(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """Return a table as `draw_table_lines` draws it; columns with nothing but numbers are right-aligned."""
+    """Return a table as text, as `draw_table_lines` draws it; columns of only numbers are right-aligned."""
     columns = list(zip(*rows, strict=True)) if rows else [()] * len(heads)
     right = [
         bool(rows) and all(isinstance(cell, int | float) for cell in column) for column in columns
@@ -184,18 +189,18 @@ def draw_table(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
 def echo_table(
     heads: Sequence[str], columns: Sequence[Sequence[str]], right: Sequence[bool]
 ) -> None:
-    """Write the lines of a table to stdout; the arguments are those of `draw_table_lines`."""
+    """Write a table to stdout; the arguments are those of `draw_table_lines`."""
     _print(draw_table_lines(heads, columns, right), sys.stdout)
 
 
 def draw_table_lines(
     heads: Sequence[str], columns: Sequence[Sequence[str]], right: Sequence[bool]
 ) -> Iterator[str]:
-    """Yield columns of text under their heads, aligned.
+    """Yield the lines of a table: aligned columns of text below their headings.
 
-    In a terminal that is too narrow for it, the longest texts are broken between words; if that is not enough, heads of
-    several words take a line for each, and the gaps are narrower. Only if nothing else helps words are cut, and columns
-    left out in which all rows are alike. Numbers and dates stay whole.
+    If the terminal is too narrow, the longest texts are wrapped between words; if that is not enough, headings are
+    written with one word in a line, and the gaps are narrower. As a last resort, words are cut, and columns whose cells
+    are all equal are left out. Numbers and dates are never cut.
 
     Args:
         heads: One for each column.
@@ -226,12 +231,12 @@ def draw_table_lines(
 def _fit_cells(
     heads: Sequence[str], body: Sequence[Sequence[str]], room: int | None
 ) -> tuple[list[list[str]], list[int], str]:
-    """Return columns of texts under their heads, as narrow as they need to be, their widths, and the text between two.
+    """Return the headings and texts of columns, as narrow as necessary, their widths, and the text between columns.
 
     Args:
         heads: One for each column.
-        body: Texts of each column.
-        room: For a row, in characters; None for any length.
+        body: The texts of each column.
+        room: The length of a row in characters; None for any length.
     """
     above = _stack_heads(heads)
     for lines, gap, min_widths in (
@@ -268,7 +273,7 @@ def _fit_cells(
 
 
 def _stack_heads(heads: Sequence[str]) -> list[list[str]]:
-    """Return the lines of heads with one word in each line; a head of fewer words begins further down."""
+    """Return headings as rows with one word of each; a heading with fewer words begins in a later row."""
     words = [head.split() for head in heads]
     count = max(map(len, words), default=0) or 1
     return [[([""] * (count - len(word)) + word)[row] for word in words] for row in range(count)]
@@ -279,7 +284,7 @@ def _sum_widths(widths: Sequence[int], gap: str) -> int:
 
 
 def _wrap_row(row: Sequence[str], widths: Sequence[int]) -> Iterator[tuple[str, ...]]:
-    """Yield the lines of a row whose texts are broken between words; a longer word is cut, and marked."""
+    """Yield the lines of a row whose texts are wrapped between words; a word that is too long is cut and marked."""
     texts = [
         [
             word if len(word) <= width else word[: width - 1] + "…"
@@ -295,12 +300,12 @@ def _wrap_row(row: Sequence[str], widths: Sequence[int]) -> Iterator[tuple[str, 
 def _narrow_columns(
     room: int, widths: Sequence[int], figures: Sequence[bool], gap: str, min_widths: Sequence[int]
 ) -> list[int]:
-    """Return the widths of columns after the widest texts were narrowed until the row fits or no text can be narrower.
+    """Return the widths of columns; the widest texts are narrowed until a row fits or no text can be narrower.
 
     Args:
-        room: For the row with its gaps, in characters.
-        widths: Of the columns.
-        figures: Which columns are numbers or dates: these stay as wide as they are.
+        room: The length of a row with its gaps, in characters.
+        widths: The present widths of the columns.
+        figures: Which columns are numbers or dates: these keep their widths.
         gap: The text between two columns.
         min_widths: The least width of each column.
     """
@@ -339,7 +344,7 @@ _active: list[Progress] = []
 
 @contextmanager
 def hide_progress(stream: TextIO) -> Iterator[None]:
-    """Hide the progress bar, if any, while text is written to a stream that may be the same terminal."""
+    """In a `with` block, hide the progress bar, if any: text is written to a stream that may be the same terminal."""
     if _active and stream.isatty():
         with _active[-1].hide():
             yield
@@ -348,13 +353,19 @@ def hide_progress(stream: TextIO) -> Iterator[None]:
 
 
 def tell(what: str, done: float = 0.0, total: float | None = None) -> None:
-    """Update the description and the amount of the innermost `Progress`, if there is one."""
+    """Update the innermost active `Progress`, if there is one.
+
+    Args:
+        what: The description.
+        done: The amount of work that is done.
+        total: The whole amount; None if unknown.
+    """
     if _active:
         _active[-1].tell(what, done, total)
 
 
 class Progress:
-    """Shows how far a piece of work is, as a context manager.
+    """A context manager that shows the progress of a piece of work.
 
     A thread draws the bar, so the work need not yield; rich is imported when a bar is first shown.
 
@@ -362,7 +373,8 @@ class Progress:
         what: The description, such as `exporting log.csv`.
         total: The amount of work, None if unknown.
         in_lines: Whether to write lines if stderr can show no bar.
-        wait: Waits for some seconds, or until the work is over, and returns whether it is; None is the real clock.
+        wait: Waits for a number of seconds, or until the work is done, and returns whether it is; None is the real
+            clock.
     """
 
     def __init__(
@@ -400,14 +412,14 @@ class Progress:
             _active.remove(self)
 
     def tell(self, what: str, done: float, total: float | None = None) -> None:
-        """Update the progress; the thread draws it later."""
+        """Update the progress, which the thread draws later; the arguments are those of the function `tell`."""
         self._what = what
         self._done = done
         self._total = total
 
     @contextmanager
     def hide(self) -> Iterator[None]:
-        """Hide the bar while something else is written to the terminal."""
+        """In a `with` block, hide the bar while other text is written to the terminal."""
         with self._lock:
             self._hide()
             self._show_at = max(self._show_at, time.monotonic() + _QUIET_S)
@@ -438,7 +450,7 @@ class Progress:
         if self._bar is None:
             self._bar = _build_bar()
             self._bar.add_task("")
-            # The time on the bar counts from the start of the work, also if the bar was hidden since.
+            # The time on the bar counts from the start of the work, even if the bar was hidden meanwhile.
             self._bar.tasks[0].start_time = self._bar.get_time() - (time.monotonic() - self._begun)
             self._bar.start()
         task = self._bar.tasks[0]
@@ -463,7 +475,7 @@ def _build_bar() -> Bar:
         TaskProgressColumn(),
         TimeElapsedColumn(),
     )
-    # stdout and stderr are not redirected: only the bar goes through rich.
+    # rich draws only the bar, so it must not redirect stdout and stderr.
     console = Console(stderr=True)
     return Progress(
         *columns,
@@ -476,7 +488,7 @@ def _build_bar() -> Bar:
 
 
 def size(count: int) -> str:
-    """Format a number of bytes, such as `1.2 MB`."""
+    """Return a number of bytes as text, such as `1.2 MB`."""
     value = count / 1000
     unit = "kB"
     for larger in ("MB", "GB", "TB"):

@@ -33,7 +33,12 @@ EXIT_LIMIT = 3
 
 
 def choose_exit_code(end: End, exit_code: int) -> int:
-    """Return the shell's exit code for the end of a run; `exit_code` is the program's own."""
+    """Return the shell's exit code for the end of a run.
+
+    Args:
+        end: How the run ended.
+        exit_code: The program's own exit code.
+    """
     match end:
         case End.FINISHED:
             return EXIT_RAISED if exit_code else 0
@@ -46,16 +51,16 @@ def choose_exit_code(end: End, exit_code: int) -> int:
 
 
 def choose_unstored_code(code: int) -> int:
-    """Return the exit code of a run that could not be stored: `code` only if a signal ended it, as another may be a
-    consequence of that.
-    """
+    """Return the exit code of a run that could not be stored: `code` if a signal ended it, else that of bad output."""
     return code if code > SIGNALLED else EXIT_BAD_OUTPUT
 
 
 def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
     """Return a stored run as a JSON-compatible dict: its settings, its end, the robot's pose, counts of its log.
 
-    `lines` and `samples` are None, not counted, if the output is longer than `most_bytes`.
+    Args:
+        run: The run.
+        most_bytes: If its output is longer, `lines` and `samples` are None instead of counts; None for no limit.
     """
     last = run.telemetry.last()
     end = run.end
@@ -98,7 +103,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
 
 
 def describe_last_state(facts: dict[str, Any]) -> str:
-    """Return the status line of a run, from the result of `describe`."""
+    """Return the status line of a run, given the result of `describe`."""
     what = describe_state(facts["state"], facts["summary"])
     pose = Pose(facts["x_mm"], facts["y_mm"], facts["heading_deg"])
     stood = f"{Standstill(**facts['standstill']).words} · " if facts["standstill"] else ""
@@ -132,7 +137,7 @@ def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C or SIGTERM."""
+    """An interruption by ctrl-C (SIGINT) or SIGTERM."""
 
     def __init__(self, number: int) -> None:
         super().__init__()
@@ -140,7 +145,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 def raise_signals() -> AbstractContextManager[None]:
-    """Raise `Interrupted` in the block for SIGINT and SIGTERM."""
+    """In a `with` block, raise `Interrupted` for SIGINT and SIGTERM."""
 
     def stop(number: int, frame: FrameType | None) -> None:
         raise Interrupted(number)
@@ -150,7 +155,7 @@ def raise_signals() -> AbstractContextManager[None]:
 
 @contextmanager
 def handle_signals(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
-    """Let a function handle SIGINT and SIGTERM in the block."""
+    """In a `with` block, handle SIGINT and SIGTERM by a function."""
     before = {number: signal.signal(number, handler) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield

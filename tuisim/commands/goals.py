@@ -92,7 +92,7 @@ def check(goals_path: str, words: Sequence[str], as_json: bool) -> int:
 
 
 def _iterate_names(word: str, store: RunStore) -> Iterator[str]:
-    """Yield the names of the runs that a word stands for: itself, or for a range such as `3..7` the numbers that exist.
+    """Yield the names of the runs that a word means: the word itself or, for a range such as `3..7`, existing numbers.
 
     Raises:
         ConfigError: no run is in the range.
@@ -122,7 +122,7 @@ def _find_differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
     except ConfigError:
         # A mat no longer exists: the two worlds cannot be compared.
         return
-    # A mat has a start of its own: the file sets it by naming the mat.
+    # A mat has its own start, so a file that names the mat sets the start, too.
     starts = "background" in file.settings and of_file["background"] == settings["background"]
     named = [key for key in _WHERE if starts or key in file.settings]
     named_values = {key: of_file[key] for key in named}
@@ -175,7 +175,10 @@ def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> N
 
 
 def _choose_mark(judgement: Judgement) -> str:
-    """Return the character before a goal; a goal that takes points off gets that of a met one if it is missed."""
+    """Return the character in front of a goal, which shows whether it is met.
+
+    A missed goal that takes points off counts as met.
+    """
     is_decided = judgement.state in (GoalState.MET, GoalState.MISSED)
     is_penalty = judgement.goal.points < 0 and is_decided
     return (

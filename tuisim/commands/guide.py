@@ -89,11 +89,11 @@ def _search(words: str) -> int:
 
 
 _PASSAGE_LINES = 2
-"""How much of a passage is shown among results."""
+"""The most lines of a passage that are shown among the results of a search."""
 
 
 def draw_contents(width: int) -> list[Line]:
-    """Return the contents of the guide as lines: the pages of each part."""
+    """Return the contents of the guide as lines: the titles of the pages in each part."""
     text = [
         "# The guide",
         "`tuisim guide TOPIC` shows a page, `tuisim guide --search WORDS` finds one.",
@@ -107,7 +107,7 @@ def draw_contents(width: int) -> list[Line]:
 
 
 def draw_results(results: list[SearchResult], width: int) -> list[Line]:
-    """Return the results of a search as lines, the best first, each below its page and section."""
+    """Return the results of a search as lines, the best first, each under the names of its page and section."""
     lines = []
     for hit in results:
         title = f"- `{hit.name}` **{load_pages()[hit.name].title}**{f': {hit.heading}' if hit.heading else ''}"
@@ -117,10 +117,10 @@ def draw_results(results: list[SearchResult], width: int) -> list[Line]:
 
 
 def render_lines(lines: list[Line], *, styled: bool) -> str:
-    """Return lines as one text; with control sequences for a terminal if `styled`."""
+    """Return lines as one text; if `styled`, with control sequences for a terminal."""
 
     def render_run(text: str, style: Style) -> str:
-        # No colours: the terminal may have any background.
+        # Colours become bold, as they may be illegible on the terminal's background.
         bold = style.bold or style.color != PLAIN.color
         return (
             Style(bold=bold, italic=style.italic, underline=style.underline).render(text)
@@ -132,7 +132,7 @@ def render_lines(lines: list[Line], *, styled: bool) -> str:
 
 
 def find_page(name: str) -> Page:
-    """Return a page by its name.
+    """Return the page of the guide with a name.
 
     Raises:
         ConfigError: there is no such page.

@@ -92,7 +92,7 @@ kernel = Group.of(
 def _place(
     user: bool, sys_prefix: bool, prefix: str | None, name: str | None
 ) -> tuple[KernelSpecManager, str | None, str | None]:
-    """Return Jupyter's manager of kernels, and the folder for kernels and the name that the user chooses, or None."""
+    """Return Jupyter's manager of kernels, and the folder for kernels and the name that the user chose, or None."""
     options = {"--user": user, "--sys-prefix": sys_prefix, "--prefix": prefix is not None}
     places = [flag for flag, is_given in options.items() if is_given]
     if len(places) > 1:
@@ -114,7 +114,7 @@ def _place(
 
 def _build_manager() -> KernelSpecManager:
     try:
-        # Not used here: the installed kernel cannot start without it.
+        # The import only checks that ipykernel is there, which the installed kernel needs.
         import ipykernel  # noqa: F401
         from jupyter_client.kernelspec import KernelSpecManager
     except ModuleNotFoundError as error:
@@ -134,11 +134,11 @@ def _iterate_kernels(folders: Sequence[str]) -> Iterator[InstalledKernel]:
 
 
 def _read(file: Path) -> dict[str, Any] | None:
-    """Return the kernel spec in a file; None if it cannot be read or is not of a tuisim kernel."""
+    """Return the kernel spec in a file; None if it cannot be read or is not that of a tuisim kernel."""
     try:
         spec = json.loads(file.read_bytes())
         ours = EXTENSION in spec["argv"] and isinstance(spec["display_name"], str)
-    # Other programs write here, so the file may hold anything.
+    # Other programs write files here, too, so the contents may be of any form.
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
     return dict(spec) if ours else None
@@ -173,7 +173,7 @@ def _install(manager: KernelSpecManager, place: Path, name: str) -> None:
             "choose another name",
             key="--name",
         )
-    # As in ipykernel's own spec: the debugger cannot step into frozen modules.
+    # Frozen modules are off, as in ipykernel's own spec, since the debugger cannot step into them.
     spec = get_kernel_dict(
         extra_arguments=["--ext", EXTENSION], python_arguments=["-Xfrozen_modules=off"]
     )
@@ -196,7 +196,7 @@ def _remove(places: Sequence[str], name: str) -> None:
     if not kernels:
         hint = "see `tuisim kernel list`" if len(places) > 1 else f"looked in {places[0]}"
         raise ConfigError(f"no tuisim kernel {name!r} is installed", hint, key="--name")
-    # Only the first kernel of a name, which is the one that Jupyter starts.
+    # Only the first kernel of a name is removed, which is the one that Jupyter starts.
     folder = Path(kernels[0].folder)
     try:
         folder.unlink() if folder.is_symlink() else shutil.rmtree(folder)

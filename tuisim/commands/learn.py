@@ -76,7 +76,7 @@ def open_lesson(word: str | None, folder: str | None, library: str | None, as_te
 
 
 def _choose_next_lesson(lessons: Sequence[Lesson], progress: dict[str, LessonProgress]) -> Lesson:
-    """Return the lesson to go on with: the one opened last if a step is left, else the first lesson that has one."""
+    """Return the lesson to go on with: the one opened last if it has an open step, else the first with an open step."""
 
     def is_open(lesson: Lesson) -> bool:
         return progress.get(lesson.name, LessonProgress()).current(lesson) is not None
@@ -87,7 +87,7 @@ def _choose_next_lesson(lessons: Sequence[Lesson], progress: dict[str, LessonPro
 
 
 def format_lesson(lesson: Lesson, progress: LessonProgress) -> str:
-    """Return a lesson as plain text; the model answer only once every step is done."""
+    """Return a lesson as plain text; the model answer is included only when every step is done."""
     parts = [
         f"{lesson.title}\n{'=' * len(lesson.title)}",
         render_plain_text(lesson.intro, _COLUMNS),
@@ -257,7 +257,7 @@ def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
 
 
 def _count_ways(lesson: Lesson) -> str:
-    """Return how many wrong answers and programs the check of a lesson tries, such as `3 wrong ways`."""
+    """Return the number of wrong answers and programs that the check of a lesson tries, such as `3 wrong ways`."""
     return counted(
         sum(len(step.wrong_programs) + len(step.wrong) for step in lesson.steps), "wrong way"
     )
@@ -277,10 +277,10 @@ def new(path: str) -> int:
 
 
 class _Learn(Group):
-    """The command `learn`: a word that is no subcommand is a lesson."""
+    """The command `tuisim learn`: a word that is no subcommand is the name of a lesson."""
 
     def insert_command(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Return the words with `open` first, unless they begin with another subcommand or ask for help."""
+        """Return the words with `open` in front, unless they begin with another subcommand or `--help`."""
         if args and (args[0] in self.listing or args[0] in ctx.help_option_names):
             return args
         return [self.default, *args]
@@ -298,7 +298,7 @@ learn = _Learn.of(
 
 
 def load_all(folder: Path | str | None = None) -> list[Lesson]:
-    """Read all lessons.
+    """Read all lessons: tuisim's own, and those in a folder.
 
     Raises:
         ConfigError: the folder or a lesson is wrong.
@@ -317,7 +317,7 @@ def find_last_opened(progress: Mapping[str, LessonProgress]) -> str:
 
 
 def find_warnings(lesson: Lesson) -> list[str]:
-    """Return what a lesson lacks, each as a line: wrong ways that are not tried, and answers without a reason."""
+    """Return warnings about a lesson, one line each: wrong ways that are not tried, and answers without a reason."""
     warnings = []
     for step in lesson.steps:
         place = f"{lesson.path}, line {step.line}"

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def list_names(field: str) -> Iterable[str]:
-    """Return the names of programs, columns or goal files, or those that an option such as `background` accepts."""
+    """Return the names to offer for an argument: `programs`, `columns`, `goals`, or an option such as `background`."""
     match field:
         case "programs":
             from tuisim.programs.program_file import list_programs
@@ -193,8 +193,12 @@ def robots(robot: str | None, program: str | None, out: str | None, as_json: boo
 
 
 def _print_program_robot(program: str, out: str | None, *, as_json: bool) -> int:
-    """Print the robot that a program describes, or of the run that a number or `last` names; with `out`, write it
-    there.
+    """Print the robot of a program or of a run, as TOML; with `out`, write it to that file.
+
+    Args:
+        program: A program, or the number of a run, or `last`.
+        out: The file.
+        as_json: Whether to print JSON.
     """
     if program.isdecimal() or program == "last":
         return _print_robot_of_run(program, out, as_json=as_json)
@@ -213,7 +217,7 @@ def _print_program_robot(program: str, out: str | None, *, as_json: bool) -> int
 
 
 def _print_robot_of_run(word: str, out: str | None, *, as_json: bool) -> int:
-    """Print or write the robot of a run."""
+    """Print the robot of a run as TOML or JSON; with `out`, write it to that file."""
     from tuisim.engine.runs.store import load_run
     from tuisim.programs.plugged_words import list_parts
     from tuisim.settings.robots import format_robot_file, save_robot

@@ -28,7 +28,10 @@ from tuisim.settings.command_line import (
 
 
 def _replace_none(_: object, __: object, word: str | None) -> str:
-    """Return the word that the user chose, an empty one for None: the callback of an option with choices."""
+    """Return the word that the user chose, or an empty text for None.
+
+    This is the callback of an option with choices.
+    """
     return word or ""
 
 
@@ -176,7 +179,7 @@ _CHART = ("facets", "marks", "from", "to", "against", "size", "variable", "telem
 
 @dataclass(frozen=True, slots=True)
 class Subcommand:
-    """A subcommand of `tuisim log`: its help, its options and the function that carries it out."""
+    """A subcommand of `tuisim log`: its help, its options and its function."""
 
     does: str
     path: str
@@ -188,7 +191,7 @@ class Subcommand:
     """What else its help says."""
 
     def load(self) -> Callable[[Arguments], int]:
-        """Import the function that `path` names, and return it."""
+        """Import the subcommand's function and return it."""
         module, _, function = self.path.partition(":")
         return cast(
             "Callable[[Arguments], int]",

@@ -237,7 +237,7 @@ def _mark(marking: Marking, arguments: Arguments) -> int:
 
 
 def _tell_strangers(marking: Marking, roster: str) -> None:
-    """Print which submissions are not in the class list, and who in the list has none."""
+    """Print which submissions are not in the class list, and which students in the list have no submission."""
     if marking.unlisted:
         echo_error(f"note: not in {roster}: {listed(map(printable, marking.unlisted))}")
     if marking.absent:
@@ -247,7 +247,7 @@ def _tell_strangers(marking: Marking, roster: str) -> None:
 
 
 def _tell_so_far(marking: Marking) -> None:
-    """Print the marks of the students whose programs have had all their runs, and how many runs are stored."""
+    """Print the marks of the students whose programs have finished all their runs, and how many runs are stored."""
     sheet = marking.build_sheet_so_far()
     if sheet.rows:
         _print(sheet)
@@ -260,7 +260,7 @@ def _tell_so_far(marking: Marking) -> None:
 
 
 def _tell_notes(marking: Marking) -> None:
-    """Print which files were not marked and why, and which programs would not start on a brick."""
+    """Print which files were not marked and why, and which programs a real brick would refuse to start."""
     if marking.ignored:
         names = listed(marking.ignored)
         echo_error(f"note: not marked, because they are not Python programs: {names}")
@@ -274,7 +274,7 @@ def _tell_notes(marking: Marking) -> None:
 
 
 def _tell_unread(marking: Marking) -> int:
-    """Print whose programs this machine could not read; return 1 if there are some, else 0."""
+    """Print the students whose programs this machine could not read; return 1 if there are some, else 0."""
     unread = [student for student in marking.students if student.is_unread]
     for student in unread:
         echo_error(f"tuisim: the marks do not include {printable(student.name)}: {student.problem}")
@@ -282,7 +282,7 @@ def _tell_unread(marking: Marking) -> int:
 
 
 def _tell_missing(marking: Marking) -> int:
-    """Print which runs this machine could not make; return 1 if there are some, else 0."""
+    """Print the runs that did not take place because of this machine; return 1 if there are some, else 0."""
     missing = marking.missing
     if not missing:
         return 0
@@ -299,7 +299,7 @@ def _tell_missing(marking: Marking) -> int:
 
 
 def _tell_unknown(marking: Marking) -> int:
-    """Print which goals could not be judged, and for whom; return 1 if there are some, else 0."""
+    """Print the goals that could not be judged, and for which students; return 1 if there are some, else 0."""
     unjudged = marking.unjudged
     for goal, reason, names in unjudged:
         echo_error(
@@ -310,12 +310,12 @@ def _tell_unknown(marking: Marking) -> int:
 
 
 def _list_gradebooks(arguments: Arguments) -> dict[str, Path]:
-    """Return the gradebooks' files by their kinds."""
+    """Return the files for gradebooks by the kind of gradebook."""
     return {kind: Path(file) for kind in GRADEBOOKS if (file := vars(arguments)[kind])}
 
 
 def _check(arguments: Arguments, task: GoalsFile) -> None:
-    """Raise ConfigError or ExportError if something is wrong that would only be noticed after the runs."""
+    """Raise ConfigError or ExportError for a fault that would otherwise only be noticed after the runs."""
     if not arguments.folders:
         raise ConfigError("no folder of programs is named", "tuisim mark GOALS FOLDER…")
     if arguments.input and any(world.answers for world in task.worlds):
@@ -357,7 +357,7 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
 
 
 def _write(exports: Iterable[tuple[Path, Callable[[], None]]]) -> int:
-    """Write every file, also after one that cannot be written; return the highest exit code of the failures, else 0."""
+    """Write every file, even if another cannot be written; return the highest exit code of the failures, else 0."""
     code = 0
     for target, write in exports:
         tell(f"writing {target}")
@@ -366,7 +366,7 @@ def _write(exports: Iterable[tuple[Path, Callable[[], None]]]) -> int:
         except TuisimError as error:
             code = max(code, error.exit_code)
             echo_error(f"tuisim: {' '.join(source_lines(str(error)))}")
-        except Exception as error:  # a fault of tuisim's in one export must not prevent the others
+        except Exception as error:  # a fault of tuisim in one export must not prevent the others
             code = max(code, 1)
             echo_error(f"tuisim: {target}: {describe_fault(error)}")
             echo_error(f"tuisim: the report is in {report_file()}")
@@ -401,10 +401,10 @@ def _measure_width(text: str) -> int:
 
 
 def _should_isolate(arguments: Arguments) -> bool:
-    """Return whether programs run isolated; print a note if they cannot be and the user has not asked for that.
+    """Return whether programs run isolated; print a note if they cannot and the user has not required it.
 
     Raises:
-        ConfigError: the user asks for isolation that cannot be had, or both for it and against it.
+        ConfigError: the user requires isolation, which is impossible, or gives both options.
     """
     if arguments.isolate and arguments.no_isolate:
         raise ConfigError(

@@ -117,7 +117,7 @@ def picture(word: str, out: str | None, time_s: float | None, panels: str | None
 
 
 def _build_default_name(run: StoredRun, end: str) -> str:
-    # With an ending: the program's mat may be an image of the program's name.
+    # The name has an ending, since the program's mat may be an image with the program's name.
     return f"{name_of(Path(run.program.name)).strip('-.') or 'run'}-{end}"
 
 
@@ -132,7 +132,7 @@ def _load_recorded(run: StoredRun) -> ClipRun:
 
 
 def _check_number(value: float, low: float, high: float, key: str) -> None:
-    # Also false for NaN.
+    # The comparison is also false for NaN, which is refused.
     if not (math.isfinite(value) and low <= value <= high):
         raise ConfigError(f"must be from {low:g} to {high:g}, got {value:g}", key=key)
 
@@ -147,7 +147,7 @@ def _choose_panels(recorded: ClipRun, size: tuple[int, int] | None) -> tuple[Cli
 
 
 def _parse_panels(text: str | None) -> tuple[ClipPanel, ...]:
-    """Return the panels that a text names, in their order on the picture; an empty tuple for None."""
+    """Return the panels that a text names, in their order in the picture; an empty tuple for None."""
     from tuisim.pictures.movies.clip import ClipPanel
 
     if text is None:

@@ -18,7 +18,14 @@ NOT_RUN = "not_run"
 
 
 def find_listed(words: Sequence[str], *, run_all: bool = False) -> list[NotebookProgram]:
-    """Return the programs of a notebook that is the only word and names no cell; an empty list if there is only one."""
+    """Return the programs of a notebook to list; empty if there is nothing to list.
+
+    They are listed if the notebook is the only word, has several programs, and no cell is named.
+
+    Args:
+        words: The words of the command line.
+        run_all: Whether all programs are run instead.
+    """
     if run_all or len(words) != 1 or not is_notebook(words[0]) or "#" in words[0]:
         return []
     programs = choose_programs(words[0])
@@ -26,7 +33,7 @@ def find_listed(words: Sequence[str], *, run_all: bool = False) -> list[Notebook
 
 
 def print_list(word: str, programs: Sequence[NotebookProgram]) -> None:
-    """Print the programs of a notebook, and how to run one."""
+    """Print the programs of a notebook, and how to run one of them."""
     rows = [
         (
             p.number,
@@ -49,10 +56,13 @@ def _format_title(program: NotebookProgram) -> str:
 
 
 def find_programs(word: str) -> list[NotebookProgram]:
-    """Return the programs that a word names and that can run outside the notebook.
+    """Return the programs of a notebook or cell that can run outside the notebook.
+
+    Args:
+        word: The notebook `FILE`, or the cell `FILE#number`.
 
     Raises:
-        ConfigError: there is no such notebook or program, or none of them can.
+        ConfigError: there is no such notebook or program, or none of them can run.
     """
     known = drop_unknown(choose_programs(word))
     if not known:
@@ -63,7 +73,7 @@ def find_programs(word: str) -> list[NotebookProgram]:
 
 
 def drop_unknown(programs: Sequence[NotebookProgram]) -> list[NotebookProgram]:
-    """Return the programs that can run outside the notebook; print why each of the others is skipped."""
+    """Return the programs that can run outside the notebook; print why the others are skipped."""
     known: list[NotebookProgram] = []
     for program in programs:
         for note in program.notes:
@@ -79,14 +89,14 @@ def drop_unknown(programs: Sequence[NotebookProgram]) -> list[NotebookProgram]:
 
 @dataclass(frozen=True, slots=True)
 class NotRun:
-    """A program, or all of a notebook in a folder, that cannot be run, and why."""
+    """A program or notebook in a folder that cannot be run, with the reason."""
 
     label: str
     """Its name in the table."""
     error: ConfigError
 
     def report(self, *, as_json: bool) -> None:
-        """Print why it is not run."""
+        """Print the reason, as text on stderr or as JSON on stdout."""
         if as_json:
             facts = {"program": self.label, "state": NOT_RUN, "error": str(self.error)}
             echo_json({**facts, "exit_code": exit_status.EXIT_BAD_OUTPUT}, flush=True)
@@ -98,7 +108,7 @@ def check_folder(word: str, *, run_all: bool) -> list[Path]:
     """Return the notebooks in a folder and its subfolders.
 
     Raises:
-        ConfigError: there are none, or `--all` is missing.
+        ConfigError: there are none, or the option `--all` is missing.
     """
     notebooks = find_notebooks(Path(word))
     if not notebooks:
@@ -116,7 +126,11 @@ def check_folder(word: str, *, run_all: bool) -> list[Path]:
 
 
 def print_results(results: Sequence[tuple[str, StoredRun | None]]) -> None:
-    """Print a table of runs: label, state, samples, simulated time and number; a label without a run was not run."""
+    """Print a table of runs: label, state, samples, simulated time and number.
+
+    Args:
+        results: Labels and runs; a label with None was not run.
+    """
     rows = [_build_row(label, run) for label, run in results]
     echo_lines(draw_table(("cell", "state", "samples", "time s", "run"), rows))
 
@@ -134,7 +148,7 @@ _NUMBERS = re.compile(r"([0-9]+)|([^0-9]+)")
 def find_notebooks(folder: Path) -> list[Path]:
     """Return the notebooks in a folder and its subfolders, in natural order: 2 comes before 10.
 
-    Hidden folders are left out: Jupyter keeps former versions in them.
+    Hidden folders are left out, as Jupyter keeps earlier versions in them.
     """
     notebooks: list[Path] = []
     for place, folders, files in os.walk(folder):
@@ -148,7 +162,7 @@ def find_notebooks(folder: Path) -> list[Path]:
 
 
 def _build_sort_key(name: str) -> list[tuple[int, str]]:
-    """Return a sort key for natural order."""
+    """Return a sort key by which names are in natural order: 2 comes before 10."""
     return [
         (int(digits), "") if digits else (-1, text.lower())
         for digits, text in _NUMBERS.findall(name)

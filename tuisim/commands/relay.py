@@ -27,7 +27,7 @@ class RelayInterrupts:
     """Handles ctrl-C and SIGTERM, from the start of the first run until all exports are written.
 
     The first signal stops the current run, and no further run is started; logged data is still exported.
-    A second signal ends the command at once.
+    A second signal ends the command immediately.
     """
 
     def __init__(self) -> None:
@@ -36,16 +36,16 @@ class RelayInterrupts:
         self._handle: RunHandle | None = None
 
     def watch(self, handle: RunHandle) -> None:
-        """Let a signal stop this run from now on; stop it at once if one has come already."""
+        """From now on, stop this run when a signal comes; stop it immediately if a signal has come already."""
         self._handle = handle
         if self.exit_code:
             handle.stop()
 
     def handle(self, number: int, frame: FrameType | None) -> None:
-        """Handle a signal.
+        """Handle a signal: stop the run.
 
         Raises:
-            KeyboardInterrupt: it is the second one.
+            KeyboardInterrupt: it is the second signal.
         """
         if self.exit_code:
             if self._handle is not None and self._handle.ended is None:
@@ -60,7 +60,7 @@ class RelayInterrupts:
 
 @dataclass(slots=True)
 class Follower:
-    """Writes what one run prints to stdout and stderr until it ends."""
+    """Writes the output of one run to stdout and stderr until the run ends."""
 
     handle: RunHandle
     out: TextIO
@@ -93,7 +93,7 @@ class Follower:
                 return ended
 
     def _write_rows(self, rows: Iterable[OutputRow]) -> None:
-        """Write rows to stdout and stderr in their original order."""
+        """Write rows of output to stdout and stderr in their original order."""
         for to_stdout, group in groupby(rows, key=lambda row: row.stream == Stream.STDOUT):
             if to_stdout:
                 with hide_progress(self.out):
@@ -117,7 +117,7 @@ class Follower:
             self.cut = EXIT_BROKEN_PIPE
             self.handle.stop()
         except OSError as error:
-            # The run goes on: no line is lost, as the recording has them all.
+            # The run goes on, since the recording has all lines.
             self.lost = f"cannot write to stdout: {error.strerror or error}"
 
 
@@ -126,7 +126,7 @@ def is_piped() -> bool:
     try:
         mode = os.fstat(sys.stdin.fileno()).st_mode
     except (AttributeError, OSError, ValueError):
-        # stdin is closed, or is an object without a file.
+        # stdin is closed, or an object without a file descriptor.
         return False
     return stat.S_ISFIFO(mode) or stat.S_ISREG(mode)
 

@@ -35,11 +35,11 @@ CUT_OFF: frozenset[RunState] = frozenset(
 
 
 def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
-    """Start a stored run again, at full speed.
+    """Run a stored run again, at full speed; return a handle of the new run, which has been started.
 
     Args:
         run: The run.
-        store: Where to store the new run; not the user's store: the user did not ask for another run.
+        store: Where to store the new run: not the user's store, as the user did not request another run.
         options: Fields of `RunOptions` to change, such as `hold_at`.
 
     Raises:
@@ -55,7 +55,7 @@ def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
 
 
 def same(run: StoredRun, again: StoredRun) -> RunDiff:
-    """Compare a run with its re-run; `same` of the result is true if all bits are equal.
+    """Return the difference between a run and its re-run; its `same` is true if all bits are equal.
 
     Args:
         run: The run; one that was cut off is compared up to its last record, unless the position of its stop is known.
@@ -64,7 +64,7 @@ def same(run: StoredRun, again: StoredRun) -> RunDiff:
     if not _has_obeyed_stop(run):
         return diff_runs(run, again, prefix=run.state in CUT_OFF)
     whole = diff_runs(run, again)
-    # How far threads get during cleanup depends on the real clock.
+    # During cleanup, the progress of threads depends on the real clock, so only the part up to the stop is compared.
     return (
         whole
         if whole.same
@@ -73,7 +73,7 @@ def same(run: StoredRun, again: StoredRun) -> RunDiff:
 
 
 def list_changed_files(run: StoredRun) -> tuple[str, ...]:
-    """Return a note for each file that the run has read and that has changed since: a re-run may differ.
+    """Return a note for each file that a run has read and that has changed since, as a re-run may then differ.
 
     Raises:
         LogError: the list of the files is damaged.
@@ -92,8 +92,8 @@ def list_changed_files(run: StoredRun) -> tuple[str, ...]:
 
 
 def _has_obeyed_stop(run: StoredRun) -> bool:
-    """Return whether the program ended by a stop of the user that a re-run can repeat at the same position."""
-    # A run that had to be killed has a longer summary.
+    """Return whether the user stopped the program, and a re-run can stop it at the same position."""
+    # A run that was killed, and did not stop by itself, has a longer summary.
     return (
         run.end is not None
         and run.end.summary == "stopped"
@@ -112,8 +112,8 @@ def _build_options(run: StoredRun) -> RunOptions:
             run.telemetry.note or "has no recording: it ended before its first tick",
             file=str(run.folder),
         )
-    # A run that was stopped might never end by itself; any other ends before the tick after its last. The stop comes
-    # right before that tick, which has to be reached, whichever way times are rounded.
+    # A run that was stopped might never end by itself, so the re-run has a time limit. The stop comes right before
+    # the tick after the last, so the limit is half a tick later than that tick, which allows for rounding.
     enough_s = (last.tick + 1.5) / run.spec.profile.tick_hz
     stored = run.options
     stop_tick = read_stop_tick(run.folder)

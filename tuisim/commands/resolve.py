@@ -45,7 +45,7 @@ NO_CONFIG = UserConfig(Path())
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """Everything needed to start a run or the app."""
+    """A program with its settings and specification, ready to be run or opened in the app."""
 
     program: Program | None
     settings: Settings
@@ -60,7 +60,11 @@ class Prepared:
 
 
 def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
-    """Check that the words after `--`, if any, belong to exactly one of the programs and worlds that the user named.
+    """Check that words after `--`, the program's arguments, are for exactly one program.
+
+    Args:
+        words: The programs and worlds that the user named.
+        arguments: The arguments of the command line.
 
     Raises:
         ConfigError: there is no program, more than one, or a notebook.
@@ -91,7 +95,7 @@ def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
 
 
 def _load_named_world(words: Sequence[str], arguments: Arguments) -> WorldFile | None:
-    """Load the world that is named as a word or with `--world`, if any."""
+    """Return the world that a word or `--world` names; None if none is named."""
     named = [word for word in words if is_world_name(word)]
     named += [] if arguments.world is None else [arguments.world]
     if len(named) > 1:
@@ -133,7 +137,7 @@ def _find_effective_defaults(
     plain: Settings,
     *above: Mapping[str, Any],
 ) -> tuple[str, ...]:
-    """Return in words which defaults of the user's file change a run; nothing if it is in a world of its own.
+    """Return in words which defaults of the user change a run; empty if none do, or if it has a world file.
 
     Args:
         spec: The run with the defaults.
@@ -171,7 +175,7 @@ def _prepare_source(
 
 
 def _build_spec(settings: Settings) -> RunSpec:
-    """Return the run specification; print warnings about the robot file on stderr."""
+    """Return the run specification of settings; print warnings about the robot file on stderr."""
     robot = (
         settings["robot"]
         if isinstance(settings["robot"], RobotChoice)
@@ -197,9 +201,12 @@ def _prepare_cell(
 def prepare_app(
     words: Sequence[str], arguments: Arguments, config: UserConfig, can_begin: bool = False
 ) -> Prepared:
-    """Return what the app opens: nothing, a program, a world, or a program in a world, as the user named them.
+    """Return what the app opens: nothing, a program, a world, or a program in a world.
 
     Args:
+        words: The programs and worlds that the user named.
+        arguments: The arguments of the command line.
+        config: The user's defaults.
         can_begin: Whether a Python file that does not exist, in a folder that does, is a new, empty program.
 
     Raises:
@@ -232,15 +239,16 @@ def prepare_app(
 def prepare_replay(
     run: str, words: Sequence[str], arguments: Arguments, config: UserConfig
 ) -> tuple[StoredRun, Prepared]:
-    """Return a stored run for the app, and what the app needs to open it.
+    """Return a stored run, and what the app needs to open it.
 
     Args:
         run: Its number, its id or the start of its id, its folder's path, or `last`.
         words: Other words of the command line; must be empty.
+        arguments: The arguments of the command line.
         config: The user's defaults, of which those of the app apply.
 
     Raises:
-        ConfigError: a program, a world or an option of a run is given too.
+        ConfigError: a program, a world or an option of a run is given, too.
         LogError: there is no such run, or it is damaged.
     """
     chosen = arguments.settings
@@ -261,11 +269,13 @@ def prepare_runs(
     command: str = "run",
     config: UserConfig = NO_CONFIG,
 ) -> list[Prepared | NotRun]:
-    """Return the programs that the user named, to be run one after another, all in the named world, if any.
+    """Return the programs that the user named, to be run one after another in the named world, if any.
 
     An error in one notebook of a folder does not prevent the others from running.
 
     Args:
+        words: The programs and worlds that the user named.
+        arguments: The arguments of the command line.
         usual_world: The world if none is named.
         command: The name of the command, for errors.
         config: The user's defaults.
@@ -297,7 +307,7 @@ def prepare_runs(
 def _prepare_folder(
     word: str, world: WorldFile | None, arguments: Arguments, config: UserConfig
 ) -> list[Prepared | NotRun]:
-    # Errors of the command line are raised once, not for each cell.
+    # This raises errors of the command line once, instead of once for each cell.
     build_run_spec(merge_settings(world.settings if world else {}, arguments.settings))
     prepared: list[Prepared | NotRun] = []
     for path in check_folder(word, run_all=arguments.all):
@@ -326,7 +336,7 @@ def _prepare_folder(
 
 
 def _check_mat(prepared: Prepared) -> Prepared:
-    """Read the image of a user's own mat, to detect a damaged file before the run."""
+    """Read the image of a user's own mat, so that a damaged file is detected before the run; return `prepared`."""
     if os.path.isabs(prepared.spec.world.background):
         field_files(prepared.spec)
     return prepared

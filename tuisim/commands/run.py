@@ -172,10 +172,14 @@ def run(**given: Any) -> int:
 
 
 def _tell_notes(prepared: Sequence[Prepared], *, strict: bool) -> None:
-    """Print which settings come from the programs themselves, and which of their lines the brick would refuse.
+    """Print which settings the programs themselves decide, and which of their lines the brick would refuse.
+
+    Args:
+        prepared: The programs.
+        strict: Whether a refused line is an error.
 
     Raises:
-        ConfigError: the brick would refuse a line, and `strict` makes that an error.
+        ConfigError: the brick would refuse a line, and `strict` is true.
     """
     decided = [program.decided for program in prepared]
     if strict and (refused := next(filter(None, (program.refusal for program in decided)), "")):
@@ -188,7 +192,7 @@ def _tell_notes(prepared: Sequence[Prepared], *, strict: bool) -> None:
 
 
 def _describe_start(spec: RunSpec) -> str:
-    """Return that the robot starts outside the mat; empty if it does not."""
+    """Return a note that the robot starts outside the mat; empty if it does not."""
     start = spec.world.start
     is_on = 0 <= start.x_mm <= FIELD_WIDTH_MM and 0 <= start.y_mm <= FIELD_HEIGHT_MM
     size = f"{FIELD_WIDTH_MM} × {FIELD_HEIGHT_MM} mm"
@@ -198,7 +202,12 @@ def _describe_start(spec: RunSpec) -> str:
 def check_breaks(
     texts: Sequence[str], watches: Sequence[str], prepared: Iterable[Prepared]
 ) -> None:
-    """Check breakpoints and watches before anything is run.
+    """Check breakpoints and watches before any program is run.
+
+    Args:
+        texts: The breakpoints.
+        watches: The expressions to watch.
+        prepared: The programs.
 
     Raises:
         ConfigError: a text is not a breakpoint, or not valid for a program or its robot; a watch is not an expression,
@@ -216,7 +225,7 @@ def check_breaks(
 
 
 class BreakpointReporter:
-    """Reports the breakpoints of one run on stderr.
+    """Reports on stderr each time that a run stops at a breakpoint.
 
     Args:
         watches: Expressions to evaluate at each breakpoint.
@@ -233,7 +242,10 @@ class BreakpointReporter:
         """Whether a breakpoint has ended the run."""
 
     def handle(self, event: Message) -> None:
-        """Handle an event of the run: ask a paused run for its values; report these, and resume or stop the run."""
+        """Handle an event: request the values of a paused run.
+
+        When they arrive, report them and resume or stop the run.
+        """
         match event:
             case Paused():
                 self._paused = event
@@ -252,7 +264,7 @@ class BreakpointReporter:
             self._handle.send(Resume())
 
     def _report(self, paused: Paused, inspected: Inspected) -> list[str]:
-        """Return the lines of the report: position, variables, watches, what the program waits for."""
+        """Return the lines of the report: position, variables, watches, and what the program waits for."""
         name = paused.file or self._handle.program.file
         value = f" ({paused.value})" if paused.value else ""
         thread = f", thread {paused.thread}" if len(inspected.threads) > 1 else ""
@@ -269,7 +281,7 @@ class BreakpointReporter:
 
 
 def _export(done: Sequence[StoredRun], arguments: Arguments) -> None:
-    """Write every export; report failures on stderr, and raise the first after all have been tried."""
+    """Write every export of the finished runs; report failures on stderr, and raise the first one at the end."""
     writers: list[tuple[str, Callable[[str], int]]] = [
         (target, lambda target: export_samples(done, target)) for target in arguments.export
     ]
@@ -297,7 +309,7 @@ def _export(done: Sequence[StoredRun], arguments: Arguments) -> None:
 
 
 def _check_only_listed(arguments: Arguments, count: int) -> None:
-    """Raise ConfigError if an export or JSON is asked for where the cells of a notebook are only listed."""
+    """Raise ConfigError if the arguments request an export or JSON while the programs of a notebook are only listed."""
     if arguments.json or arguments.export or arguments.telemetry is not None:
         (word,) = arguments.programs
         raise ConfigError(
@@ -311,7 +323,11 @@ def _run_all(
     store: RunStore,
     interrupts: RelayInterrupts,
 ) -> tuple[int, list[tuple[str, StoredRun | None]]]:
-    """Run the programs in turn until done or interrupted; return the worst exit code, and (label, run) pairs."""
+    """Run the programs one after another until all are done or interrupted.
+
+    Returns:
+        The worst exit code, and label and run of each program.
+    """
     results: list[tuple[str, StoredRun | None]] = []
     code = 0
     for number, program in enumerate(prepared):
@@ -339,17 +355,17 @@ def _run_all(
 
 
 def _build_progress(number: int, count: int) -> Callable[[RunHandle], None]:
-    """Return a callback that shows the progress of a run.
+    """Return a function that shows the progress of a run.
 
     Args:
-        number: Its place among the runs, from 0.
-        count: How many runs there are.
+        number: The run's index among the runs.
+        count: The number of runs.
     """
 
     def tell_run(handle: RunHandle) -> None:
         ticks = handle.telemetry.count
         what = f"{handle.program.name}: {ticks / handle.spec.profile.tick_hz:.1f} s simulated"
-        # How long a program takes is unknown: the bar counts programs.
+        # The bar counts programs, as it is unknown how long a program takes.
         tell(
             f"{number + 1} of {count}, {what}" if count > 1 else what,
             number,
@@ -360,7 +376,7 @@ def _build_progress(number: int, count: int) -> Callable[[RunHandle], None]:
 
 
 def _choose_options(prepared: Prepared, arguments: Arguments) -> RunOptions:
-    """Return how to run a program; a pipe or a file on stdin answers `input()` if no answers are given."""
+    """Return the options of a program's run; without answers, a pipe or a file on stdin answers `input()`."""
     speed = prepared.settings["speed"] or 0.0
     answers = arguments.input or (prepared.world.inputs if prepared.world else ())
     asks_pipe = not answers and is_piped()

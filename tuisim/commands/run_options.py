@@ -16,7 +16,7 @@ _LIMIT = Number(0.001, MAX_TIME_LIMIT_S)
 
 
 def build_timeout_option(group: str, default_s: float = DEFAULT_TIME_LIMIT_S) -> GroupedOption:
-    """Return `--timeout S`, in simulated seconds."""
+    """Return the option `--timeout S`, in simulated seconds."""
     return option(
         "--timeout",
         default=default_s,
@@ -28,7 +28,7 @@ def build_timeout_option(group: str, default_s: float = DEFAULT_TIME_LIMIT_S) ->
 
 
 def build_input_option(group: str) -> GroupedOption:
-    """Return `--input TEXT`: the answers of each run, in order."""
+    """Return the option `--input TEXT`: the answers to `input()` in each run, in order."""
     return option(
         "--input",
         multiple=True,
@@ -54,14 +54,19 @@ def build_workers_option(flag: str, text: str, **how: Any) -> GroupedOption:
 
 
 def build_jobs_option(**how: Any) -> GroupedOption:
-    """Return `--jobs N`."""
+    """Return the option `--jobs N`."""
     return build_workers_option(
         "--jobs", "Number of worker processes (one for each processor).", **how
     )
 
 
 def keep_option(usual: Keep, group: str) -> GroupedOption:
-    """Return `--keep all|failed|none`, None if the user does not give it; its help names `usual` as the default."""
+    """Return the option `--keep all|failed|none`, which is None if the user does not give it.
+
+    Args:
+        usual: The default, for the help.
+        group: The heading of the option in the help.
+    """
     return choice(
         "--keep",
         [kept_runs.value for kept_runs in Keep],

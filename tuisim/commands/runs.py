@@ -124,14 +124,14 @@ def list_runs(as_json: bool) -> int:
         if sys.stdout.isatty() and shutil.get_terminal_size().columns < _ALL_COLUMNS:
             heads = tuple(heads[index] for index in _FEWER)
             rows = [tuple(row[index] for index in _FEWER) for row in rows]
-            # Such a narrow table also has no room for the year and the seconds.
+            # In such a narrow table, the date is cut to month, day, hour and minute.
             rows = [(number, str(created)[5:16], *rest) for number, created, *rest in rows]
         echo_lines(draw_table(heads, rows))
     return 0
 
 
 def _note(run: RunInfo) -> str:
-    """Return the summary of a run; nothing if it only repeats the end, which has a column of its own."""
+    """Return the summary of a run; empty if it only repeats the end, which has its own column."""
     return "" if run.summary == run.end else _cut(run.summary)
 
 
@@ -157,7 +157,10 @@ def _convert_plain(row: OutputRow) -> dict[str, object]:
 
 
 def _list_files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
-    """Return which files the program of a run has read, and notes; if the list is damaged: no files, and a note."""
+    """Return which files the program of a run has read, and notes on them.
+
+    If the list is damaged, there are no files and a note.
+    """
     try:
         return read_reads(run.folder), ()
     except LogError as error:
@@ -165,10 +168,10 @@ def _list_files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
 
 
 def _show(run: StoredRun, *, as_json: bool) -> None:
-    """Print a run; rows are printed while they are read, because there may be millions."""
+    """Print a run; rows are printed while they are read, as there may be millions."""
     rows = (row for row in run.output.rows() if row.stream in STREAMS)
     if as_json:
-        # The counts are known only after all rows have been read.
+        # `describe` would count all rows first; here the counts follow the rows.
         read, _ = _list_files_read(run)
         files = {
             "files_read": [asdict(file) for file in read.files],
@@ -221,7 +224,7 @@ def rm(words: Sequence[str], older_than: str | None) -> int:
     store = RunStore()
     freed = 0
     with Progress("rm"):
-        # All are looked up before the first is removed; one may be named twice.
+        # All runs are looked up before the first one is removed; a run may be named twice.
         if older_than is None:
             run_ids = [store.find(word).id for word in _require_words(words, "rm")]
         else:
@@ -240,7 +243,7 @@ def rm(words: Sequence[str], older_than: str | None) -> int:
 
 
 def _find_older(store: RunStore, words: Sequence[str], age: str) -> list[str]:
-    """Return the ids of the runs that are older than an age such as `30d` and do not run now.
+    """Return the ids of the finished runs that are older than an age such as `30d`.
 
     Raises:
         ConfigError: the age cannot be read, or runs are named, too.
@@ -309,7 +312,7 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
 
 
 def format_diff(comparison: RunDiff) -> str:
-    """Return a comparison as readable text."""
+    """Return the difference between two runs as readable text."""
     recording = comparison.describe_recording()
     setup = comparison.describe_setup()
     pairs = (*recording, *setup) if comparison.same else (*setup, *recording)

@@ -22,7 +22,7 @@ _GROUP = "Server"
 _INSTEAD = (
     "for a class use accounts over SSH, or JupyterHub with %sim_app: tuisim guide in-a-browser"
 )
-"""What a class uses."""
+"""The hint for options that only a server for a class has."""
 _PORT, _VISITORS, _MINUTES = Whole(0, 65535), Whole(1, 1000), Number(0.001, 100_000)
 _SERVER = (
     option(
@@ -83,13 +83,13 @@ _SERVER = (
     """,
 )
 def serve(**given: Any) -> int:
-    """Serve the app until the user ends it.
+    """Serve the app to browsers until the user ends it, and return the exit code.
 
     Raises:
         ConfigError: the extra is missing, the address cannot be used, or what to open is wrong.
     """
     arguments = Arguments(**given)
-    # Checked here, where the user can read what is wrong.
+    # The arguments are checked here, so that errors appear in the user's terminal.
     opened = read_opened(arguments)
     if opened is None:
         return 0

@@ -32,7 +32,7 @@ _ROWS = (12, 32)
 
 
 def plot(arguments: Arguments) -> int:
-    """Draw a log: to the file `out`, else as text on stdout.
+    """Draw the chart of a log: to the file `out` or, without it, as text on stdout.
 
     Raises:
         ConfigError: an option is invalid.
@@ -83,7 +83,7 @@ def _parse_option_size(text: str, smallest: Size, largest: Size) -> Size:
 
 
 def _build_model(log: Log, arguments: Arguments) -> AnalysisModel:
-    """Return the model of a log with the chosen variables and time range."""
+    """Return the analyser's model of a log, with the variables and the time range in the arguments."""
     model = AnalysisModel(OpenedLog(LogRequest(), log))
     if arguments.variable and not arguments.against:
         names = choose_names(log, arguments)
@@ -114,7 +114,7 @@ def _choose_pair(log: Log, model: AnalysisModel, arguments: Arguments) -> tuple[
         )
     y = arguments.variable[0] if arguments.variable else model.selected
     if y not in log.names:
-        # A column of the samples, such as y_mm; of several runs, the first one's.
+        # `against` is a column of the samples, such as y_mm; of several runs, the first one's variable is drawn.
         return arguments.against, y
     model.selected = y
     return arguments.against, y
@@ -135,10 +135,10 @@ def _show(model: AnalysisModel, view: View, size: Size | None) -> None:
 
 
 def report(arguments: Arguments) -> int:
-    """Write the report and print its path.
+    """Write the report on a log as a file and print its path.
 
     Raises:
-        ConfigError: no log, or a file together with another log.
+        ConfigError: no log is named, or a file together with another log.
         LogError: the log cannot be read, or there is no such variable.
         ExportError: the file cannot be written.
     """

@@ -51,18 +51,18 @@ def build_request(arguments: Arguments) -> LogRequest:
 
 
 def build_choices(arguments: Arguments) -> ReadChoices:
-    """Return how the arguments want a log to be read: its time column, its values and so on."""
+    """Return how to read a log according to the arguments: its time column, its values and so on."""
     names = (field.name for field in fields(ReadChoices))
     words = {name: getattr(arguments, name) for name in names}
     return ReadChoices(**{**words, "value": tuple(arguments.value)})
 
 
 def open_sources(arguments: Arguments) -> Iterator[Log]:
-    """Yield the named logs: each file by itself, consecutive runs as one log.
+    """Yield the logs that the arguments name: each file as a log, and consecutive runs together as one log.
 
     Raises:
         ConfigError: no log is named.
-        LogError: no such run or file, or it cannot be read.
+        LogError: there is no such run or file, or it cannot be read.
     """
     words: Sequence[str] = arguments.words
     if not words:
@@ -81,7 +81,7 @@ def open_sources(arguments: Arguments) -> Iterator[Log]:
 
 
 def open_single(arguments: Arguments) -> Log:
-    """Return the single named log.
+    """Return the only log that the arguments name.
 
     Raises:
         ConfigError: none or several are named.
@@ -114,7 +114,8 @@ def _open_runs(words: Sequence[str], arguments: Arguments) -> Iterator[Log]:
 def _read_runs(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
     """Return the samples of runs as one log, or the telemetry of each run.
 
-    The telemetry is returned for `--telemetry`, and if all names in the arguments are columns of it and no samples.
+    The telemetry is returned for `--telemetry`, and if all names in the arguments are columns of telemetry, not
+    samples.
     """
     if arguments.telemetry:
         _name_columns(arguments, (), runs)
@@ -132,10 +133,12 @@ def _read_runs(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
 def _name_columns(
     arguments: Arguments, known: Container[str], runs: Sequence[StoredRun]
 ) -> set[str]:
-    """Replace variables in the arguments by the columns of telemetry that they mean; return the names of all columns.
+    """Replace variables in the arguments by the telemetry columns that they mean; return the names of all columns.
 
     Args:
+        arguments: The arguments, which are changed.
         known: Names of samples: a variable of such a name is not replaced.
+        runs: The runs, whose columns are meant.
     """
     run = runs[0].spec
     words: Sequence[str] = getattr(arguments, "variable", None) or ()
@@ -165,8 +168,8 @@ def _open_file(word: str, arguments: Arguments) -> Log:
 
 
 def _prepare_log(log: Log, arguments: Arguments) -> Log:
-    """Print the notes on a log; return the log with those columns that it only has if the arguments name them."""
-    # The notes of a summary are its last lines.
+    """Print the notes on a log; return the log with the additional columns that the arguments name."""
+    # A summary prints the notes itself, as its last lines.
     if arguments.action != "summary":
         for note in log.notes:
             echo_error(f"note: {log.title}: {note}")
@@ -175,7 +178,7 @@ def _prepare_log(log: Log, arguments: Arguments) -> Log:
 
 
 def choose_names(log: Log, arguments: Arguments) -> tuple[str, ...]:
-    """Return the chosen variables, all by default; `A` also matches `A #1` and `A #2`.
+    """Return the variables that the arguments choose, all by default; `A` also chooses `A #1` and `A #2`.
 
     Raises:
         LogError: there is no such variable.

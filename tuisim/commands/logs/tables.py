@@ -127,14 +127,14 @@ def _iterate_reports(arguments: Arguments) -> Iterator[tuple[str, BandReport]]:
 
 
 def _join_columns(columns: Sequence[Column]) -> Column:
-    """Return one column with the values of several, one column after the other."""
+    """Return one column with the values of several, those of one column after those of another."""
     if isinstance(columns[0], np.ndarray):
         return np.concatenate(columns)
     return [item for column in columns for item in column]
 
 
 def events(arguments: Arguments) -> int:
-    """Print where each variable crosses the threshold, or what the programs of runs asked."""
+    """Print where each variable crosses the threshold, or which commands the programs of runs sent."""
     threshold = _parse_threshold_option(arguments)
     if isinstance(threshold, CommandChoice):
         return _show_commands(arguments, threshold.words)
@@ -153,7 +153,7 @@ def events(arguments: Arguments) -> int:
                         "time_s": crossing.time_s,
                         "crossing": direction,
                         "value": crossing.value,
-                        # From 1, as in the analyser.
+                        # Rows are counted from 1, as in the analyser.
                         "row": int(series.rows[crossing.sample]) + 1,
                     }
                 )
@@ -166,10 +166,14 @@ def events(arguments: Arguments) -> int:
 
 
 def _show_commands(arguments: Arguments, words: str) -> int:
-    """Print what the programs of runs asked of motors and sensors.
+    """Print the commands that the programs of runs sent to motors and sensors.
+
+    Args:
+        arguments: The arguments, which name the runs.
+        words: What to search for in the commands.
 
     Raises:
-        ConfigError: a log is a file, or there is none.
+        ConfigError: a log is a file, or no run is named.
         LogError: there is no such run.
     """
     if not arguments.words or any(map(is_file, arguments.words)):
@@ -190,10 +194,10 @@ def _show_commands(arguments: Arguments, words: str) -> int:
 
 
 def _parse_threshold_option(arguments: Arguments) -> EventChoice:
-    """Return the threshold in the arguments, without a name if it is for every variable, or the search for commands.
+    """Return the threshold in the arguments, or the search for commands; a threshold for every variable has no name.
 
     Raises:
-        ConfigError: there is none, there are two, or it cannot be read.
+        ConfigError: there is no threshold, there are two, or it cannot be read.
     """
     if bool(arguments.when) is (arguments.at is not None):
         raise ConfigError(
@@ -212,11 +216,12 @@ def _parse_threshold_option(arguments: Arguments) -> EventChoice:
 
 
 def _print_each(arguments: Arguments, column: str, change: Callable[[Series], FloatArray]) -> int:
-    """Output the chosen variables of a log as a long frame with one more column.
+    """Print or write the chosen variables of a log as a long frame with one more column.
 
     Args:
-        column: The name of that column.
-        change: Returns its values for one variable.
+        arguments: The arguments, which choose the log and the variables.
+        column: The name of the column.
+        change: Returns the column's values for one variable.
     """
     import pandas as pd
 
@@ -236,7 +241,7 @@ def _print_each(arguments: Arguments, column: str, change: Callable[[Series], Fl
 
 
 def derive(arguments: Arguments) -> int:
-    """Output the derivative of each variable, in units per second."""
+    """Print or write the derivative of each variable, in units per second."""
     return _print_each(
         arguments,
         "derivative",
@@ -245,7 +250,7 @@ def derive(arguments: Arguments) -> int:
 
 
 def integrate(arguments: Arguments) -> int:
-    """Output the integral of each variable, in units times seconds."""
+    """Print or write the integral of each variable, in units times seconds."""
     return _print_each(
         arguments,
         "integral",
@@ -254,7 +259,7 @@ def integrate(arguments: Arguments) -> int:
 
 
 def average(arguments: Arguments) -> int:
-    """Output the centred rolling mean of each variable."""
+    """Print or write the centred rolling mean of each variable."""
     return _print_each(
         arguments,
         "average",
@@ -263,7 +268,7 @@ def average(arguments: Arguments) -> int:
 
 
 def even(arguments: Arguments) -> int:
-    """Output every variable resampled at a fixed period, one column each."""
+    """Print or write every variable resampled at a fixed period, one column each."""
     log = open_single(arguments)
     if arguments.period is None:
         raise ConfigError("no period given", "such as --period 0.1", key="resample")
@@ -273,7 +278,7 @@ def even(arguments: Arguments) -> int:
 
 
 def calculate(arguments: Arguments) -> int:
-    """Output the log with a column computed from an expression."""
+    """Print or write the log with a column computed from an expression."""
     if not arguments.expression:
         raise ConfigError(
             "no expression given", "such as --expression '(left + right) / 2'", key="calc"
@@ -284,7 +289,7 @@ def calculate(arguments: Arguments) -> int:
 
 
 def reckon(arguments: Arguments) -> int:
-    """Print how far the pose by dead reckoning from the wheel encoders is off; or output it at every tick.
+    """Print the error of the pose by dead reckoning from the wheel encoders; or print or write that pose at every tick.
 
     Raises:
         LogError: the log is no telemetry, or is empty.
@@ -302,7 +307,7 @@ def reckon(arguments: Arguments) -> int:
     worst = frame.loc[frame["error_mm"].idxmax()]
     real, reckoned = ([end[f"{of}{name}"] for name in POSE] for of in ("", "reckoned_"))
     error = [number - other for number, other in zip(reckoned, real, strict=True)]
-    # The error of the heading is from -180 to 180 degrees.
+    # The error of the heading is reduced to -180 to 180 degrees.
     error = [round(number, 2) + 0.0 for number in (*error[:2], (error[2] + 180.0) % 360.0 - 180.0)]
     rows = [("real", *real), ("reckoned", *reckoned), ("error", *error)]
     formats = dict(zip(("at_the_end", *POSE), ("", ".2f", ".2f", ".2f"), strict=True))
@@ -315,7 +320,7 @@ def reckon(arguments: Arguments) -> int:
 
 
 def export(arguments: Arguments) -> int:
-    """Write the log, or some of its variables, in another format."""
+    """Write the log, or some of its variables, to a file in another format."""
     if not arguments.out:
         raise ConfigError("no file given", "such as --out log.parquet", key="export")
     if Path(arguments.out).suffix.lower() == SUFFIX:
@@ -344,9 +349,9 @@ def _export_mcap(arguments: Arguments) -> None:
 
 
 def _select_part(log: Log, arguments: Arguments) -> LogTable:
-    """Return the table of a log with the rows in which a chosen variable has a value; all of it if none is chosen.
+    """Return the rows of a log in which a chosen variable has a value; all rows if no variable is chosen.
 
-    A log with a column for each variable loses the columns of the other variables.
+    In a log with a column for each variable, the columns of other variables are left out.
     """
     if not arguments.variable:
         return log.table
@@ -365,8 +370,8 @@ def diff(arguments: Arguments) -> int:
     """Print where two stored runs differ; return 0 if they are the same, else 1.
 
     Raises:
-        ConfigError: not two runs.
-        LogError: no such run, or a damaged one.
+        ConfigError: the arguments do not name two runs.
+        LogError: there is no such run, or a run is damaged.
     """
     words = arguments.words
     if len(words) != 2:
@@ -428,7 +433,7 @@ def show_columns(
 
 
 def show_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
-    """Output a frame: to a file, as JSON lines, or as CSV on stdout."""
+    """Print or write a frame: to a file, as JSON lines, or as CSV on stdout."""
     if arguments.out:
         write_frame(frame, arguments)
     elif arguments.json:
@@ -458,7 +463,7 @@ def _are_numbers(column: Column) -> bool:
 
 
 def _format_cells(column: Column, format_spec: str) -> list[str]:
-    """Return the cells of a column; a number that is missing is empty."""
+    """Return the texts of a column's cells; a missing number is an empty text."""
     if not format_spec:
         return list(map(str, unpack_column(column)))
     cells = []

@@ -25,7 +25,7 @@ from tuisim.notebook.kernel import find_old_simulator
 from tuisim.settings.command_line import command, option
 from tuisim.terminal.picture_options import CellSet
 
-# Pure: `doctor` looks at the machine, and these functions judge what it found.
+# These functions are pure: `doctor` examines the machine, and they judge the results.
 
 SMALLEST = (60, 18)
 COMFORTABLE = (80, 24)
@@ -37,7 +37,7 @@ OLDEST_PYTHON = (3, 11)
 
 
 class FindingState(StrEnum):
-    """Whether what was found is good, could be better, or prevents the use of tuisim."""
+    """Whether a finding of `tuisim doctor` is good, could be better, or prevents the use of tuisim."""
 
     OK = "ok"
     ADVICE = "advice"
@@ -48,7 +48,7 @@ class FindingState(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One line of the report."""
+    """One line of the report of `tuisim doctor`."""
 
     name: str
     value: str
@@ -58,12 +58,12 @@ class Finding:
 
 
 def judge_terminal(name: str, term: str, *, is_remote: bool) -> Finding:
-    """Judge which terminal this is.
+    """Return a finding on which terminal this is.
 
     Args:
-        name: What the terminal calls itself; empty if it does not tell.
-        term: The variable TERM.
-        is_remote: Whether the terminal is reached by SSH.
+        name: The terminal's own name; empty if it is not known.
+        term: The value of the variable TERM.
+        is_remote: Whether the terminal is connected by SSH.
     """
     value = f"{name or 'no name'} (TERM={term or 'not set'}{', over SSH' if is_remote else ''})"
     if term in ("", "dumb", "unknown"):
@@ -77,17 +77,17 @@ def judge_terminal(name: str, term: str, *, is_remote: bool) -> Finding:
 
 
 def judge_no_terminal() -> Finding:
-    """Judge that there is no terminal."""
+    """Return the finding that there is no terminal."""
     advice = "The app needs a terminal; `tuisim run`, `batch`, `log` and notebooks do not"
     return Finding("terminal", "none", FindingState.ADVICE, advice)
 
 
 def judge_colors(depth: str, *, is_remote: bool, is_fixed: bool = False) -> Finding:
-    """Judge the number of colours.
+    """Return a finding on the number of colours.
 
     Args:
-        depth: What the app would draw with: one of `COLOR_DEPTHS` other than `auto`.
-        is_remote: Whether the terminal is reached by SSH.
+        depth: The colour depth of the app: one of `COLOR_DEPTHS` other than `auto`.
+        is_remote: Whether the terminal is connected by SSH.
         is_fixed: Whether TERM or NO_COLOR decides, so that COLORTERM changes nothing.
     """
     if depth == "truecolor":
@@ -116,11 +116,11 @@ _POINTS = {
 
 
 def judge_cells(cells: CellSet, term: str = "", variable: str = "") -> Finding:
-    """Judge the finest glyphs that the terminal is known to show.
+    """Return a finding on the finest glyphs that the terminal is known to show.
 
     Args:
         cells: The glyphs.
-        term: The variable TERM if it is the reason for no finer glyphs, else empty.
+        term: The value of TERM if it is the reason for no finer glyphs, else empty.
         variable: The variable that decides the locale, see `judge_locale`.
     """
     value = f"{cells} ({_POINTS[cells]})"
@@ -142,10 +142,10 @@ def judge_cells(cells: CellSet, term: str = "", variable: str = "") -> Finding:
 
 
 def judge_graphics(protocol: str, *, has_colors: bool = True) -> Finding:
-    """Judge by which protocol the terminal shows pixels.
+    """Return a finding on the protocol by which the terminal shows pixels.
 
     Args:
-        protocol: Its name; empty if there is none.
+        protocol: The protocol's name; empty if there is none.
         has_colors: Whether colours are allowed; without colours, there are no pixels.
     """
     why = "" if has_colors else ", as TERM or NO_COLOR says"
@@ -153,7 +153,7 @@ def judge_graphics(protocol: str, *, has_colors: bool = True) -> Finding:
 
 
 def judge_size(cols: int, rows: int) -> Finding:
-    """Judge the size of the terminal in cells."""
+    """Return a finding on the size of the terminal in cells."""
     value = f"{cols} × {rows}"
     for smallest, word in ((SMALLEST, "at least"), (COMFORTABLE, "better")):
         if cols < smallest[0] or rows < smallest[1]:
@@ -167,7 +167,7 @@ def judge_size(cols: int, rows: int) -> Finding:
 
 
 def judge_locale(variable: str, encoding: str) -> Finding:
-    """Judge the locale.
+    """Return a finding on the locale.
 
     Args:
         variable: The variable that decides it with its value, such as `LANG=C.UTF-8`; empty if none is set.
@@ -180,12 +180,16 @@ def judge_locale(variable: str, encoding: str) -> Finding:
 
 
 def _use_utf8(variable: str) -> str:
-    """Return the shell command for UTF-8: it sets the variable that decides the locale, as LC_ALL hides the others."""
+    """Return the shell command that selects UTF-8: it sets the variable that decides the locale."""
     return f"export {variable.partition('=')[0] or 'LANG'}=C.UTF-8"
 
 
 def judge_latency(latency_s: float | None) -> Finding:
-    """Judge how long the terminal takes to answer; `latency_s` is None if it does not answer."""
+    """Return a finding on how long the terminal takes to answer.
+
+    Args:
+        latency_s: The time in seconds; None if it does not answer.
+    """
     if latency_s is None:
         advice = "It does not answer, so tuisim cannot know what it shows: choose with --cells and --pixels"
         return Finding("latency", "no answer", FindingState.ADVICE, advice)
@@ -201,7 +205,7 @@ def judge_latency(latency_s: float | None) -> Finding:
 
 
 def judge_python(version: tuple[int, ...], path: str) -> Finding:
-    """Judge the version of Python."""
+    """Return a finding on the version of Python."""
     value = f"{'.'.join(map(str, version))} ({path})"
     if version < OLDEST_PYTHON:
         return Finding(
@@ -211,7 +215,7 @@ def judge_python(version: tuple[int, ...], path: str) -> Finding:
 
 
 def judge_system(system: str, release: str) -> Finding:
-    """Judge the operating system, such as Linux."""
+    """Return a finding on the operating system, such as Linux."""
     value = f"{system} {release}"
     if system == "Linux":
         return Finding("system", value)
@@ -226,7 +230,7 @@ def judge_system(system: str, release: str) -> Finding:
 
 
 def home_finding(folder: str, why_not: str) -> Finding:
-    """Judge the folder of runs, drafts and preferences.
+    """Return a finding on the folder of runs, drafts and preferences.
 
     Args:
         folder: Its path.
@@ -239,7 +243,7 @@ def home_finding(folder: str, why_not: str) -> Finding:
 
 
 def store_finding(count: int, size_bytes: int, free_bytes: int) -> Finding:
-    """Judge the stored runs: their number, their size and what is left on the disk."""
+    """Return a finding on the stored runs: their number, their size and the free space on the disk."""
     value = f"{count} runs, {size_bytes / 1e6:.1f} MB; {free_bytes / 1e9:.1f} GB free"
     if free_bytes < 100e6:
         return Finding(
@@ -256,7 +260,7 @@ def store_finding(count: int, size_bytes: int, free_bytes: int) -> Finding:
 
 
 def judge_assets(why_not: str) -> Finding:
-    """Judge whether the mats and the examples are there; `why_not` is empty if they are."""
+    """Return a finding on whether the mats and the examples are installed; `why_not` is empty if they are."""
     if why_not:
         return Finding(
             "mats", why_not, FindingState.PROBLEM, "Install tuisim again, or fix TUISIM_ASSETS"
@@ -265,7 +269,7 @@ def judge_assets(why_not: str) -> Finding:
 
 
 def judge_dependencies(requirements: Iterable[tuple[str, str, str]]) -> list[Finding]:
-    """Judge the packages that tuisim needs: one finding for those that are all right, one for each other.
+    """Return findings on the packages that tuisim needs: one for all correct ones, and one for each of the others.
 
     Args:
         requirements: For each its name, the version that is required exactly or an empty text, and the installed
@@ -317,12 +321,12 @@ Version = tuple[int, ...]
 def judge_textual(
     version: Version, tested: tuple[Version, Version], missing: Sequence[str]
 ) -> Finding:
-    """Judge how the app can draw with the installed Textual.
+    """Return a finding on whether the app can draw with the installed Textual.
 
     Args:
         version: The installed version; empty if it is no release.
-        tested: The first and the last version that the app was tried with.
-        missing: Names of Textual's that the app uses, and that this version lacks.
+        tested: The first and the last version that the app was tested with.
+        missing: Names of Textual that the app uses and this version lacks.
     """
     first, last = tested
     installed = ".".join(map(str, version)) or "no release"
@@ -400,9 +404,9 @@ def _print(findings: list[Finding]) -> None:
 
 @contextmanager
 def _open_terminal() -> Iterator[int | None]:
-    """Yield the open terminal of this process, also if its output is redirected.
+    """Yield the file descriptor of this process's terminal, also if its output is redirected.
 
-    Yield None if there is none, or if this process is in its background.
+    Yield None if there is none, or if this process runs in the background.
     """
     try:
         fd = os.open("/dev/tty", os.O_RDWR | os.O_NOCTTY)
@@ -410,14 +414,14 @@ def _open_terminal() -> Iterator[int | None]:
         yield None
         return
     try:
-        # The system stops a job in the background that changes its terminal.
+        # The system would stop a background job that changes its terminal.
         yield fd if os.tcgetpgrp(fd) == os.getpgrp() else None
     finally:
         os.close(fd)
 
 
 def _restore() -> None:
-    # On demand: this and the report are all that the command needs of the app.
+    # Imported on demand: the report does not need it.
     from tuisim.terminal.probe import restore_terminal
 
     with _open_terminal() as fd:
@@ -515,7 +519,7 @@ def _explain_missing_assets() -> str:
 
 
 def _store(home: Path) -> tuple[int, int, int]:
-    """Return the number of stored runs, their size and the free space on the disk in bytes."""
+    """Return the number of stored runs, their size in bytes, and the free space on the disk in bytes."""
     from tuisim.engine.runs.store import count_bytes
 
     try:

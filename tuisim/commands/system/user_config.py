@@ -24,7 +24,7 @@ from tuisim.settings.user_config import FILE, SETTINGS, load_config, write_templ
     """,
 )
 def config(as_json: bool, init: bool) -> int:
-    """Print the settings, or write the file.
+    """Print the user's settings, or write `config.toml`.
 
     Raises:
         ConfigError: something in the file is wrong, or it exists already.
