@@ -32,7 +32,7 @@ from tuisim.settings.robots import ROBOTS, RobotChoice, choose_robot
 
 
 def place_robot(choice: RobotChoice, mat: Background) -> RobotSpec:
-    """Return the robot with its colour sensors at the mat's positions, unless its file sets their positions."""
+    """Return a robot with its colour sensors at the positions of the mat, unless the robot's file sets them."""
     if choice.own_places:
         return choice.spec
     moved = tuple(
@@ -43,7 +43,14 @@ def place_robot(choice: RobotChoice, mat: Background) -> RobotSpec:
 
 
 def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) -> Pose:
-    """Return the mat's start pose, overridden by the settings; with solid walls, moved so the robot can turn."""
+    """Return the start pose: the mat's, moved so that the robot can turn within solid walls, or that of the settings.
+
+    Args:
+        settings: The settings.
+        mat: The mat.
+        robot: The robot.
+        walled: Whether there are solid walls.
+    """
     start = (settings["for_brick"] and mat.brick_start) or mat.start
     if walled:
         margin_mm = build_outline(robot).reach_mm
@@ -57,9 +64,11 @@ def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) 
 
 
 def _clamp_inside(at_mm: float, margin_mm: float, size_mm: float) -> float:
-    """Return a coordinate in whole mm, at least a margin inside the field; the middle if the margins overlap.
+    """Return a coordinate in whole mm, moved at least a margin inside the field; the middle if the margins overlap.
 
     Args:
+        at_mm: The coordinate.
+        margin_mm: The margin.
         size_mm: Length of the field along this axis.
     """
     low, high = math.ceil(margin_mm), math.floor(size_mm - margin_mm)
@@ -85,7 +94,7 @@ def _drop_scale_of_ev3(drift: DriftSpec) -> DriftSpec:
 
 
 def build_run_spec(settings: Settings) -> RunSpec:
-    """Return the run specification of the settings; unset ones are decided by mat, robot and profile.
+    """Return the run specification of the settings; mat, robot and profile decide those that are not set.
 
     Raises:
         BackgroundError, RobotError, ObstacleError, ProfileError: an unknown mat, robot, set of obstacles or
@@ -121,7 +130,7 @@ def build_run_spec(settings: Settings) -> RunSpec:
 
 
 def extract_settings(spec: RunSpec) -> dict[str, Any]:
-    """Return the settings from which a run can be built again, by path; presets are given by name.
+    """Return the settings by path from which the specification of a run can be built again; presets are given by name.
 
     `solid` is None where it equals the profile's default.
 
@@ -148,7 +157,10 @@ def extract_settings(spec: RunSpec) -> dict[str, Any]:
 
 
 def _name_robot(robot: RobotSpec, mat: Background) -> str | RobotChoice:
-    """Return the name of the preset that equals a robot on a mat except for its pen, else the robot itself."""
+    """Return the name of the preset that, apart from its pen, equals a robot on a mat.
+
+    If there is none, return the robot itself.
+    """
     for preset in ROBOTS.values():
         on_mat = place_robot(RobotChoice(preset, own_places=False), mat)
         place = replace(robot.pen, x_mm=on_mat.pen.x_mm, y_mm=on_mat.pen.y_mm)

@@ -34,7 +34,7 @@ _ATTACHED = re.compile(r"\A(-[A-Za-z])=")
 
 
 class WordType(click.ParamType):  # type: ignore[type-arg]
-    """The type of an option's or argument's value.
+    """The type of the value of an option or argument, for Click.
 
     Args:
         convert: Converts the text; raises ConfigError.
@@ -50,13 +50,13 @@ class WordType(click.ParamType):  # type: ignore[type-arg]
         self._names = names
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Convert a text; a default is returned as it is."""
+        """Return the value of a text; a default is returned as it is."""
         return self._convert(value) if isinstance(value, str) else value
 
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
-        """Return the matching names and files."""
+        """Return the completions of a word: the names and files that begin with it."""
         names = self._names() if self._names else ()
         completions = [CompletionItem(name) for name in names if name.startswith(incomplete)]
         return (
@@ -67,7 +67,7 @@ class WordType(click.ParamType):  # type: ignore[type-arg]
 
 
 def _add_files(completions: list[CompletionItem], incomplete: str) -> list[CompletionItem]:
-    """Return completions with the files that match; without any, let the shell complete files, since it quotes them."""
+    """Return completions with the files that match; without any, leave files to the shell, which quotes them."""
     if not completions:
         return [CompletionItem(incomplete, type="file")]
     return (
@@ -78,11 +78,11 @@ def _add_files(completions: list[CompletionItem], incomplete: str) -> list[Compl
 
 
 class GroupedOption(click.Option):
-    """An option under a heading of the help, which lists only its first two names.
+    """A Click option under a heading of the help, where only its first two names are listed.
 
     Args:
         sets: The path of the setting to which the option belongs, if any.
-        adds: A word that the option adds to that setting, which has no value of its own then.
+        adds: A word that the option, which then has no value of its own, adds to that setting.
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class GroupedOption(click.Option):
         self.needs_value = not self.is_flag and "flag_value" not in how
 
     def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
-        """Return the names with the value, and the help."""
+        """Return two columns of the help: the option's names with its value, and its help text."""
         names = ", ".join(self.opts[:2])
         return (
             None
@@ -105,19 +105,32 @@ class GroupedOption(click.Option):
 
 
 def option(*flags: str, **how: Any) -> GroupedOption:
-    """Return an option, as `click.option` does for a decorator."""
+    """Return an option; the arguments are those of Click's decorator `click.option`."""
     return GroupedOption(flags, **how)
 
 
 def choice(flag: str, allowed: Sequence[str], **how: Any) -> GroupedOption:
-    """Return an option whose value is one of several words."""
+    """Return an option whose value is one of several words.
+
+    Args:
+        flag: The option's name.
+        allowed: The words.
+        **how: Other arguments of `option`.
+    """
     return GroupedOption([flag], type=click.Choice(allowed), metavar="|".join(allowed), **how)
 
 
 def argument(
     name: str, metavar: str, names: Callable[[], Iterable[str]] | None = None, **how: Any
 ) -> click.Argument:
-    """Return an argument; completion offers its names, besides files."""
+    """Return a positional argument of a command.
+
+    Args:
+        name: Its name in Python.
+        metavar: Its name in the help.
+        names: Returns the names that completion offers besides files.
+        **how: Other arguments of `click.Argument`.
+    """
     return click.Argument([name], metavar=metavar, type=WordType(names=names), **how)
 
 
@@ -150,7 +163,7 @@ _SYNONYMS = tuple(
 
 
 def _close_names(typed: str, names: Iterable[str]) -> list[str]:
-    """Return up to two names that may have been meant: synonyms of the typed word, else similar names."""
+    """Return up to two names that may be meant by a typed word: synonyms of it, else similar names."""
     known = [*names]
     ends = {name[-len(typed) :] for name in known}
     close = [name for end in closest(typed, ends, 2, 0.75) for name in known if name.endswith(end)]
@@ -161,7 +174,7 @@ def _close_names(typed: str, names: Iterable[str]) -> list[str]:
 
 
 def _convert_error(error: click.UsageError, ctx: click.Context) -> ConfigError:
-    """Return an error of Click as a ConfigError: what was wrong, and what is allowed."""
+    """Return an error of Click as a ConfigError, which says what is wrong and what is allowed."""
     see = f"see `{ctx.command_path} --help`" if ctx.command.add_help_option else ""
     if isinstance(error, click.NoSuchOption):
         names = {flag.lstrip("-"): flag for param in ctx.command.params for flag in param.opts}
@@ -178,10 +191,10 @@ def _convert_error(error: click.UsageError, ctx: click.Context) -> ConfigError:
 
 
 class Command(click.Command):
-    """A command whose help groups its options, and whose wrong use raises ConfigError.
+    """A Click command whose help groups its options, and whose wrong use raises ConfigError.
 
     Its callback gets the shared options as `settings`. With `passes_arguments`, these contain the words after `--`: the
-    arguments of the program. `instead` maps options that the command does not have to what to use instead.
+    arguments of the program. `instead` maps options that the command does not have to the ones to use instead.
     """
 
     def __init__(
@@ -202,7 +215,10 @@ class Command(click.Command):
         }
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse words as Click does; also accept `-x=5`, and refuse the name of an option as another one's value."""
+        """Parse the words of the command as Click does.
+
+        Also accept `-x=5`, and refuse an option's name as another's value.
+        """
         ctx.meta[_WORDS] = tuple(args)
         ours = args
         program = None
@@ -224,7 +240,7 @@ class Command(click.Command):
         return rest
 
     def _collect_settings(self, ctx: click.Context) -> dict[str, Any]:
-        """Remove the shared options from the parameters; return those that were given, by path."""
+        """Remove the shared options from Click's parameters; return those that the user gave, by path."""
         settings: dict[str, Any] = {}
         for name in [name for name in ctx.params if name in self._shared]:
             value = ctx.params.pop(name)
@@ -248,7 +264,7 @@ class Command(click.Command):
                 raise click.BadOptionUsage(word, f"Option '{word}' requires an argument.", ctx)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the options under the headings of their groups."""
+        """Write the options to the help, under the headings of their groups."""
         groups: dict[str, list[tuple[str, str]]] = {}
         for param in self.get_params(ctx):
             if isinstance(param, click.Option) and (record := param.get_help_record(ctx)):
@@ -269,12 +285,12 @@ def command(*params: click.Parameter, **how: Any) -> Callable[[Callable[..., int
 
 
 class Group(click.Group):
-    """Subcommands that are imported when they are used.
+    """A command with subcommands, which are imported when they are used.
 
     Args:
         listing: The help line of each subcommand.
-        load: Returns a subcommand by its name.
-        default: The subcommand that is meant if none is named; empty if one must be named.
+        load: Returns the subcommand of a name.
+        default: The subcommand that is used if none is named; empty if one must be named.
         instead: For words that are no subcommands, what to use instead.
     """
 
@@ -299,7 +315,13 @@ class Group(click.Group):
 
     @classmethod
     def of(cls, name: str, commands: Sequence[click.Command], **how: Any) -> Self:
-        """Return a group of commands that are already loaded."""
+        """Return a group of commands that are already imported.
+
+        Args:
+            name: The name of the group.
+            commands: Its subcommands.
+            **how: Other arguments of the group.
+        """
         by_name = {subcommand.name or "": subcommand for subcommand in commands}
         firsts = {
             called: (subcommand.help or "").partition("\n")[0]
@@ -313,16 +335,16 @@ class Group(click.Group):
         return list(self.listing)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Load a subcommand."""
+        """Import a subcommand and return it; None if there is none of this name."""
         return self.load(cmd_name) if cmd_name in self.listing else None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the subcommands without loading them."""
+        """Write the list of the subcommands to the help, without importing them."""
         with formatter.section("Commands"):
             formatter.write_dl(list(self.listing.items()))
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse words that may begin with the subcommand's options, or leave out the default subcommand."""
+        """Parse the group's words, which may begin with a subcommand's options, or leave out the default subcommand."""
         if args or not ctx.resilient_parsing:
             args = self.insert_command(ctx, args)
         try:
@@ -331,7 +353,7 @@ class Group(click.Group):
             raise _convert_error(error, ctx) from None
 
     def insert_command(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Return the words with the name of the subcommand first, even if its options came before it."""
+        """Return the words with the subcommand's name first, even if its options came before it."""
         if args and (not args[0].startswith("-") or args[0] in ctx.help_option_names):
             return args
         every = [
@@ -364,7 +386,7 @@ class Group(click.Group):
         raise ConfigError(f"no such command {args[0]!r}", hint, key=self.name or "")
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the subcommand.
+        """Run the named subcommand.
 
         Raises:
             ConfigError: no subcommand is named.
@@ -377,7 +399,7 @@ class Group(click.Group):
             ) from None
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
-        """Return the subcommands that match, and what may follow if the default subcommand is meant."""
+        """Return the completions of a word: subcommands, and words of the default subcommand."""
         completions = [
             CompletionItem(name, help=text)
             for name, text in self.listing.items()
@@ -403,7 +425,7 @@ class Group(click.Group):
 
 
 def drop_options(options: Sequence[click.Option]) -> list[str]:
-    """Return the words of the command that is running, without some options and their values.
+    """Return the words of the command that now runs, without some options and their values.
 
     Args:
         options: The options to leave out, which have no short names.
@@ -426,6 +448,10 @@ def drop_options(options: Sequence[click.Option]) -> list[str]:
 def parse(command: Command, words: Sequence[str]) -> Arguments:
     """Return the arguments of a command that Click does not run, such as a magic.
 
+    Args:
+        command: The command.
+        words: The words after its name.
+
     Raises:
         ConfigError: a word is no option, or a value is wrong.
     """
@@ -434,6 +460,6 @@ def parse(command: Command, words: Sequence[str]) -> Arguments:
 
 
 def build_help(command: Command) -> str:
-    """Return the help of a command."""
+    """Return the help of a command as text."""
     with command.make_context(command.name, [], resilient_parsing=True) as ctx:
         return command.get_help(ctx) + "\n"

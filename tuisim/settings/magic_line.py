@@ -37,7 +37,7 @@ PERSISTENT = frozenset({"background", "mats", "robot", "obstacles", "profile", *
 
 @dataclass(frozen=True, slots=True)
 class AppWords:
-    """How a magic line sets up the app in a cell."""
+    """The words of a magic line about the app in a cell: its height, and who may show it."""
 
     height_px: int = DEFAULT_HEIGHT_PX
     origins: tuple[str, ...] = ()
@@ -154,9 +154,13 @@ def _build_app_options() -> list[GroupedOption]:
 
 
 def parse_line(line: str, magic: str) -> Arguments:
-    """Parse the words after a magic that sets the world; `help` is the help text, if it was requested.
+    """Return the arguments after a magic that sets the world.
 
-    For the magic of the app, `app` is its `AppWords`; otherwise None.
+    `help` is the help text if it was requested. For the magic of the app, `app` is its `AppWords`; otherwise None.
+
+    Args:
+        line: The words after the magic.
+        magic: The name of the magic.
 
     Raises:
         ConfigError: a word is no option, or a value is wrong.
@@ -184,7 +188,7 @@ def _split(line: str, magic: str) -> list[str]:
 
 
 def _type(value: Number, flag: str) -> WordType:
-    """Return the type of an option with a value."""
+    """Return the Click type of an option with a number as value; `flag` is the option's name, for errors."""
     return WordType(lambda text: parse_value(value, text, flag))
 
 
@@ -244,7 +248,11 @@ def _log_command(magic: str) -> Command:
 
 
 def parse_log_line(line: str, magic: str) -> Arguments:
-    """Parse the words after a magic that reads the log; `help` is the help text, if it was requested.
+    """Return the arguments after a magic that reads the log; `help` is the help text if it was requested.
+
+    Args:
+        line: The words after the magic.
+        magic: The name of the magic.
 
     Raises:
         ConfigError: a word is no option, or a value is wrong.
@@ -256,7 +264,12 @@ def parse_log_line(line: str, magic: str) -> Arguments:
 
 
 def update_persistent(before: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the persistent settings after a cell with some settings; a cell with a mat first drops `RESET_BY_MAT`."""
+    """Return the settings that later cells of a notebook keep; a cell that sets a mat first drops `RESET_BY_MAT`.
+
+    Args:
+        before: The settings that were kept before the cell.
+        settings: The settings of the cell.
+    """
     persistent = dict(before)
     if "background" in settings:
         persistent = {

@@ -44,10 +44,15 @@ DEFAULT_FPS = 20
 
 
 def parse(value: Value, text: str, key: str) -> Any:
-    """Return the value for the text after an option.
+    """Return the value of an option's text.
+
+    Args:
+        value: The kind of value.
+        text: The text.
+        key: The name of the option, for errors.
 
     Raises:
-        ConfigError: it is not allowed; `key` is to blame.
+        ConfigError: the text is not allowed.
     """
     try:
         return value.parse_text(text)
@@ -61,7 +66,7 @@ def _blame(error: WrongValue, key: str) -> ConfigError:
 
 
 class Name(Value):
-    """A value that is the name of something, or a path.
+    """The value of an option that is a name, such as that of a mat, or a path.
 
     Args:
         allowed: What it may name, for errors.
@@ -92,7 +97,7 @@ class Name(Value):
 
 
 class RunValue(NamedTuple):
-    """A value of a run that settings can set by its own path: a value of the world or the pen, or the seed."""
+    """A value of a run that has a setting of its own: one of the world or the pen, or the seed."""
 
     spec_path: str
     """Its path in the specification."""
@@ -101,7 +106,7 @@ class RunValue(NamedTuple):
 
 
 def _find_default(path: str) -> Any:
-    """Return the default of a value of the world or the pen, by its path in the specification."""
+    """Return the default of a value of the world or the pen, given its path in the specification."""
     *outer, name = path.split(".")
     kind: Any = RunSpec
     for part in outer:
@@ -126,7 +131,7 @@ RUN_VALUES: Mapping[str, RunValue] = dict(_run_values())
 
 
 def read_run_values(spec: RunSpec) -> dict[str, Scalar]:
-    """Return the values of a run in the form in which files have them, by path."""
+    """Return the values of a run by path, in the form of files."""
     return {
         path: toml_form(run_value.value, get_value(spec, run_value.spec_path))
         for path, run_value in RUN_VALUES.items()
@@ -134,7 +139,7 @@ def read_run_values(spec: RunSpec) -> dict[str, Scalar]:
 
 
 def list_chosen_values(spec: RunSpec) -> list[str]:
-    """Return the values of a run that differ from their defaults, such as `walls false`."""
+    """Return the values of a run that differ from their defaults, as texts such as `walls false`."""
     return [
         f"{path} {quote(value)}"
         for path, value in read_run_values(spec).items()
@@ -154,11 +159,11 @@ RESET_BY_PROFILE = ("solid",)
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """An option of the command line, of magic lines and of Python."""
+    """An option for a setting, on the command line, in magic lines and in Python."""
 
     group: str
     path: str
-    """The setting that it makes."""
+    """The path of the setting that it sets."""
     value: Value
     default: Any = ""
     """The setting without it; empty where mat, robot or program decides."""
@@ -176,7 +181,7 @@ class Option:
 
     @property
     def name(self) -> str:
-        """The long name of the option without dashes, as a key."""
+        """The option's long name without dashes in front and with `_` for others."""
         return next(flag for flag in self.flags if flag.startswith("--"))[2:].replace("-", "_")
 
     @property
@@ -189,19 +194,23 @@ class Option:
 
     @property
     def metavar(self) -> str:
-        """The word for the value in the help; empty if the option takes none."""
+        """The word for the option's value in the help; empty if it takes no value."""
         if self.constant is not None or self.panel:
             return ""
         return "on|off" if isinstance(self.value, Flag) else self.value.metavar
 
     def from_python(self, value: object, key: str) -> Any:
-        """Return the setting for a value that Python code gives.
+        """Return the setting for a value of the option in Python code.
+
+        Args:
+            value: The value.
+            key: The name of the option, for errors.
 
         Raises:
-            ConfigError: it is wrong; `key` is to blame.
+            ConfigError: the value is wrong.
         """
         if isinstance(value, float) and value.is_integer() and isinstance(self.value, Whole):
-            value = int(value)  # NumPy computes with floats.
+            value = int(value)  # a whole number computed by NumPy may be a float
         try:
             return self.value.parse_data(value)
         except WrongValue as error:
@@ -227,7 +236,7 @@ def _build_word(
 
 
 def _build_value_options(*tables: str) -> Iterator[Option]:
-    """Yield the options of the values in some tables of the specification."""
+    """Yield an option for each value in some tables of the specification."""
     for path, (spec_path, value, default) in RUN_VALUES.items():
         if value.flags and spec_path.startswith(tables):
             takes_no_value = isinstance(value, Flag) and not default
@@ -408,7 +417,7 @@ _DEFAULTS: Mapping[str, Any] = {
         for option in OPTIONS
         if option.path not in RUN_VALUES and option.default != ""
     },
-    # No defaults: the app remembers these itself.
+    # These have no defaults, since the app remembers their last values.
     **dict.fromkeys(("speed", "cells")),
     "seed": 0,
     "arguments": (),
@@ -422,7 +431,7 @@ _PATHS = frozenset({*_DEFAULTS, "beacon", "floor", *(option.path for option in O
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The settings that options and files give, by path, with defaults for all others."""
+    """The settings of a run by path: those that options and files give, and defaults for the others."""
 
     given: Mapping[str, Any] = field(default_factory=dict)
 
@@ -431,25 +440,25 @@ class Settings:
             raise LookupError(f"no such settings: {', '.join(unknown)}")
 
     def __getitem__(self, path: str) -> Any:
-        """Return the value at a path; None if mat, robot, profile or program decides."""
+        """Return the setting at a path; None if mat, robot, profile or program decides it."""
         value = self.given.get(path)
         return _DEFAULTS.get(path) if value is None else value
 
     def changed(self, values: Mapping[str, Any]) -> Settings:
-        """Return a copy in which `values`, by path, replace or add to those given.
+        """Return a copy in which some settings, by path, are added or replaced.
 
-        A value of None lets mat, robot, profile or program decide.
+        With a value of None, mat, robot, profile or program decides.
         """
         return Settings({**self.given, **values})
 
 
 def has_world_values(settings: Mapping[str, Any]) -> bool:
-    """Return whether settings have anything besides `press`, which needs no world of its own."""
+    """Return whether settings contain more than `press`, which applies in any world."""
     return bool(settings.keys() - {"press"})
 
 
 def merge_settings(*layers: Mapping[str, Any]) -> Settings:
-    """Merge layers of given values: a later layer takes precedence, panels accumulate."""
+    """Return the settings of several layers: later layers take precedence, and the values of panels are joined."""
     merged: dict[str, Any] = {}
     for layer in layers:
         panels = {

@@ -33,16 +33,16 @@ _NOT_VARIED = (
 )
 """Keys of a world file that do not affect a run, or that have no single value."""
 _PARTS = {path: one.default for path, one in RUN_VALUES.items() if isinstance(one.value, NamedPart)}
-"""The default of each value that has others inside it: a key of one leaves the others as they are."""
+"""The default of each value with inner values, of which a key changes only one."""
 
 
 def resolve_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dict[str, Any]:
-    """Return the settings that some keys of a world file set, by path.
+    """Return the settings, by path, for some keys of a world file.
 
     Args:
         values: By key, with dots for tables. `arguments` is a text, split into words as a shell does.
         chosen: The settings to be changed: a key of a robot or profile leaves its other keys unchanged.
-        path: The file to blame in errors; paths are relative to its folder.
+        path: The file for errors; paths are relative to its folder.
 
     Raises:
         ConfigError: a key is unknown, or a value is wrong.
@@ -77,7 +77,10 @@ def resolve_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dic
 
 
 def _nest(values: Mapping[str, Any], location: Location) -> dict[str, Any]:
-    """Return keys with dots as nested tables. If a robot or profile has keys and a name, the name is under `robot=`."""
+    """Return keys with dots as nested tables.
+
+    If a robot or profile has a name besides keys, the name is under the key `robot=` or `profile=`.
+    """
     table: dict[str, Any] = {}
     for key, value in values.items():
         *outer, last = key.split(".")

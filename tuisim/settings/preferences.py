@@ -18,12 +18,12 @@ def find_preferences_file() -> Path:
 
 
 def get_preference(name: str) -> object:
-    """Return the value stored under a name; None if there is none, or the file is damaged."""
+    """Return the preference of a name; None if there is none, or the file is damaged."""
     return _read_all().get(name)
 
 
 def keep(name: str, value: object) -> None:
-    """Store a value that JSON can hold; None removes it.
+    """Store a preference, a value that JSON can represent; None removes it.
 
     Raises:
         OSError: the folder cannot be written.

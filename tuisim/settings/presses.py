@@ -20,7 +20,7 @@ _SECONDS = Number(0.0, MAX_PRESS_S)
 
 @dataclass(frozen=True, slots=True)
 class Press:
-    """One button or touch sensor, held for a while; times in simulated seconds."""
+    """A press of one button or touch sensor by hand, from a time to another in simulated seconds."""
 
     name: str
     """One of `PRESSABLE`."""
@@ -29,7 +29,7 @@ class Press:
 
 
 def parse_press(text: str) -> Press:
-    """Parse a press such as `enter@1.0-1.5` or `in1@1`.
+    """Return the press in a text such as `enter@1.0-1.5` or `in1@1`.
 
     Raises:
         WrongValue: nothing of that name can be pressed, or the times are wrong.
@@ -40,7 +40,7 @@ def parse_press(text: str) -> Press:
     name = _OTHER_NAMES.get(name, name)
     if name not in PRESSABLE:
         raise WrongValue(f"{name!r} cannot be pressed", nearest(name, PRESSABLE))
-    # A leading minus is a sign: negative times are refused.
+    # A leading minus is a sign, not the dash of a range; negative times are refused below.
     begin, to, end = (times, "", "") if times.startswith("-") else times.partition("-")
     from_s = _SECONDS.parse_text(begin)
     until_s = _SECONDS.parse_text(end) if to else from_s + DEFAULT_PRESS_S
@@ -50,7 +50,7 @@ def parse_press(text: str) -> Press:
 
 
 class Presses(Value):
-    """The value of an option for presses by hand: a tuple of texts; each use of the option adds one."""
+    """The kind of value of an option for presses: a tuple of texts, to which each use of the option adds one."""
 
     __slots__ = ()
 
@@ -82,10 +82,11 @@ class Presses(Value):
 
 
 def press_actions(presses: Iterable[str], tick_hz: int) -> tuple[UserAction, ...]:
-    """Return the user actions that press and release what a hand presses, ordered by tick.
+    """Return the user actions for presses by hand, ordered by tick.
 
     Args:
         presses: As texts, see `parse_press`; they may overlap, and each lasts at least one tick.
+        tick_hz: Ticks per second.
     """
     held = []
     for press in map(parse_press, presses):

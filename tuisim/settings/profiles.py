@@ -25,7 +25,11 @@ _MS = "_ms"
 
 
 def load_profile(word: str, key: str = "") -> ProfileSpec:
-    """Return a profile by name, or from a TOML file; errors about a name blame the option `key`.
+    """Return the profile of a name, or that in a TOML file.
+
+    Args:
+        word: The name, or the path of the file.
+        key: The option that gives the name, for errors.
 
     Raises:
         ProfileError: the name is unknown, or the file is wrong.
@@ -38,9 +42,12 @@ def load_profile(word: str, key: str = "") -> ProfileSpec:
 def parse_profile(
     data: object, name: str, location: Location, changes_to: ProfileSpec | None = None
 ) -> ProfileSpec:
-    """Return the profile in a table, called `name` unless the table says otherwise; costs are in ms or ns.
+    """Return the profile in a table; costs in it are in ms or ns.
 
     Args:
+        data: The table.
+        name: The name of the profile, unless the table gives one.
+        location: The place of the table, for errors.
         changes_to: The profile that provides keys missing in the table, unless the table names its base.
 
     Raises:
@@ -74,7 +81,12 @@ def _build_ms_key(key: str) -> str:
 
 
 def format_profile(spec: ProfileSpec, parent: str = "") -> list[str]:
-    """Return a profile as TOML lines, with every value: the table `parent`, or a file of its own."""
+    """Return a profile as TOML lines, with every value.
+
+    Args:
+        spec: The profile.
+        parent: The name of its table; empty for a file of its own.
+    """
     values = {}
     for key in list_values(ProfileSpec):
         value = getattr(spec, key)

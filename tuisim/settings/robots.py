@@ -39,7 +39,7 @@ from tuisim.engine.files import Location, Scalar
 
 @dataclass(frozen=True, slots=True)
 class RobotChoice:
-    """A robot read from a file, and the other settings in that file."""
+    """A robot from a file, with the other settings in that file."""
 
     spec: RobotSpec
     motor_noise: int | None = None
@@ -55,7 +55,14 @@ class RobotChoice:
 def _build_sensor_pair(
     x_mm: float, y_mm: float, left_diameter_mm: int, right_diameter_mm: int
 ) -> tuple[ColorSensorSpec, ...]:
-    """Return two colour sensors, symmetric about the robot's axis."""
+    """Return two colour sensors, symmetric to the robot's axis.
+
+    Args:
+        x_mm: Distance of each from the axis.
+        y_mm: Distance in front of the midpoint between the wheels.
+        left_diameter_mm: Diameter of the left sensor's spot.
+        right_diameter_mm: Diameter of the right sensor's spot.
+    """
     return (
         ColorSensorSpec("left", "in2", -x_mm, y_mm, left_diameter_mm),
         ColorSensorSpec("right", "in3", x_mm, y_mm, right_diameter_mm),
@@ -132,7 +139,7 @@ _TABLES: Mapping[str, type] = {
 
 
 def list_table_values(table: str) -> Mapping[str, Value]:
-    """Return the values that a table of a robot file can have, by key."""
+    """Return the kinds of values that a table of a robot file can have, by key."""
     return list_values(_TABLES[table.partition(".")[0]])
 
 
@@ -143,7 +150,11 @@ _HEAD = (
 
 
 def load_robot(word: str, key: str = "") -> RobotSpec:
-    """Return a robot by name, or from a TOML or JSON file; errors about a name blame the option `key`.
+    """Return the robot of a name, or that in a TOML or JSON file.
+
+    Args:
+        word: The name, or the path of the file.
+        key: The option that gives the name, for errors.
 
     Raises:
         RobotError: the name is unknown, or the file is wrong.
@@ -152,7 +163,7 @@ def load_robot(word: str, key: str = "") -> RobotSpec:
 
 
 def choose_robot(word: str, key: str = "") -> RobotChoice:
-    """Return a robot as `load_robot` does, with the other settings in its file.
+    """Return a robot as `load_robot` does, but together with the other settings in its file.
 
     Raises:
         RobotError: the name is unknown, or the file is wrong.
@@ -168,9 +179,12 @@ def choose_robot(word: str, key: str = "") -> RobotChoice:
 def parse_robot(
     data: object, name: str, location: Location, changes_to: RobotSpec | None = None
 ) -> RobotChoice:
-    """Return the robot in a table, called `name` unless the table says otherwise.
+    """Return the robot in a table of a robot or world file.
 
     Args:
+        data: The table.
+        name: The name of the robot, unless the table gives one.
+        location: The place of the table, for errors.
         changes_to: The robot that provides keys missing in the table, unless the table names its base.
 
     Raises:
@@ -199,7 +213,7 @@ def parse_robot(
 
 
 def _parse_motors(robot: Mapping[str, Any], base: RobotSpec, location: Location) -> dict[str, Any]:
-    """Return motors by port, as fields of `RobotSpec`; `false` removes a motor of the base."""
+    """Return the motors of a robot's table as fields of `RobotSpec`; `false` removes a motor of the base robot."""
     wheels = {robot.get(key, getattr(base, key)): key for key in ("left_port", "right_port")}
     motors = {motor.port: motor for motor in base.extra_motors}
     fields: dict[str, Any] = {}
@@ -226,7 +240,7 @@ def _parse_motors(robot: Mapping[str, Any], base: RobotSpec, location: Location)
 
 
 def _parse_motor(data: object, base: MotorSpec, location: Location) -> MotorSpec:
-    """Return a motor of the kind that a text names, or with the values in a table."""
+    """Return the motor that a text names by its kind, or that a table describes."""
     if not isinstance(data, dict):
         return replace(base, kind=files.one_of(data, location, MOTOR_KINDS))
     return files.read_part(data, base, location, port=base.port)
@@ -235,7 +249,7 @@ def _parse_motor(data: object, base: MotorSpec, location: Location) -> MotorSpec
 def _parse_single(
     data: object, mount: Mount, base: RobotSpec, location: Location
 ) -> SensorSpec | None:
-    """Return the sensor of a kind of which a robot has only one; None for `false`, which removes it."""
+    """Return the only sensor of a kind in a robot's table; None for `false`, which removes it."""
     return (
         None
         if data is False
@@ -246,7 +260,7 @@ def _parse_single(
 def _parse_named(
     data: object, mount: Mount, base: RobotSpec, location: Location
 ) -> tuple[SensorSpec, ...]:
-    """Return the base's sensors with the table's changes, and those that the table adds; `false` removes one."""
+    """Return the base robot's sensors of a kind with the table's changes and additions; `false` removes a sensor."""
     sensors = {sensor.name: sensor for sensor in base.list_sensors(mount)}
     names = files.table(data, location)
     for name, sensor in names.items():
@@ -261,7 +275,7 @@ def _parse_named(
         elif name in sensors:
             sensors[name] = files.read_part(sensor, sensors[name], place)
         else:
-            # A sensor that is added needs a port: there is no default.
+            # A new sensor needs a port, which has no default.
             if isinstance(sensor, dict) and "port" not in files.table(
                 sensor, place, [*list_values(mount.spec)][1:]
             ):
@@ -308,6 +322,11 @@ def parse_json_robot(data: object, name: str, location: Location) -> RobotChoice
     Missing keys are as in Default_Robot; its noise settings become those of the run. A key that the simulator does
     not know either is ignored, with a note. Keys are translated to those of a robot's TOML table, so both formats are
     checked by the same rules.
+
+    Args:
+        data: The contents of the file.
+        name: The name of the robot, unless the file gives one.
+        location: The file, for errors.
 
     Raises:
         RobotError: a key or a value is wrong.
@@ -363,7 +382,10 @@ def _parse_json_noise(
 def _parse_json_part(
     part: Mapping[str, object], keys: Mapping[str, str], location: Location
 ) -> dict[str, object] | bool:
-    """Return the keys of a sensor or the pen as a TOML table has them; False if the part is not enabled."""
+    """Return a sensor or the pen of the browser simulator's file with the keys of a TOML table.
+
+    The result is False if it is disabled.
+    """
     if location.key != "pen" and not files.convert(
         part.get("enabled", True), bool, location.at("enabled")
     ):
@@ -375,7 +397,7 @@ def _parse_json_part(
 
 
 def shorten_keys(keys: Sequence[str]) -> str:
-    """Return a short list of keys for a message, whatever their number and length."""
+    """Return a list of keys for a message, shortened in number and length."""
     names = [quote(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
     return ", ".join(names) + (
         f" and {len(keys) - _KEYS_SHOWN} more" if len(keys) > _KEYS_SHOWN else ""
@@ -383,7 +405,7 @@ def shorten_keys(keys: Sequence[str]) -> str:
 
 
 def list_ports(robot: RobotSpec) -> list[tuple[str, str]]:
-    """Return what is on each port of a robot, by port."""
+    """Return port and name of the part on each port of a robot, sorted by port."""
     ports = [
         (motor.port, wheel if motor.kind == "large" else f"{wheel} ({motor.kind} motor)")
         for motor, wheel in zip(robot.wheel_motors, ("left wheel", "right wheel"), strict=True)
@@ -395,7 +417,7 @@ def list_ports(robot: RobotSpec) -> list[tuple[str, str]]:
 
 
 def save_robot(spec: RobotSpec, path: Path | str) -> None:
-    """Write a robot atomically to a TOML file; `load_robot` returns an equal one. Comments in the file stay.
+    """Write a robot atomically to a TOML file; `load_robot` returns an equal one. Comments in the file are kept.
 
     Raises:
         RobotError: the file cannot be written, or cannot represent the robot, such as a name of two lines.
@@ -419,7 +441,13 @@ def format_robot_file(spec: RobotSpec) -> list[str]:
 def format_robot(
     spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = _PEN_KEYS
 ) -> list[str]:
-    """Return a robot as TOML lines, with every value: the table `parent`, or a file of its own."""
+    """Return a robot as TOML lines, with every value.
+
+    Args:
+        spec: The robot.
+        parent: The name of its table; empty for a file of its own.
+        pen_keys: The keys of the pen to include.
+    """
     under = f"{parent}." if parent else ""
     lines = [f"[{parent}]"] if parent else []
     lines += files.value_lines(spec, [key for key in _BODY_KEYS if not _is_left_out(spec, key)])
@@ -450,7 +478,7 @@ def format_robot(
 
 
 def _is_left_out(spec: RobotSpec, key: str) -> bool:
-    """Return whether a file leaves out a value: one that older files lack, and that has its default."""
+    """Return whether robot files leave out a value: older files do not have it, and it equals its default."""
     return _VALUES[key].later and getattr(spec, key) == RobotSpec.__dataclass_fields__[key].default
 
 
@@ -459,12 +487,12 @@ def _is_no_presser(sensor: SensorSpec, key: str) -> bool:
 
 
 def _format_motors(spec: RobotSpec, table: str) -> list[str]:
-    """Return TOML lines for the wheel motors that are not large, and for all extra motors.
+    """Return TOML lines for the wheel motors that are not large, and for all other motors.
 
     Motors before the first one with an end stop are lines `PORT = KIND`; that one and all after it are tables.
     """
     motors = (*(motor for motor in spec.wheel_motors if motor.kind != "large"), *spec.extra_motors)
-    # In a file all tables follow the keys, and the order of the motors counts.
+    # TOML tables must follow the keys, and the order of the motors must be kept.
     plain = list(takewhile(lambda motor: motor.low_deg is motor.high_deg is None, motors))
     kinds: dict[str, Scalar] = {motor.port: motor.kind for motor in plain}
     lines = ["", f"[{table}]", *files.toml_lines(kinds)] if kinds else []

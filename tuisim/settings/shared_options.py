@@ -41,7 +41,7 @@ def _build_parameter(shared: Option, *, magic: bool, hidden: bool, names: Names)
 def build_shared_options(
     *, magic: bool = False, hidden: Iterable[str] = (), names: Names = lambda _: ()
 ) -> list[click.Parameter]:
-    """Return the Click options of `OPTIONS`.
+    """Return the shared options as Click options.
 
     Args:
         magic: Whether they are for a magic line, not for the command line.
@@ -55,7 +55,7 @@ def build_shared_options(
 
 
 def parse_words(words: Sequence[str]) -> dict[str, Any]:
-    """Parse the words of a program's magic line and return its options, by path.
+    """Return the options in a program's magic line as settings, by path.
 
     Raises:
         ConfigError: a word is no option, or a value is wrong.

@@ -41,7 +41,7 @@ MAX_KEYS = 10
 
 
 class Section(StrEnum):
-    """The tables of the file."""
+    """The tables of `config.toml`."""
 
     SIMULATION = "simulation"
     APP = "app"
@@ -73,7 +73,7 @@ class Setting:
 
     @property
     def path(self) -> str:
-        """The name of the setting, with that of its table."""
+        """The name of the setting's table, a dot, and the name of the setting."""
         return f"{self.section}.{self.name}"
 
     @property
@@ -83,7 +83,7 @@ class Setting:
 
     @property
     def is_live(self) -> bool:
-        """Whether the app applies a change at once; otherwise it does at its next start."""
+        """Whether the app applies a change of the setting immediately; otherwise at its next start."""
         return self.section is not Section.SIMULATION and self.at_once
 
 
@@ -121,21 +121,21 @@ class UserConfig:
     """The faults; wrong entries count as missing."""
 
     def checked(self) -> UserConfig:
-        """Return the configuration itself if nothing in it is wrong.
+        """Return the configuration itself if it has no faults.
 
         Raises:
-            ConfigError: something in it is wrong.
+            ConfigError: the first fault.
         """
         if self.problems:
             raise self.problems[0]
         return self
 
     def value(self, path: str) -> Scalar:
-        """Return the value of a setting in the file, or its default."""
+        """Return the value of a setting in the file, or the setting's default."""
         return self.written.get(path, SETTINGS[path].default)
 
     def layer(self, section: Section) -> dict[str, Any]:
-        """Return the settings of a table, by path, without the set of glyphs, which depends on the terminal."""
+        """Return the settings of a table by path, without the set of glyphs, which depends on the terminal."""
         return {
             setting.sets: self.values[path]
             for path, setting in SETTINGS.items()
@@ -146,7 +146,7 @@ class UserConfig:
         }
 
     def keep_section(self, section: Section) -> UserConfig:
-        """Return the configuration without the settings of other tables."""
+        """Return a configuration with the settings of only one table."""
         return replace(
             self,
             written={
@@ -162,7 +162,11 @@ class UserConfig:
         )
 
     def list_effective(self, *above: Mapping[str, Any]) -> list[str]:
-        """Return lines with the simulation's settings in the file that no layer above overrides."""
+        """Return a line for each setting of the simulation in the file that no layer above overrides.
+
+        Args:
+            above: Layers of settings, by path.
+        """
         return [
             f"{setting.name} = {quote(self.written[path])}"
             for path, setting in SETTINGS.items()
@@ -178,7 +182,7 @@ def find_config_file() -> Path:
 
 
 def load_config() -> UserConfig:
-    """Read `config.toml`, with its faults in `problems`. If it is missing or empty, all settings have defaults."""
+    """Return the configuration in `config.toml`, with its faults in `problems`; defaults if it is missing or empty."""
     path = find_config_file()
     try:
         stamp = path.stat()
@@ -189,7 +193,7 @@ def load_config() -> UserConfig:
 
 @lru_cache(maxsize=1)
 def _load(path: Path, _changed_ns: int, _size: int) -> UserConfig:
-    # Cached, because the app reads the file several times while it starts.
+    # The result is cached, as the app reads the file several times at its start.
     try:
         return parse_config(read_config_text(path), path)
     except ConfigError as error:
@@ -213,7 +217,11 @@ def read_config_text(path: Path) -> str:
 
 
 def parse_config(text: str, path: Path) -> UserConfig:
-    """Return the configuration in a text.
+    """Return the configuration in a text; faults other than TOML syntax are in its `problems`.
+
+    Args:
+        text: The contents of `config.toml`.
+        path: The file, for errors; paths in it are relative to its folder.
 
     Raises:
         ConfigError: it is not TOML.
@@ -244,7 +252,10 @@ def parse_config(text: str, path: Path) -> UserConfig:
 def _parse_entries(
     data: Any, location: Location, problems: list[ConfigError]
 ) -> Iterator[tuple[str, Any, Location]]:
-    """Yield name, value and location of each known entry; add an error to `problems` for each unknown one."""
+    """Yield name, value and location of each known setting in a file.
+
+    Add an error to `problems` for each unknown one.
+    """
     names = {
         section: [setting.name for setting in SETTINGS.values() if setting.section is section]
         for section in Section
@@ -294,7 +305,7 @@ _NAMES = ("mats", "background", "robot", "obstacles", "profile")
 
 
 def _resolve(setting: Setting, value: Any, path: Path) -> Any:
-    """Return a value; if it is a path, with the folder of the file before it."""
+    """Return the value of a setting; a path becomes relative to the folder of `config.toml`."""
     if setting.name not in _NAMES:
         return value
     word = user_path(value)
@@ -309,7 +320,13 @@ def _resolve(setting: Setting, value: Any, path: Path) -> Any:
 def _drop_wrong_names(
     written: dict[str, Scalar], values: dict[str, Any], location: Location
 ) -> Iterator[ConfigError]:
-    """Remove names of mats, robots, obstacles and profiles that do not exist; yield an error for each."""
+    """Remove names of mats, robots, obstacles and profiles that do not exist; yield an error for each.
+
+    Args:
+        written: The values as they are in the file, by name.
+        values: The values with resolved paths, by name.
+        location: The file, for errors.
+    """
     from tuisim.settings.build import build_run_spec
 
     for name in _NAMES:
@@ -332,7 +349,7 @@ _KEYS = ('run = ["x", "f5"]', 'theme = "ctrl+y"')
 
 
 def build_template() -> str:
-    """Return the text of a `config.toml` with every setting at its default, in comments."""
+    """Return the text of a `config.toml` with every setting and its default as a comment."""
     lines = [
         f"# Your defaults for tuisim: {see_page(PAGE)}. Remove a # to make a setting your own."
     ]
@@ -352,7 +369,7 @@ def _format_comment(text: str) -> list[str]:
 
 
 def write_template() -> Path:
-    """Write `config.toml` with every setting in comments, and return its path.
+    """Write a `config.toml` with every setting as a comment, and return its path.
 
     Raises:
         ConfigError: it exists, or cannot be written.
@@ -365,18 +382,18 @@ def write_template() -> Path:
 
 
 def save_setting(setting: Setting, value: Scalar | None) -> None:
-    """Set a setting in the file, which is made if it does not exist; comments and everything else in it stay.
+    """Change a setting in `config.toml`, which is created if necessary; comments and everything else in it are kept.
 
     Args:
         setting: The setting.
-        value: None to remove it.
+        value: Its new value; None to remove it.
 
     Raises:
         ConfigError: the value is wrong, or the file is no TOML or cannot be read or written. It is unchanged.
     """
     path = find_config_file()
     text = read_config_text(path)
-    # Not TOML: what is in it would be lost.
+    # If the file is not TOML, this raises an error, so that its contents are not overwritten.
     parse_config(text, path)
     changed = _change(text, setting, value)
     wrong = [error for error in parse_config(changed, path).problems if error.key == setting.path]
@@ -399,7 +416,7 @@ def _change(text: str, setting: Setting, value: Scalar | None) -> str:
 
 
 def _uncomment(text: str, setting: Setting, value: Scalar) -> str:
-    """Return the text with a setting in place of its comment, if the table does not have the setting yet."""
+    """Return the text of `config.toml` with a setting in place of its comment, unless the table has the setting."""
     head, header, rest = text.partition(f"[{setting.section}]\n")
     body, next_header, after = rest.partition("\n[")
     if re.search(rf"^{setting.name}\b", body, re.MULTILINE):

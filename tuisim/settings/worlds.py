@@ -45,7 +45,7 @@ Given: TypeAlias = _Value | UnsetType
 
 
 class _World(Struct):
-    """The keys of a world file that are not values of a run; those of type `Any` are checked by other functions."""
+    """The keys of a world file that are not values of a run; other functions check those of type `Any`."""
 
     world: Given[str] = UNSET
     program: Given[str] = UNSET
@@ -82,7 +82,7 @@ _DEFAULTS = {
 }
 _TASK_KEYS = ("title", "press", "inputs", "goal", "also")
 _NOT_IN_A_RUN = ("world", "mats", "rays", "autorun", "panels", "hidden_panels", *_TASK_KEYS)
-"""Keys that stay as they are when a run is saved into a file that has them."""
+"""Keys that are kept when a run is saved to an existing file."""
 _PANEL_FIELDS = {"panels": "panels_on", "hidden_panels": "panels_off"}
 
 
@@ -114,7 +114,8 @@ def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
     """Read a world file. Paths in it are relative to its folder.
 
     Args:
-        mats: A folder of mats, unless the file names one.
+        path: The file.
+        mats: A folder of mats if the file names none.
 
     Raises:
         ConfigError: the file, or a file that it refers to, cannot be read or is wrong.
@@ -141,13 +142,15 @@ def parse_world(
     *,
     changes: bool = False,
 ) -> WorldFile:
-    """Return the world in a table; keys of goals files are left to `tuisim.tasks.goals`.
+    """Return the world in a table; keys of goals files are ignored here, since `tuisim.tasks.goals` reads them.
 
     Args:
+        data: The table.
         path: The path of the file, which may not exist yet.
         mats: As for `load_world`.
         above: The world files that are based on this one.
-        changes: Whether the table only changes another world; else the world has no floor unless the table says so.
+        changes: Whether the table only changes another world; otherwise the world has no floor unless the table sets
+            it.
 
     Raises:
         ConfigError: a key or a value is wrong.
@@ -214,18 +217,18 @@ def _parse_inputs(world: Mapping[str, Any], location: Location) -> tuple[str, ..
 def _load_base(
     word: str, location: Location, resolve: Resolver, mats: str | None, above: tuple[Path, ...]
 ) -> WorldFile:
-    """Load the world that another one is based on."""
+    """Return the world on which another one is based."""
     path = Path(resolve(word))
     if any(os.path.normpath(path) == os.path.normpath(other) for other in above):
         raise location.wrong(f"{path} is based on itself")
     if not os.path.exists(path):
-        # Names the file and the key: the user may not know that this file names another.
+        # The error names this file and its key, as the user may not know that it names another file.
         raise location.wrong(f"there is no such file: {path}")
     return _load_world(path, mats, above)
 
 
 def _split_table(data: object, location: Location) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the values of a run in a world file, by path, and its other keys."""
+    """Return the values of a run in a world file by path, and the table's other keys."""
     world = files.table(data, location, (*_World.__struct_fields__, *_TABLES))
     others = files.convert(
         {key: value for key, value in world.items() if key not in _TABLES}, _World, location
@@ -255,7 +258,7 @@ def _parse_argument(word: object, location: Location) -> str:
 
 
 def _find_program(word: str, folder: Path, resolve: Resolver) -> str:
-    """Return the resolved path of a program; an example's name stays, unless such a file is beside the world."""
+    """Return the resolved path of a world's program; an example's name unless its folder has a file of that name."""
     known = os.sep not in word and not os.path.exists(folder / word)
     if known and any(os.path.isfile(programs_folder() / name) for name in (word, f"{word}.py")):
         return word
@@ -263,7 +266,7 @@ def _find_program(word: str, folder: Path, resolve: Resolver) -> str:
 
 
 def _resolve(folder: Path, referred: list[Path], word: str) -> str:
-    """Resolve a path in the file, and append it to `referred`."""
+    """Return a path in a world file, resolved relative to its folder, and append it to `referred`."""
     resolved = Path(os.path.normpath(folder / user_path(word)))
     referred.append(resolved)
     return str(resolved)
@@ -285,7 +288,7 @@ def _parse_mat(
             except ConfigError as error:
                 if not error.file:
                     raise
-                # The error is about an image that this file names.
+                # The error is about the image, so this file and its key are added.
                 raise location.at("background", type(error)).wrong(f"{error}") from error.__cause__
     return settings
 
@@ -293,7 +296,7 @@ def _parse_mat(
 def _resolve_name(
     word: str, location: Location, resolve: Resolver, load: Callable[[str], object]
 ) -> str:
-    """Return a name, or the resolved path of a file, after loading it once, so that errors name this file and key."""
+    """Return a name, or the resolved path of a file, after loading it once so that errors name this file and key."""
     if files.means_file(word):
         word = resolve(word)
     with files.errors_at(location.file, location.key):
@@ -329,11 +332,13 @@ _COMMENTS = {
 def save_world(
     spec: RunSpec, path: Path | str, program: str | None = None, arguments: Sequence[str] = ()
 ) -> None:
-    """Write a run atomically to a world file from which an equal run is built. Comments in the file stay.
+    """Write a run atomically to a world file from which an equal run is built. Comments in the file are kept.
 
     Args:
-        path: The file; an image and a program are written relative to its folder.
+        spec: The run.
+        path: The file; paths of an image and a program are written relative to its folder.
         program: The program to run in it, as a path or as the name of an example.
+        arguments: The program's arguments.
 
     Raises:
         ConfigError: the file cannot be written, or cannot represent the run.
@@ -347,7 +352,7 @@ def save_world(
     def check(data: object) -> None:
         _, world = _split_table(data, location)
         if "mats" in world:
-            # A folder with an image of the same name would replace the mat.
+            # The key `mats` is dropped if an image of the same name in its folder would replace the mat.
             mat = find_mat(
                 extract_settings(spec)["background"], str(path.parent / user_path(world["mats"]))
             )
@@ -362,10 +367,11 @@ def save_world(
 def format_world(
     spec: RunSpec, folder: Path, program: str | None = None, arguments: Sequence[str] = ()
 ) -> list[str]:
-    """Return a run as TOML lines.
+    """Return a run as TOML lines of a world file.
 
     Args:
-        folder: Where the file will be; paths are relative to it.
+        spec: The run.
+        folder: The folder of the file; paths are relative to it.
         program, arguments: As for `save_world`.
     """
     settings = extract_settings(spec)
@@ -422,6 +428,6 @@ def _format_infrared(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -
 
 
 def _make_relative(path: str, folder: Path) -> str:
-    """Return a path relative to a folder, in a form that cannot be mistaken for a name."""
+    """Return a path relative to a folder, in a form that differs from a name, such as `./NAME`."""
     relative = os.path.relpath(user_path(path), folder)
     return relative if os.sep in relative or Path(relative).suffix else f".{os.sep}{relative}"
