@@ -23,12 +23,12 @@ from tuisim.web.visit import Visit, VisitLimits
 
 _START_WITHIN_S = 60.0
 _SIZE_AT_FIRST = (100, 30)
-"""Columns and rows until the page tells its own."""
+"""Columns and rows until the page sends its size."""
 
 
 @dataclass(frozen=True, slots=True)
 class CellState:
-    """World, program and run of a notebook as its cells have left them."""
+    """The world, program and run of a notebook after its last cell."""
 
     settings: Mapping[str, Any]
     """By path."""
@@ -38,7 +38,7 @@ class CellState:
 
 
 class AppView:
-    """One app, shown by the page that has asked for it last. Its panels and unsaved texts are not those of other apps.
+    """An app in a notebook, shown by the page that last requested it. Its panels and unsaved texts are its own.
 
     Args:
         words: What the app opens, as words of `tuisim open`.
@@ -59,29 +59,33 @@ class AppView:
         self.begun: SimpleQueue[str] = SimpleQueue()
         """The ids of the runs that have begun in the app."""
         self.told: SimpleQueue[Mapping[str, Any]] = SimpleQueue()
-        """What the app has told: `run` and `ended` with the `id` of a run, `problem` with its `text`."""
+        """Messages of the app: `run` and `ended` with the `id` of a run, `problem` with its `text`."""
         visit = self._server.call(self._server.server.begin(*_SIZE_AT_FIRST, on_message=self._take))
         assert visit is not None
         self._visit: Visit = visit
 
     def create_address(self, origins: tuple[str, ...]) -> dict[str, Any]:
-        """Return the port and a new token; a page with an earlier token can no longer open the app."""
+        """Return the app's port and a new token; a page with an earlier token can no longer open the app.
+
+        Args:
+            origins: Further origins of pages that may show the app.
+        """
         server = self._server.server
         server.gate = server.gate.renew(origins)
         return {"port": self._server.port, "token": server.gate.token}
 
     @property
     def is_shown(self) -> bool:
-        """Whether the app has begun and a page shows it now."""
+        """Whether the app has started and a page shows it now."""
         return self._is_ready.is_set() and self.is_alive and self._visit.is_shown
 
     @property
     def is_alive(self) -> bool:
-        """Whether the app is starting or runs, and has not ended."""
+        """Whether the app is starting or running."""
         return not self._visit.has_ended
 
     def ask(self, what: str, **details: Any) -> None:
-        """Send the app a request, as soon as it has started; see `do_asked`.
+        """Send a request to the app as soon as it has started; see `do_asked`.
 
         Args:
             what: The kind of request.
@@ -103,14 +107,15 @@ class AppView:
         runs: bool,
         speed: float | None,
     ) -> None:
-        """Let the app show the world and the program of a cell.
+        """Show the world and the program of a cell in the app.
 
         Args:
-            settings: Of the world, by path.
-            program: None leaves the program that is open.
+            settings: The settings of the world, by path.
+            program: The program; None leaves the program that is open.
             home: Whether to put the robot back to its start.
             runs: Whether the app also runs the program; `told` gets the run, or why there is none.
-            speed: Of that run, as in `RunOptions`; None for the speed that the app's user has set, else as fast as
+            speed: The speed of that run, as in `RunOptions`; None for the speed that the app's user has set, else as
+                fast as
                 possible.
 
         Raises:
@@ -122,7 +127,7 @@ class AppView:
         self.ask(**_ask_cell(settings, program, home=home, runs=runs, speed=speed))
 
     def show_state(self) -> None:
-        """Let the app show what the cells have left; an app that is still starting does so by itself."""
+        """Show the state after the last cell in the app; an app that is still starting does so by itself."""
         with self._lock:
             is_told = self._is_ready.is_set() and self.is_alive
         if is_told:
@@ -145,13 +150,13 @@ class AppView:
         self.told.put(news)
 
     def close(self) -> None:
-        """End the app and its server."""
+        """Stop the app and its server."""
         self._server.close()
         self._folder.cleanup()
 
 
 def _ask_state(state: CellState) -> Iterator[dict[str, Any]]:
-    """Yield the requests that let the app show what the cells have left."""
+    """Yield the requests with which the app shows the state after the last cell."""
     is_home = not state.run_id
     yield _ask_cell(state.settings, state.program, home=is_home, runs=False, speed=None)
     if state.run_id:

@@ -15,7 +15,7 @@ from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.notebook.image_log import IMAGE_DATA, parse_side
 
 FIRST_LINES, LAST_LINES = 20, 5
-"""What of a long output is always shown."""
+"""The number of lines of a long output that are always shown, at its beginning and end."""
 FEWEST_FOLDED = 15
 """Fewer lines are not worth a click."""
 MAX_FOLDED_LINES = 20_000
@@ -25,14 +25,14 @@ _SHOWN = {Stream.STDOUT, Stream.STDERR, Stream.SPEECH}
 
 
 def format_row(row: OutputRow) -> str:
-    """Return the text that a cell shows for a row of output."""
+    """Return a row of output as the text that a cell shows."""
     if row.text.startswith(IMAGE_DATA) and (side := parse_side(row)):
         return f"{side} image data logged..."
     return row.format_line()
 
 
 class CellOutput:
-    """The output of one cell.
+    """The program output that one cell shows.
 
     Args:
         folds: Whether a long output is folded, which needs displays that can be updated.
@@ -50,7 +50,7 @@ class CellOutput:
         self._due_s = 0.0
 
     def show(self, rows: Sequence[OutputRow]) -> None:
-        """Show rows in order, those of the same stream together; errors are never folded."""
+        """Show rows in order, consecutive rows of a stream together; errors are never folded."""
         streams = _SHOWN - {Stream.SPEECH} if self._quiet else _SHOWN
         printed = (row for row in rows if row.stream in streams)
         for is_error, group in groupby(printed, key=lambda row: row.stream == Stream.STDERR):
@@ -73,7 +73,7 @@ class CellOutput:
                 self._due_s = time.monotonic() + _REDRAW_S
 
     def finish(self) -> None:
-        """Show the folded lines as they are now."""
+        """Update the folded lines a last time."""
         if not self._folded:
             return
         bundle = fold_lines(self._folded, self._count)
@@ -86,7 +86,7 @@ class CellOutput:
 
 
 def fold_lines(lines: Sequence[str], count: int) -> dict[str, str]:
-    """Return lines as a display that shows the last ones; a click shows the others.
+    """Return lines as a display of the last ones, in which a click shows the others.
 
     Args:
         lines: The lines, at most `MAX_FOLDED_LINES`.
@@ -104,6 +104,6 @@ def fold_lines(lines: Sequence[str], count: int) -> dict[str, str]:
 
 
 def _format_pre(lines: Sequence[str]) -> str:
-    # The font size of printed text in JupyterLab.
+    # The font size is that of printed text in JupyterLab.
     style = "margin: 0; font-size: var(--jp-code-font-size, inherit)"
     return f'<pre style="{style}">{html.escape(chr(10).join(lines))}</pre>'

@@ -42,15 +42,15 @@ _START_WITHIN_S = 60.0
 
 
 class AppRun:
-    """Follows a run in the app; its output is read from the store.
+    """A run that the app of a cell has started, with the interface of a `RunHandle`; its output is read from the store.
 
     Args:
-        view: The app, which has been asked to start a run.
+        view: The app, which has been requested to start a run.
         is_interrupted: Returns whether the user has interrupted the cell.
 
     Raises:
-        HostError: the app has told why it cannot start the run, does not answer, or the user has interrupted the cell
-            before.
+        HostError: the app cannot start the run or does not answer, or the user has interrupted the cell before the
+            start.
     """
 
     waiting_for_reply = False
@@ -69,7 +69,7 @@ class AppRun:
         """Return the next message of the app of one of these kinds.
 
         Raises:
-            HostError: it is a problem, the user has interrupted the cell, or none comes in time.
+            HostError: the message is a problem, the user has interrupted the cell, or no message comes in time.
         """
         until_s = time.monotonic() + _START_WITHIN_S
         while self._view.is_alive and time.monotonic() < until_s:
@@ -105,14 +105,14 @@ class AppRun:
                 self.ended = self.stored().end
 
     def pump(self) -> list[Message]:
-        """Return nothing: the app handles the events."""
+        """Return no events: the app handles them."""
         return []
 
     def send(self, command: Message) -> None:
-        """Ignore a command: the app sends its own."""
+        """Ignore a command: the app sends its own commands."""
 
     def stop(self) -> None:
-        """Ask the app to stop the program."""
+        """Send the app a request to stop the program."""
         if self.ended is None and self._view.is_alive:
             self._view.ask("stop")
 
@@ -128,7 +128,7 @@ class AppRun:
         """Do nothing: the run belongs to the app."""
 
     def stored(self) -> StoredRun:
-        """Load the run from the store."""
+        """Return the run from the store."""
         return RunStore().load_run(self.run_id)
 
 
@@ -163,7 +163,7 @@ Result = TypeVar("Result")
 
 @dataclass(frozen=True, slots=True)
 class Listener:
-    """The notebook's functions that are called with what a program prints and may answer it."""
+    """The functions of a notebook that are called with a program's output and may answer the program."""
 
     responder: Responder | None = None
     """Called with each line for the notebook, in collaborative mode."""
@@ -175,13 +175,13 @@ class Listener:
 
     @property
     def answers(self) -> bool:
-        """Whether there is a function that may answer the program."""
+        """Whether there is a function that can answer the program."""
         return self.responder is not None or self.image_handler is not None
 
 
 @dataclass(frozen=True, slots=True)
 class CellRun:
-    """The program of a cell, its world, and how to run it."""
+    """The program of a cell, with its world and options, to be run."""
 
     program: Program
     spec: RunSpec
@@ -206,16 +206,16 @@ def run_cell(
     begun: Callable[[StoredRun, Wheels], None],
     view: AppView | None = None,
 ) -> StoredRun:
-    """Run a program and show it; block until it ends or the kernel is interrupted.
+    """Run the program of a cell and show it; block until it ends or the kernel is interrupted. Return the run.
 
     Args:
         cell: The program.
-        stage: Where it is shown.
+        stage: The displays of the cell.
         begun: Called with the run as soon as its recording exists, and again at its end.
-        view: The app in a cell that has been asked to start the run; None to start it here.
+        view: The app, if it has been requested to start the run; None to start the run here.
 
     Raises:
-        ConfigError: the responder has returned what a program cannot get; the run has been stopped.
+        ConfigError: the responder has returned a value that a program cannot get; the run has been stopped.
     """
     store = RunStore()
     paced = cell.speed > 0
@@ -252,7 +252,7 @@ def run_cell(
             handle.close()
             done = handle.stored()
             begun(done, handle.wheels)
-            # After an interrupt, the user does not want to wait until millions of lines are read.
+            # After an interrupt, millions of lines are not read, as the user does not want to wait.
             hurry = interruption.count > 0
             screen.draw(describe_end(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
     return done
@@ -261,7 +261,9 @@ def run_cell(
 def describe_end(run: StoredRun, *, hurry: bool = False) -> str:
     """Return a status line of a finished run: state, simulated time, samples.
 
-    In a hurry, the number of samples is left out if counting them would be slow.
+    Args:
+        run: The run.
+        hurry: Whether to leave out the number of samples if counting them would be slow.
     """
     state = describe_state(run.state, run.end.summary if run.end else "")
     plugged = f" · plugged in {parts}" if (parts := list_parts(run.plugged)) else ""
@@ -274,9 +276,10 @@ def describe_end(run: StoredRun, *, hurry: bool = False) -> str:
 
 
 class Interruption:
-    """Counts the user's interrupts, which so do not raise at a bad point, such as between starting and storing a child.
+    """Counts the user's interrupts in a `with` block, where they raise no exception.
 
-    Only in the user's functions an interrupt raises KeyboardInterrupt as usual, see `call`.
+    An exception could come at a bad moment, such as between starting and storing a child. Only in the user's functions
+    an interrupt raises KeyboardInterrupt as usual, see `call`.
     """
 
     def __init__(self) -> None:
@@ -300,7 +303,10 @@ class Interruption:
             raise KeyboardInterrupt
 
     def call(self, act: Callable[[], Result]) -> Result | None:
-        """Call a user's function, which an interrupt ends at once. Return its result, None if interrupted."""
+        """Call a user's function, which an interrupt ends immediately.
+
+        Return its result, or None if it was interrupted.
+        """
         self._allowed = True
         try:
             return None if self.count else act()
@@ -334,10 +340,10 @@ class _Follower:
         self._stopping = False
 
     def follow(self) -> None:
-        """Block until the run ends; relay its output and events until then."""
+        """Show the output of the run and answer the program; block until the run ends."""
         handle = self._handle
         interruption = self._interruption
-        # First the panels, then printed text: the order of a cell's outputs must not depend on the program's speed.
+        # Panels are shown before printed text, so that the order of outputs does not depend on the program's speed.
         self._screen.draw_if_due()
         more = False
         while handle.ended is None:
@@ -357,14 +363,17 @@ class _Follower:
         self._finish()
 
     def _relay(self) -> bool:
-        """Show new output and call the notebook's functions with its lines; return whether there is more output."""
+        """Show new output and call the notebook's functions with its lines.
+
+        Return whether there is more output already.
+        """
         rows = self._handle.output.read_new_rows(ROWS_AT_ONCE)
         start = 0
         for stop, row in enumerate(rows, 1):
             side = parse_side(row)
             addressed = self._is_addressed(row)
             if side or addressed:
-                # First show the lines up to this one: what the notebook's functions print about it belongs below.
+                # The lines up to this one are shown first, as the notebook's functions may print something about it.
                 self._printed.show(rows[start:stop])
                 start = stop
             if side:
@@ -403,11 +412,11 @@ class _Follower:
         self._take_text("roboSim.pyresponder", call(partial(listener.responder, heard)))
 
     def _take_text(self, who: str, answer: object) -> None:
-        """Print an answer of the old simulator's kind; if it begins with `JSON_PREFIX`, keep the rest for the program.
+        """Print an answer in the old simulator's form; if it begins with `JSON_PREFIX`, the program gets the rest.
 
         Args:
             who: The name of the function that gave the answer, for errors.
-            answer: None for no answer.
+            answer: The answer; None for no answer.
         """
         if answer is None:
             return
@@ -456,19 +465,27 @@ class _Screen:
 
     @property
     def redraws(self) -> bool:
-        """Whether drawings can be updated in place."""
+        """Whether drawings in the cell can be updated in place."""
         return self._stage.redraws
 
     def draw_if_due(self) -> None:
-        """Draw if nothing is drawn yet or the drawing is old; never if drawings cannot be updated in place."""
+        """Draw the run if nothing is drawn yet or the drawing is old.
+
+        Do nothing if drawings cannot be updated in place.
+        """
         if not self._stage.redraws or time.monotonic() < self._due:
             return
         self.draw(f"running · {self._run.telemetry.count / self._cell.spec.profile.tick_hz:.2f} s")
-        # The pause counts from the end of the drawing, so that slow drawing does not take all the time.
+        # The pause begins at the end of the drawing, so that slow drawing does not take all the time.
         self._due = time.monotonic() + self._cell.refresh_s
 
     def draw(self, status: str, most_rows: int | None = ROWS_A_DRAWING) -> None:
-        """Draw the current state of the run; search at most `most_rows` new lines for samples, None for all."""
+        """Draw the current state of the run.
+
+        Args:
+            status: The status line.
+            most_rows: How many new lines of output to search for samples; None for all.
+        """
         cell = self._cell
         run = self._run
         if self._stage.is_enabled("chart"):
@@ -483,10 +500,10 @@ class _Screen:
 
 
 def _convert_plain(value: Any) -> Any:
-    """Return a number or an array of another library, such as NumPy, as Python's own type.
+    """Return a number or array of another library, such as NumPy, as Python's own type.
 
     Raises:
-        TypeError: it is neither.
+        TypeError: it is neither a number nor an array.
     """
     if hasattr(value, "tolist"):
         return value.tolist()
@@ -511,12 +528,12 @@ def _build_message(who: str, answer: object) -> Any:
 
 
 def _ask(prompt: str) -> str | None:
-    """Ask the user for a line of input; print why and return None if that is not possible."""
+    """Return a line that the user enters; if input is not possible, print why and return None."""
     from IPython.core.error import StdinNotImplementedError
 
     try:
         return input(prompt)
-    # In this order: from a kernel whose front end has no input, from a shell at end of input, without any stdin.
+    # These come from a kernel whose front end has no input, from a shell at its end of input, and without stdin.
     except (StdinNotImplementedError, EOFError, OSError):
         print("tuisim: the program waits for input(), which is not supported here", file=sys.stderr)
         return None

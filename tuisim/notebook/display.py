@@ -43,7 +43,12 @@ Row = tuple[str, str]
 
 
 def bundle_picture(picture: Any, name: str) -> dict[str, Any]:
-    """Return a Pillow image as a displayable object."""
+    """Return a Pillow image as MIME data for a display.
+
+    Args:
+        picture: The image.
+        name: What it shows, for front ends that show only text.
+    """
     return {
         "image/png": encode_png(picture),
         "text/plain": f"<{name}, {picture.width} × {picture.height} pixels>",
@@ -51,12 +56,13 @@ def bundle_picture(picture: Any, name: str) -> dict[str, Any]:
 
 
 def build_table(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) -> dict[str, Any]:
-    """Return rows of name and value as a displayable table.
+    """Return rows of name and value as MIME data of a table.
 
     Args:
-        title: Above the rows.
+        title: The title above the rows.
         rows: Names and values.
-        keep_blanks: Whether several blanks in a value stay, as a program needs them; else a browser shows one.
+        keep_blanks: Whether several blanks in a value are kept, which matter in a program; otherwise a browser shows
+            one.
     """
     begin, end = (
         ('<td style="text-align: left"><pre>', "</pre></td>") if keep_blanks else ("<td>", "</td>")
@@ -74,7 +80,7 @@ def build_table(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) -
 
 
 def _format_light(face: DiscFace) -> str:
-    """Return what a colour sensor sees in words, first what the program reads."""
+    """Return in words what a colour sensor sees; the reading that the program uses comes first."""
     seen = face.seen
     value = face.value_words.removeprefix("mean ")
     numbers = f"red {value}, mean {seen.mean_percent:.1f} %"
@@ -97,7 +103,7 @@ def _find_unit(column: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """What the panels of a cell show: a world, the robot at one tick, pen traces, samples and lines."""
+    """The state that the panels of a cell show: a world, the robot at one tick, pen traces, samples and lines."""
 
     spec: RunSpec
     files: FieldFiles
@@ -112,12 +118,12 @@ class Scene:
     """The lines of the last run, unless they are in the cell already."""
 
     def open_field(self) -> Field:
-        """Return the mat as sensors see it."""
+        """Return the mat as the sensors see it."""
         return self.files.open_field(has_floor=self.spec.world.is_open)
 
 
 def start_record(spec: RunSpec) -> TickRecord:
-    """Return the state of the robot at its start, before any run."""
+    """Return a record of telemetry with the robot at its start, as before any run."""
     start = spec.world.start
     flags = build_start_flags(spec.robot)
     still = (0.0, 0.0, 0.0, 0.0)
@@ -195,10 +201,10 @@ def _draw_arrays(scene: Scene) -> Image:
 
 
 class Stage:
-    """The panels of one cell, each a display that is updated in place.
+    """The panels of one cell, each of which is a display that is updated in place.
 
     Args:
-        settings: Say which panels there are.
+        settings: The settings, which enable and disable panels.
         captions: Displays below the picture of the world, by name; they are not updated.
     """
 
@@ -225,7 +231,7 @@ class Stage:
         return panel in self._settings["panels_on"]
 
     def show(self, scene: Scene, status: str) -> None:
-        """Draw all panels."""
+        """Draw all panels with the state of a scene and a status line."""
         # A kernel sends printed text with a delay, but displays immediately.
         sys.stdout.flush()
         sys.stderr.flush()

@@ -33,7 +33,7 @@ def get_dataframe_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
 
 
 def get_image_data_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
-    """Return the pixel arrays that programs asked for with `print('image_data left|right|both')`.
+    """Return the pixel arrays that programs logged with `print('image_data left|right|both')`.
 
     Columns: `side`; `vals`, the bytes of an RGBA picture, row by row, as a list of whole
     numbers; `clock` in simulated seconds; `run`, from 1.
@@ -47,7 +47,7 @@ def get_image_data_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
 
 
 def image_frame(arrays: Iterable[Iterable[LoggedArray]]) -> pd.DataFrame:
-    """Return the pixel arrays of each run as `get_image_data_from_datalog` does."""
+    """Return the pixel arrays of several runs as a frame, see `get_image_data_from_datalog`."""
     import pandas as pd
 
     rows = [
@@ -59,7 +59,7 @@ def image_frame(arrays: Iterable[Iterable[LoggedArray]]) -> pd.DataFrame:
 
 
 def picture_of(vals: Iterable[int]) -> Image:
-    """Return the picture of one row's `vals`.
+    """Return the picture with the pixels in `vals`, a cell of `get_image_data_from_datalog`.
 
     Raises:
         LogError: it is not the bytes of a square RGBA picture.
@@ -74,14 +74,14 @@ def picture_of(vals: Iterable[int]) -> Image:
 
 
 def check_logged(index: int, count: int) -> None:
-    """Check that a logged array, or pair of arrays, with this index exists.
+    """Check that an index of a logged pixel array, or pair of arrays, exists.
 
     Args:
-        index: From 0; -1 is the last.
-        count: How many there are.
+        index: The index, from 0; -1 is the last.
+        count: The number of logged arrays or pairs.
 
     Raises:
-        LogError: there is none with this index.
+        LogError: the index does not exist.
     """
     if not count:
         raise LogError(
@@ -134,7 +134,10 @@ def bw_image_data(
 
 
 def use_seconds() -> None:
-    """Let matplotlib, and with it seaborn, label time spans in seconds; do nothing if matplotlib is not installed."""
+    """Configure matplotlib, and thereby seaborn, to label time spans in seconds.
+
+    Do nothing if matplotlib is not installed.
+    """
     with suppress(ImportError):
         import numpy as np
         from matplotlib import ticker, units
@@ -142,18 +145,18 @@ def use_seconds() -> None:
         from tuisim.engine.core.profile import NS_PER_S
 
         class Seconds(units.ConversionInterface):
-            """Lets matplotlib plot time spans."""
+            """Converts time spans for matplotlib."""
 
             @staticmethod
             def convert(value: Any, unit: object, axis: object) -> Any:
-                """Return time spans as numbers of nanoseconds; other values stay as they are."""
+                """Return time spans as numbers of nanoseconds; other values are unchanged."""
                 spans = np.asarray(value)
                 is_span = spans.dtype.kind in "mO"
                 return spans.astype("timedelta64[ns]").astype("float64") if is_span else value
 
             @staticmethod
             def axisinfo(unit: object, axis: object) -> units.AxisInfo:
-                """Return how an axis shows time spans: its numbers are nanoseconds, its labels seconds."""
+                """Return the format of an axis of time spans: its numbers are nanoseconds, its labels seconds."""
                 seconds = ticker.FuncFormatter(lambda ns, _: f"{ns / NS_PER_S:g} s")
                 return units.AxisInfo(majfmt=seconds, label="time")  # type: ignore[no-untyped-call]
 

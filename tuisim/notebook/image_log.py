@@ -24,7 +24,7 @@ _LINE = re.compile(rf"({IMAGE_DATA}|{SENT_DATA})(?::?\s+(left|right|both))?\s*")
 
 @dataclass(frozen=True, slots=True)
 class LoggedArray:
-    """The pixels under one colour sensor, as a program has logged them."""
+    """The pixels under one colour sensor that a program has logged."""
 
     side: str
     """Name of the sensor."""
@@ -36,8 +36,8 @@ class LoggedArray:
 
 
 def parse_side(row: OutputRow) -> str:
-    """Return for which side a printed row asks to log pixels: left, right or both; empty if it does not ask."""
-    # A quick test first: most lines ask for no pixels.
+    """Return the side whose pixels a printed row logs: left, right or both; empty if it logs none."""
+    # This quick test comes first, as most lines log no pixels.
     if row.stream != Stream.STDOUT or not row.text.startswith((IMAGE_DATA, SENT_DATA)):
         return ""
     match = _LINE.fullmatch(row.text)
@@ -49,7 +49,14 @@ def parse_side(row: OutputRow) -> str:
 def read_arrays(
     spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field
 ) -> list[tuple[ColorSensorSpec, bytes]]:
-    """Return the pixels under the colour sensors at a tick: RGB bytes, row by row."""
+    """Return each colour sensor with the pixels under it at a tick, as RGB bytes, row by row.
+
+    Args:
+        spec: The run.
+        record: The telemetry of the tick.
+        noise: The noise at the tick.
+        field: The mat.
+    """
     from tuisim.engine.core.sensors.color import read_pixel_array
 
     instant = record.build_instant(spec, noise)
@@ -64,14 +71,14 @@ def add_alpha(rgb: bytes) -> bytes:
 
 
 class ArrayReader:
-    """Computes pixel arrays from the recording of a run, which may still be active."""
+    """Computes pixel arrays from the recording of a run, which may still be running."""
 
     def __init__(self, run: StoredRun) -> None:
         self._run = run
         self._field: Field | None = None
 
     def read_arrays(self, row: OutputRow) -> list[LoggedArray]:
-        """Return the pixel arrays that a printed row asks to log.
+        """Return the pixel arrays that a printed row logs.
 
         Raises:
             LogError: the recording is damaged, or its mat is gone.
@@ -85,7 +92,7 @@ class ArrayReader:
         ]
 
     def read_pixels(self, row: OutputRow) -> dict[str, bytes]:
-        """Return RGBA bytes by the name of the sensor at the tick of a row; empty if that tick is not in the recording.
+        """Return the RGBA bytes of each sensor by name at the tick of a row; empty if that tick is not recorded yet.
 
         Raises:
             LogError: as for `read_arrays`.
@@ -113,23 +120,23 @@ def list_logged_arrays(run: StoredRun) -> list[LoggedArray]:
 class ImageLog:
     """The pixel arrays of a notebook's runs, each computed once.
 
-    Arrays of a run in progress are added line by line: a function of the notebook that is called with a line finds what
-    was logged up to this line, even if the program is further on.
+    Arrays of a run in progress are added line by line: a function of the notebook that is called with a line gets the
+    arrays up to this line, even if the program is further on.
     """
 
     def __init__(self) -> None:
         self._arrays: dict[str, list[LoggedArray]] = {}
 
     def begin(self, run: StoredRun) -> None:
-        """Start to collect the arrays of a run; do nothing if that has begun."""
+        """Start to collect the arrays of a run; do nothing if it was started before."""
         self._arrays.setdefault(run.id, [])
 
     def add(self, run: StoredRun, array: LoggedArray) -> None:
-        """Add an array of a run that has begun."""
+        """Add an array of a run that was passed to `begin`."""
         self._arrays[run.id].append(array)
 
     def mark_incomplete(self, run: StoredRun) -> None:
-        """Forget the arrays of a run of which not all lines were read: `list_arrays` computes them again."""
+        """Discard the arrays of a run whose lines were not all read; `list_arrays` computes them again."""
         self._arrays.pop(run.id, None)
 
     def clear(self) -> None:

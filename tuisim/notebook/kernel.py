@@ -23,7 +23,10 @@ first.
 
 
 def find_old_simulator() -> Path | None:
-    """Return the file of the old simulator if a cell's `import nbev3devsim` imports it, else None."""
+    """Return the file of the old simulator if a cell's `import nbev3devsim` imports it instead of tuisim's.
+
+    Otherwise the result is None.
+    """
     # `find_spec` raises ValueError for a module without a spec, which a notebook may have put there.
     with suppress(ValueError):
         spec = find_spec("nbev3devsim")
@@ -34,7 +37,7 @@ def find_old_simulator() -> Path | None:
 
 
 def tell_old_simulator() -> None:
-    """Print a warning if a cell's `import nbev3devsim` imports the old simulator."""
+    """Print a warning if a cell's `import nbev3devsim` imports the old simulator instead of tuisim's."""
     if find_old_simulator() is not None:
         print(
             "tuisim: note: nbev3devsim is the old simulator here, and tuisim in the kernel RoboLab (tuisim)",
@@ -43,9 +46,9 @@ def tell_old_simulator() -> None:
 
 
 def load_ipython_extension(shell: InteractiveShell) -> None:
-    """Provide the modules and magics of a course, so that its cells run unchanged."""
+    """Add the modules and magics of a course to IPython, so that the course's cells run unchanged."""
     from tuisim.notebook.magics import install
 
-    # At the front of the path: these modules come before an installed old simulator.
+    # The folder goes to the front of the path, so that an installed old simulator is not imported.
     sys.path.insert(0, str(OLD_NAMES))
     install(shell)

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _CellPlan:
-    """What a cell sets, checked, and the world and program that result."""
+    """The settings, world and program that a cell results in, checked before anything is changed."""
 
     persistent: Mapping[str, Any]
     settings: Settings
@@ -45,9 +45,9 @@ class _CellPlan:
 
 
 class Lab:
-    """The simulated robot shared by the cells of a notebook.
+    """The simulated robot that the cells of a notebook share.
 
-    Its world stays from cell to cell, its log until it is cleared.
+    Its world is kept from cell to cell, its log until it is cleared.
     """
 
     def __init__(self) -> None:
@@ -67,7 +67,7 @@ class Lab:
         self._persistent: Mapping[str, Any] = {}
         self._program: Program | None = None
         self._presses: tuple[str, ...] = ()
-        """What a hand presses while the program runs, as the cell of the program says."""
+        """The presses by hand while the program runs, from the program's cell."""
         self._runs: list[StoredRun] = []
         self._last: StoredRun | None = None
         self._spec: RunSpec | None = None
@@ -75,7 +75,7 @@ class Lab:
         self._said: Mapping[str, Any] = {}
         """The settings of the cells, by path, that the app takes over."""
         self._followed: list[str] = []
-        """The ids of runs in the app that had not ended when the log was last asked for."""
+        """The ids of runs in the app that had not ended when the log was last read."""
         self._traces: tuple[Piece, ...] = ()
         """Pen traces on the mat, until it is cleared or replaced."""
 
@@ -123,7 +123,7 @@ class Lab:
         self._images.clear()
 
     def data(self) -> pd.DataFrame:
-        """Return the samples of all runs since the log was cleared."""
+        """Return the samples of all runs since the log was cleared, as a frame; see `eds`."""
         return eds.get_dataframe_from_datalog(self.results_log)
 
     def images(self) -> pd.DataFrame:
@@ -141,7 +141,7 @@ class Lab:
 
     @property
     def raw_image_data(self) -> list[str]:
-        """Each logged pixel array as `SIDE r,g,b,a,… CLOCK`, with the clock in 1/30 s."""
+        """The logged pixel arrays, each as a text `SIDE r,g,b,a,… CLOCK`, with the clock in 1/30 s."""
         return [
             old_formats.record_text(array) for of_run in self.logged_arrays() for array in of_run
         ]
@@ -192,7 +192,7 @@ class Lab:
 
     @property
     def spec(self) -> RunSpec:
-        """Robot, world, profile and seed as the cells have set them."""
+        """The robot, world, profile and seed that the cells have set."""
         from tuisim.settings.build import build_run_spec
         from tuisim.settings.options import merge_settings
 
@@ -227,12 +227,12 @@ class Lab:
     # Cells
 
     def apply(self, words: Arguments, text: str | None, prelude: str) -> None:
-        """Do what the magic of a cell says; after an error the world and the program are as before.
+        """Carry out the magic of a cell; after an error the world and the program are as before.
 
         Args:
             words: The words of the magic, parsed.
             text: The program below the magic, None for none.
-            prelude: none, imports or preloaded.
+            prelude: `none`, `imports` or `preloaded`.
 
         Raises:
             ConfigError: a mat, robot or value is invalid, or there is no program to run.
@@ -263,7 +263,7 @@ class Lab:
         self._show(plan, words, listener, runs=runs)
 
     def _show(self, plan: _CellPlan, words: Arguments, listener: Listener, *, runs: bool) -> None:
-        """Run the program of a cell, or show the world; if a page shows the app, the app takes the cell."""
+        """Run the program of a cell, or show the world; if a page shows the app, the app shows or runs them."""
         from tuisim.notebook.display import Stage
 
         stage = Stage(plan.settings, self._build_captions(words, plan))
@@ -291,7 +291,7 @@ class Lab:
             self._live.view.show_state()
 
     def find_state(self) -> CellState:
-        """Return what the cells have left, for an app that starts or that did not take the last cell."""
+        """Return the state after the last cell, for an app that starts or that did not show the last cell."""
         from tuisim.notebook.app_view import CellState
 
         last = self._last
@@ -319,14 +319,14 @@ class Lab:
         persistent = update_persistent(self._persistent, words.settings)
         program = self._program
         if text is not None:
-            # An empty line stands for that of the magic, so that line numbers are those of the cell.
+            # An empty line replaces that of the magic, so that line numbers are those of the cell.
             preload = str(words.settings.get("preload", prelude))
             program = Program("cell", "\n" + text, preload)
         layers = persistent, {"press": self._presses if text is None else ()}, words.settings
         settings = merge_settings(*layers)
         if program is not None:
             source = ProgramSource(program, has_magic=True)
-            # A magic line sets the world of the cells below: it need not fit the program above, which has run already.
+            # A magic line sets the world for later cells, so it need not fit the program above, which has run already.
             insists = text is not None or settings["autorun"]
             effective = build_program_settings(source, *layers, insists=insists)
             settings = effective.settings
@@ -352,7 +352,10 @@ class Lab:
         return Listener(responder, self._in_texts, None if handler is None else call_handler)
 
     def _build_captions(self, words: Arguments, plan: _CellPlan) -> dict[str, dict[str, Any]]:
-        """Return the displays below the picture of the cell, by name; without a picture, only an app it asks for."""
+        """Return the displays below the picture of a cell by name.
+
+        Without a picture, there is only the app, if the cell requests it.
+        """
         app_words = words.app if words.app is not None and not words.app.off else None
         if words.app is not None:
             self._live.turn(on=app_words is not None)
@@ -361,7 +364,7 @@ class Lab:
         return self._live.build_captions(plan.spec.world.background, app_words)
 
     def _catch_up(self) -> None:
-        """Add the runs that were started in the app to the log, each as far as it is recorded."""
+        """Add the runs that the user started in the app to the log, with the part that is recorded so far."""
         if self._live.view is None:
             return
         while not self._live.view.begun.empty():
@@ -404,8 +407,8 @@ class Lab:
 
         def note(run: StoredRun, wheels: Wheels) -> None:
             self._wheels = wheels
-            # From its start the run is in the log, where a responder can read it; the responder may start runs, too, so
-            # that this run need not be the last one there.
+            # The run is in the log from its start, so that a responder can read it. A responder may start runs, too, so
+            # this run need not be the last one in the log.
             places = [index for index, stored in enumerate(self._runs) if stored.id == run.id]
             if not places:
                 self._images.begin(run)
@@ -415,7 +418,7 @@ class Lab:
         try:
             run_cell(cell, stage, note, view)
         finally:
-            # Keep the trace also if a responder's error has ended the run.
+            # The trace is kept even if a responder's error has ended the run.
             if self._last is not None:
                 self._traces = (
                     *self._traces,
@@ -423,7 +426,7 @@ class Lab:
                 )
 
     def _build_scene(self, plan: _CellPlan) -> tuple[Scene, str]:
-        """Return the scene while no program runs, and its status line."""
+        """Return the scene and the status line to show while no program runs."""
         from tuisim.engine.runs.records import TEXT_STREAMS
         from tuisim.engine.runs.samples import list_samples
         from tuisim.notebook.cell_output import format_row
@@ -450,7 +453,7 @@ class Lab:
 
 
 def _select_given(plan: _CellPlan, words: Arguments) -> Mapping[str, Any]:
-    """Return the settings, by path, that the cells have set and that the app takes over."""
+    """Return the settings, by path, that the cells have set and that also apply in the app."""
     from tuisim.settings.options import merge_settings
 
     presses = {"press": plan.settings["press"]}

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 REQUEST = "tuisim_app_request"
 REPLY = "tuisim_app_reply"
-"""The messages by which a page asks for the address of the app, and by which the kernel answers."""
+"""The types of the messages with which a page requests the app's address and the kernel answers."""
 SENTENCE = (
     "This is a picture. JupyterLab on this machine shows the live robot here, to drag it; elsewhere, "
     "%sim_app --origin ADDRESS does."
@@ -52,7 +52,7 @@ def find_notebook_origins(environment: Mapping[str, str] = os.environ) -> tuple[
 
 
 class LiveRobot:
-    """The app of a notebook: at most one, started when the first page asks for it.
+    """The app of a notebook: at most one, started when a page first requests it.
 
     Args:
         find_state: Returns what the app shows first; called in another thread.
@@ -74,7 +74,7 @@ class LiveRobot:
         self._origins: tuple[str, ...] = ()
 
     def find_shown(self) -> AppView | None:
-        """Return the app if a page shows it now."""
+        """Return the app if a page shows it now; else None."""
         if self.view is None or not self.view.is_shown:
             return None
         self._was_shown = self._is_taken
@@ -88,7 +88,7 @@ class LiveRobot:
 
         Args:
             background: The mat that the app opens.
-            words: What the cell says of the app; None for nothing.
+            words: The cell's words about the app; None for none.
         """
         kernel = _find_kernel()
         if kernel is None:
@@ -114,9 +114,10 @@ class LiveRobot:
         return bundle
 
     def _is_due(self, kernel: Any) -> bool:
-        """Return whether to offer the app below a picture although the cell does not ask for it.
+        """Return whether to offer the app below a picture although the cell does not request it.
 
-        So do the first picture, another one of the same cell, and one after the page that showed the app has gone.
+        It is due below the first picture, below another picture of the same cell, and after the page that showed the
+        app has gone.
         """
         if not self.is_wanted:
             return False
@@ -139,14 +140,17 @@ class LiveRobot:
         return text
 
     def _answer(self, stream: Any, identity: Any, message: Mapping[str, Any]) -> None:
-        """Send the address of the app to a page that asks for it; an empty one if its offer is not the newest."""
+        """Send the address of the app to a page that requests it.
+
+        The address is empty if the page's offer is not the newest.
+        """
         content = self.open(str(message["content"].get("offer")))
         _find_kernel().session.send(stream, REPLY, content, message, identity)
 
     def open(self, offer: str) -> dict[str, Any]:
         """Start the app if there is none yet; return its port and token.
 
-        Return an empty dict for an offer that is not the newest, or after the app has ended.
+        Return an empty dict if the offer is not the newest, or if the app has ended.
         """
         from tuisim.notebook.app_view import AppView
 
@@ -158,7 +162,10 @@ class LiveRobot:
         return self.view.create_address(self._origins)
 
     def turn(self, *, on: bool) -> None:
-        """Turn the offer of the app on or off. Off ends the app; on lets a new one start if the last one has ended."""
+        """Turn the offer of the app on or off.
+
+        Off ends the app; after on, a new app can start if the last one has ended.
+        """
         self.is_wanted = on
         if self.view is not None and not (on and self.view.is_alive):
             self.view.close()
@@ -166,7 +173,7 @@ class LiveRobot:
 
 
 def _build_bundle(sentence: str) -> dict[str, Any]:
-    """Return a sentence as a displayable object."""
+    """Return a sentence as MIME data for a display."""
     return {"text/plain": sentence, "text/html": f"<p>{html.escape(sentence)}</p>"}
 
 
@@ -176,7 +183,7 @@ def _find_cell(kernel: Any) -> str:
 
 
 def _find_kernel() -> Any:
-    """Return the kernel that this code runs in; None if that is not ipykernel, as in a shell."""
+    """Return the ipykernel in which this code runs; None in another shell."""
     from IPython.core.getipython import get_ipython
 
     kernel = getattr(get_ipython(), "kernel", None)

@@ -25,7 +25,7 @@ Handler = Callable[[str, str | None], Any]
 
 
 def _guard_magic(act: Handler) -> Callable[..., Any]:
-    """Return the magic as a function that prints expected errors as one line in the cell."""
+    """Return a magic as a function that prints expected errors as one line in the cell."""
 
     def call_magic(line: str, cell: str | None = None) -> Any:
         try:
@@ -33,7 +33,7 @@ def _guard_magic(act: Handler) -> Callable[..., Any]:
         except TuisimError as error:
             print("tuisim:", " ".join(str(error).split("\n")), file=sys.stderr)
         except KeyboardInterrupt:
-            # A run handles its interrupts itself: this one came while no program ran.
+            # A run handles its interrupts itself, so this one came while no program ran.
             print("tuisim: interrupted; no program was running", file=sys.stderr)
         return None
 
@@ -116,7 +116,7 @@ LOG_MAGICS: Mapping[str, Log] = {
 
 
 def install(shell: InteractiveShell) -> None:
-    """Register every magic, and put `roboSim` and `eds` into the notebook's namespace."""
+    """Register every magic, and add `roboSim` and `eds` to the notebook's namespace."""
     for name in PRELUDES:
         shell.magics_manager.register_function(
             _guard_magic(_build_magic(shell, name)), "line_cell", name

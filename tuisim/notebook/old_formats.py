@@ -42,17 +42,17 @@ _DIGITS = tuple(map(str, range(256)))
 
 
 def format_values(rgba: bytes) -> str:
-    """Return an array as text: `r,g,b,a,r,g,b,a,…`."""
+    """Return RGBA bytes as text: `r,g,b,a,r,g,b,a,…`."""
     return ",".join(map(_DIGITS.__getitem__, rgba))
 
 
 def record_text(array: LoggedArray) -> str:
-    """Return a record of the image log: `SIDE r,g,b,a,… CLOCK`."""
+    """Return a logged array as a record of the image log: `SIDE r,g,b,a,… CLOCK`."""
     return f"{array.side} {format_values(array.rgba)} {array.time_ns * TICKS_PER_S // 10**9}"
 
 
 def format_sent(seen: Mapping[str, bytes]) -> str:
-    """Return the line `IMG_DATA::` and JSON with which a responder is called; a side without a sensor is an empty text.
+    """Return the line for a responder, `IMG_DATA::` and JSON; a side without a sensor is an empty text.
 
     Args:
         seen: RGBA bytes by the name of the sensor.
@@ -87,7 +87,11 @@ def process_raw_image_data(text: str, mode: str = "rgb", to_str: bool = True) ->
 
 
 def build_image_frame(records: Iterable[str], mode: str = "rgb") -> pd.DataFrame:
-    """Return records as a frame of texts with the columns `side`, `vals` and `clock`.
+    """Return records of the image log as a frame of texts with the columns `side`, `vals` and `clock`.
+
+    Args:
+        records: The records.
+        mode: Which numbers `vals` has, as in `process_raw_image_data`.
 
     Raises:
         ConfigError: there is no such mode.
@@ -111,7 +115,7 @@ _FRAME_PX, _TITLE_PX = 10, 24
 
 
 class ImagePair(NamedTuple):
-    """The pictures under both sensors at one time, in greys; a notebook shows them side by side."""
+    """The pictures under both sensors at one time, in greys, which a notebook shows side by side."""
 
     left: Image
     right: Image
@@ -136,7 +140,7 @@ class ImagePair(NamedTuple):
 
 
 def pick_image_pair(arrays: Iterable[Sequence[LoggedArray]], index: int = -1) -> ImagePair:
-    """Return the pictures that were logged of both sensors at the same time.
+    """Return a pair of pictures of both sensors that were logged at the same time.
 
     Args:
         arrays: The arrays of each run.
@@ -198,7 +202,7 @@ def build_robot_state(
     highest_deg: float,
     wheels: Wheels,
 ) -> dict[str, Any]:
-    """Return the dictionary with which the old simulator describes a robot.
+    """Return the old simulator's dictionary of a robot's state.
 
     Args:
         spec: The run.
@@ -251,7 +255,7 @@ def build_robot_state(
 
 
 def _wrap_heading(heading_deg: float, highest_deg: float) -> float:
-    """Return a heading as the old simulator counts it: less 360° for each full turn of the highest; never raised."""
+    """Return a heading in degrees as the old simulator counts it: less 360° for each full turn of the highest one."""
     return heading_deg - 360 * max(0, math.ceil(highest_deg / 360) - 1)
 
 
@@ -281,7 +285,7 @@ def _build_wheel(
 
 
 def _build_light(side: str, rgb: list[float]) -> dict[str, Any]:
-    # A program reads whole numbers; here the means keep their decimals.
+    # These means are not rounded, unlike the numbers that a program reads.
     return {
         f"{side}_light_raw": rgb,
         f"{side}_light": rgb[0],
@@ -294,7 +298,7 @@ _LONG_TEXT = 60
 
 
 class RobotState:
-    """The robot's state as the dictionary `state`, as it was when this object was made, or at the last `update()`."""
+    """The robot's state as the dictionary `state`, read when this object was created and at each `update()`."""
 
     def __init__(self, read: Callable[[], dict[str, Any]]) -> None:
         self._read = read

@@ -33,11 +33,11 @@ def build_tone() -> bytes:
 
 
 class SoundedBar(tqdm):  # type: ignore[misc] # tqdm ships no types
-    """`tqdm.notebook.tqdm`, which sounds a tone at its end in a notebook."""
+    """A progress bar `tqdm.notebook.tqdm` that plays a tone at its end in a notebook."""
 
     def close(self) -> None:
-        """End the bar; the first time with a tone."""
-        # `disable` is true for a bar that is closed already or not shown: no tone then.
+        """End the bar; the first call plays the tone."""
+        # There is no tone for a bar that is closed already or not shown, which has `disable`.
         sounds = not self.disable and hasattr(get_ipython(), "kernel")
         super().close()
         if sounds:

@@ -8,7 +8,7 @@ __all__ = ["eds", "roboSim"]
 
 
 def __getattr__(name: str) -> Any:
-    # The bar is loaded by the cells that use it: it takes long.
+    # The bar is imported only by cells that use it, as this takes long.
     if name == "tqdma":
         from tuisim.notebook.progress_bar import SoundedBar
 
