@@ -31,12 +31,17 @@ _Found = TypeVar("_Found")
 PATIENCE_S = 4.0
 """How long scheduler and workers may take for an answer, and how long a cluster may be without a worker."""
 _VERSION = "__import__('tuisim').__version__"
-"""Evaluated by a worker, which may know nothing of tuisim."""
+"""An expression for tuisim's version, which a worker evaluates that may not have tuisim."""
 _GOES_ON = "with --out, --resume continues with the rows so far"
 
 
 def call_within_s(seconds: float, call: Callable[..., _Found], *args: Any, **named: Any) -> _Found:
-    """Call a function in a thread, and return what it returns.
+    """Call a function in a thread, and return its result.
+
+    Args:
+        seconds: The longest time to wait.
+        call: The function.
+        *args, **named: Its arguments.
 
     Raises:
         TimeoutError: it takes longer than `seconds`; it goes on in its thread.
@@ -46,7 +51,7 @@ def call_within_s(seconds: float, call: Callable[..., _Found], *args: Any, **nam
     def work() -> None:
         try:
             answers.put((call(*args, **named), None))
-        except BaseException as error:  # Raised again in the thread that waits.
+        except BaseException as error:  # The waiting thread raises it again.
             answers.put((None, error))
 
     threading.Thread(target=work, daemon=True).start()
@@ -60,13 +65,13 @@ def call_within_s(seconds: float, call: Callable[..., _Found], *args: Any, **nam
 
 
 class ClusterWatch:
-    """Checks from time to time whether a cluster can work.
+    """Checks a Dask cluster from time to time: whether it has a scheduler and suitable workers.
 
     Args:
         client: The client of the cluster.
         name: The address of the cluster, for errors.
         clock: Returns the time in seconds.
-        sleep: Waits for some seconds.
+        sleep: Waits for a number of seconds.
     """
 
     EVERY_S: ClassVar[float] = 1.0
@@ -82,14 +87,14 @@ class ClusterWatch:
         self._client = client
         self._clock = clock
         self._sleep = sleep
-        # An import statement would break the order of rooms, since `tuisim` imports all of them.
+        # An import statement would break the order of packages, since `tuisim` imports all of them.
         self._version = import_module("tuisim").__version__
         self._known: set[str] = set()
         self._look_at = 0.0
         self._wrong_since: float | None = None
 
     def wait_for_workers(self) -> None:
-        """Block until there is a worker, and all workers have been checked.
+        """Block until the cluster has a worker, and all workers have been checked.
 
         Raises:
             HostError: as `look`.
@@ -101,7 +106,7 @@ class ClusterWatch:
             self._sleep(self.EVERY_S)
 
     def look(self) -> None:
-        """Check the cluster, unless it was checked just before.
+        """Check the cluster, unless the last check was just before.
 
         Raises:
             HostError: it has had no scheduler or no worker for a while, or a worker has no tuisim or another version.
@@ -121,19 +126,19 @@ class ClusterWatch:
             raise HostError(f"{self.name}: {wrong}", hint)
 
     def explain(self) -> None:
-        """Raise HostError if the cluster cannot work at this moment."""
+        """Raise HostError with the fault of the cluster, if it has one at this moment."""
         wrong, hint = self._find_fault()
         if wrong:
             raise HostError(f"{self.name}: {wrong}", hint)
 
     def _find_fault(self) -> tuple[str, str]:
-        """Return why the cluster cannot work at this moment, and what helps; empty texts if it can."""
+        """Return the fault of the cluster at this moment, and a hint; empty texts if it has none."""
         if self._client.status != "running":
             return "the scheduler is lost", _GOES_ON
         try:
             workers = set(call_within_s(PATIENCE_S, self._client.nthreads))
         except OSError:
-            # `TimeoutError` and all errors of connections.
+            # OSError includes `TimeoutError` and all errors of connections.
             return "the scheduler does not answer", _GOES_ON
         if not workers:
             hint = f"start one with `dask worker {self.name}`" if not self._known else _GOES_ON
@@ -147,7 +152,7 @@ class ClusterWatch:
         return "", ""
 
     def _check(self, workers: list[str]) -> None:
-        """Raise HostError if a worker has no tuisim, or another version."""
+        """Raise HostError if one of some workers has no tuisim, or another version."""
         run = self._client.run
         versions = call_within_s(
             PATIENCE_S, run, eval, _VERSION, workers=workers, on_error="return"
@@ -170,7 +175,7 @@ CHUNK = 4
 AHEAD = 400
 """Chunks that the scheduler has at most: it keeps each in memory, and workers may join at any time."""
 MAX_TRIES = 10
-"""How many workers may die of a chunk before the batch fails."""
+"""The number of workers that may die while executing one chunk before the batch fails."""
 CONNECT_S = 5.0
 _RESULT_S, _CLOSE_S = 2.0, 1.0
 _ADDRESS = re.compile(r"(\w+://)?[^\s/]+:\d+")
@@ -187,14 +192,14 @@ def run_on_cluster(
     A result does not depend on the worker. Tasks of a worker that has died are executed on another one.
 
     Args:
-        tasks: The tasks; they are consumed as they are handed over, as by `run_many`.
+        tasks: The tasks; the next ones are taken as workers become free, as by `run_many`.
         scheduler: Address of a scheduler, such as `tcp://host:8786`; empty starts a cluster on this machine.
-        workers: Its number of worker processes.
+        workers: Number of worker processes of a cluster on this machine.
 
     Raises:
         ConfigError: Dask is not installed, or there is no scheduler at the address.
         HostError: the cluster has no worker, one of them lacks tuisim or has another version, its workers die again and
-            again, or the connection is lost; ten seconds after that at the latest.
+            again, or the connection has been lost for ten seconds.
     """
     if scheduler and not _ADDRESS.fullmatch(scheduler):
         hint = "its host and port, such as tcp://host:8786"
@@ -216,7 +221,7 @@ def run_on_cluster(
                 scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
             )
             client = distributed.Client(cluster, set_as_default=False)
-    except Exception as error:  # What listens at an address may be anything, and raise anything.
+    except Exception as error:  # Any server may listen at the address and cause any error.
         raise _build_scheduler_error(scheduler, error) from None
     try:
         yield from _iterate_results(
@@ -232,9 +237,9 @@ def _build_client(distributed: Any, scheduler: str) -> Any:
     client = object.__new__(distributed.Client)
     try:
         client.__init__(scheduler, timeout=CONNECT_S, set_as_default=False)
-    # Every exception, since it is raised again.
+    # Every exception is handled here and raised again.
     except BaseException:
-        # The client would wait for the end of a connection that it never had, when it is deleted.
+        # Otherwise, when deleted, the client would wait for the end of a connection that it never had.
         client.status = "closed"
         raise
     return client
@@ -271,7 +276,7 @@ def _build_scheduler_error(scheduler: str, error: Exception) -> ConfigError:
 
 
 def _close(client: Any) -> None:
-    with suppress(Exception):  # What a lost scheduler raises when it is left does not matter.
+    with suppress(Exception):  # Errors while disconnecting from a lost scheduler do not matter.
         client.close(timeout=_CLOSE_S)
 
 
@@ -281,7 +286,7 @@ def _iterate_results(client: Any, watch: ClusterWatch, tasks: Iterator[Task]) ->
     pending = 0
     while True:
         while pending < AHEAD and (chunk := list(islice(tasks, CHUNK))):
-            # Not pure: Dask would look for the same task among those of other batches.
+            # With `pure=False`, Dask does not look for an equal task among those of other batches.
             future = client.submit(_execute_all, chunk, pure=False, retries=MAX_TRIES)
             future.add_done_callback(done.put)
             pending += 1
@@ -295,12 +300,12 @@ def _iterate_results(client: Any, watch: ClusterWatch, tasks: Iterator[Task]) ->
         try:
             outcome = future.result(timeout=_RESULT_S)
         except TimeoutError:
-            # The worker that has the result died: another one makes it again.
+            # The worker with the result has died, and another one computes it again.
             done.put(future)
             continue
         except TuisimError:
             raise
-        except Exception as error:  # Workers die, and packages on them may be wrong, in any manner.
+        except Exception as error:  # A dying worker, or wrong packages on it, can cause any error.
             # If the scheduler is lost, it has cancelled the pending tasks: then this raises that as the reason.
             watch.explain()
             why = str(error).partition("\n")[0]

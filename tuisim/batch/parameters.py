@@ -37,7 +37,7 @@ ALLOWED = "0,20,50 or 54:58:0.5 or 0..199 or random(0, 50, 20) or latin(0, 50, 2
 
 
 class RandomDraw(StrEnum):
-    """How random values are spread over their interval."""
+    """How the random values of a parameter are spread over their interval."""
 
     RANDOM = "random"
     """Independent of each other."""
@@ -47,7 +47,7 @@ class RandomDraw(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class SampleValues:
-    """A number of random values from an interval, drawn with a seed of their own."""
+    """Random values of a parameter from an interval, drawn with their own seed."""
 
     draw: RandomDraw
     low: float
@@ -59,7 +59,7 @@ class SampleValues:
         """Return the values in the order in which they are drawn.
 
         Args:
-            name: The parameter, on which the values depend: two with the same seed get different ones.
+            name: The parameter: two parameters with the same seed get different values.
             whole: Whether to draw whole numbers.
 
         Raises:
@@ -89,7 +89,7 @@ Choice = tuple[Value, ...] | SampleValues
 
 @dataclass(frozen=True, slots=True)
 class ParameterAxis:
-    """Parameters that vary together: one, or those of a Latin hypercube."""
+    """Parameters of a batch that vary together: a single one, or those of a Latin hypercube."""
 
     names: tuple[str, ...]
     points: tuple[tuple[Value, ...], ...]
@@ -98,7 +98,7 @@ class ParameterAxis:
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """Every combination of the points of some axes; the last axis varies fastest."""
+    """Every combination of parameter values, from the points of several axes; the last axis varies fastest."""
 
     axes: tuple[ParameterAxis, ...]
     names: tuple[str, ...] = field(init=False)
@@ -114,7 +114,7 @@ class Grid:
         return map(self.find_values, range(len(self)))
 
     def find_values(self, index: int) -> dict[str, Value]:
-        """Return the values of one combination by parameter; `index` counts from 0."""
+        """Return the parameter values of one combination by name; `index` counts from 0."""
         values: list[tuple[str, Value]] = []
         for axis in reversed(self.axes):
             index, here = divmod(index, len(axis.points))
@@ -125,11 +125,11 @@ class Grid:
 def build_grid(
     choices: Mapping[str, Choice], is_whole: Callable[[str, float], bool] = lambda *_: False
 ) -> Grid:
-    """Return the grid of some parameters, in their order.
+    """Return the grid of the combinations of some parameters, in their order.
 
     Args:
         choices: The values of each parameter.
-        is_whole: Returns whether a parameter takes only whole numbers; asked with one of random values.
+        is_whole: Returns whether a parameter takes only whole numbers; called with one of its random values.
 
     Raises:
         ConfigError: the parameters of a Latin hypercube differ in number of values or seed, or the grid is too large.
@@ -177,7 +177,7 @@ def _list_values(
 ) -> Sequence[Value]:
     if not isinstance(choice, SampleValues):
         return choice
-    # The middle of two whole numbers, inside the interval.
+    # `is_whole` is called with a value of the interval that is no whole number.
     inside = math.floor(choice.low) + 0.5
     return choice.values(
         name, is_whole(name, inside if inside < choice.high else (choice.low + choice.high) / 2)
@@ -185,12 +185,16 @@ def _list_values(
 
 
 def parse_values(text: str, key: str) -> Choice:
-    """Parse the values of a parameter, such as `0,20,50`, `54:58:0.5`, `0..199` or `random(0, 50, 20)`.
+    """Return the values of a parameter in a text such as `0,20,50`, `54:58:0.5`, `0..199` or `random(0, 50, 20)`.
 
-    The values of `random` and the like are drawn later, from the SampleValues returned.
+    For `random` and the like, it is a SampleValues, which draws the values later.
+
+    Args:
+        text: The text.
+        key: The option, for errors.
 
     Raises:
-        ConfigError: they are wrong; errors blame `key`.
+        ConfigError: the values are wrong.
     """
     pieces = _split_pieces(text)
     if not all(pieces):
@@ -210,7 +214,11 @@ def parse_values(text: str, key: str) -> Choice:
 
 
 def parse_seeds(text: str, key: str = "--seeds") -> tuple[int, ...]:
-    """Parse seeds, such as `0..199` or `1,5,9`.
+    """Return the seeds in a text such as `0..199` or `1,5,9`.
+
+    Args:
+        text: The text.
+        key: The option, for errors.
 
     Raises:
         ConfigError: one is not a whole number in the range of seeds, or occurs twice.
@@ -222,7 +230,11 @@ def parse_seeds(text: str, key: str = "--seeds") -> tuple[int, ...]:
 
 
 def check_seeds(values: Sequence[object], key: str) -> tuple[int, ...]:
-    """Return seeds after checking them.
+    """Return seeds as a tuple after checking them.
+
+    Args:
+        values: The seeds.
+        key: The option, for errors.
 
     Raises:
         ConfigError: one is not a whole number in the range of seeds, or occurs twice.
@@ -242,7 +254,7 @@ def check_seeds(values: Sequence[object], key: str) -> tuple[int, ...]:
 
 
 def _split_pieces(text: str) -> list[str]:
-    """Split a text at the commas outside quotes and parentheses."""
+    """Return the parts of a text between commas that are outside quotes and parentheses."""
     pieces = []
     start = 0
     while True:
@@ -265,7 +277,7 @@ def _expand_piece(piece: str, key: str) -> Sequence[Value]:
     if _QUOTED.fullmatch(piece):
         return (piece[1:-1],)
     if re.fullmatch(r"[+-]?\d+", piece):
-        # Longer numbers are no value of any parameter, and would take Python long to read.
+        # No parameter has longer numbers, which Python reads slowly, so they stay texts.
         return (int(piece) if len(piece) < 30 else piece,)
     if re.fullmatch(_NUMBER, piece):
         return (float(piece),)
@@ -275,7 +287,7 @@ def _expand_piece(piece: str, key: str) -> Sequence[Value]:
 def _expand_range(
     low: Decimal, high: Decimal, step: Decimal, piece: str, key: str
 ) -> Sequence[Value]:
-    """Return the values from `low` to `high`, computed in decimal, so that none is off by a rounding error."""
+    """Return the values from `low` to `high` at a step, computed in decimal so that none has a rounding error."""
     if step == 0 or (high - low) / step < 0:
         raise ConfigError(
             f"{piece} has no values: a step of {step} does not lead from {low} to {high}", key=key
@@ -296,10 +308,12 @@ def _expand_range(
 
 
 def _sample(name: str, inside: str, key: str) -> SampleValues:
-    """Return the random values that a call such as `random(LOW, HIGH, COUNT, seed=N)` stands for.
+    """Return the random values of a call such as `random(LOW, HIGH, COUNT, seed=N)`.
 
     Args:
+        name: The name of the function, such as `random`.
         inside: The text between the parentheses.
+        key: The option, for errors.
     """
     if name not in [*RandomDraw]:
         raise ConfigError(

@@ -29,7 +29,7 @@ from tuisim.tasks.task import Keep, Task, Value
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """One program of a batch, and the settings that the parameters change."""
+    """One program of a batch, with the settings that the parameters change."""
 
     program: Program
     settings: Settings
@@ -40,7 +40,7 @@ class Subject:
 
     @property
     def label(self) -> str:
-        """The name of the program in the table."""
+        """The program's name in the table."""
         return self.name or self.program.name
 
 
@@ -60,14 +60,14 @@ class Plan:
     goals: tuple[Goal, ...] = ()
     keep: Keep = Keep.NONE
     returns_files: bool = False
-    """Whether results have what their runs have recorded."""
+    """Whether results include the files of their runs' recordings."""
     options: RunOptions = field(default_factory=RunOptions)
     """How a run is executed; what is pressed by hand is added from the settings of its program."""
     grid: Grid = field(init=False)
     _specs: dict[tuple[object, ...], RunSpec] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
-        # A worker may be in another folder, or on another machine.
+        # A worker may run in another folder, so the program keeps the working directory of this process.
         subjects = tuple(
             replace(each, program=set_surroundings(each.program)) for each in self.subjects
         )
@@ -89,7 +89,7 @@ class Plan:
             self._check(subject)
 
     def _check(self, subject: Subject) -> None:
-        """Check every combination of parameters of a program, except for seeds, by building its specification."""
+        """Raise ConfigError if a combination of a program's parameters is wrong; seeds are left out."""
         own = [axis for axis in self.grid.axes if axis.names != (SEED,)]
         for name in self.choices:
             if name in subject.given:
@@ -107,23 +107,27 @@ class Plan:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The parameters."""
+        """The names of the parameters."""
         return self.grid.names
 
     def check_expressions(self, expressions: Mapping[str, str]) -> None:
-        """Check the expressions for further columns of the table, by name, before anything is run.
+        """Check the expressions for further columns of the table before any run starts.
+
+        Args:
+            expressions: By the name of the column.
 
         Raises:
-            ConfigError: one cannot be read, names a column that there will not be, or has the name of such a column.
+            ConfigError: one cannot be parsed, names a column that the table will not have, or has the name of such a
+                column.
         """
         check_expressions(expressions, self.names, [goal.name for goal in self.goals])
 
     def find_subject(self, index: int) -> Subject:
-        """Return the program of a run; `index` counts from 0."""
+        """Return the program of a run, whose `index` counts from 0."""
         return self.subjects[index // len(self.grid)]
 
     def find_seed(self, index: int) -> int:
-        """Return the seed of a run."""
+        """Return the seed of a run, whose `index` counts from 0."""
         seed = self.grid.find_values(index % len(self.grid)).get(
             SEED, self.find_subject(index).settings["seed"]
         )
@@ -131,7 +135,11 @@ class Plan:
         return seed
 
     def build_spec(self, subject: Subject, values: Mapping[str, Value]) -> RunSpec:
-        """Return the specification of a run; those that differ in the seed only are built once.
+        """Return the specification of a run; runs that differ only in the seed share one that is built once.
+
+        Args:
+            subject: The program.
+            values: The parameter values.
 
         Raises:
             ConfigError: a value is wrong.
@@ -146,7 +154,7 @@ class Plan:
 
     def _merge_settings(self, subject: Subject, values: Mapping[str, Value]) -> Settings:
         changes = resolve_keys(values, subject.settings, self.path)
-        # A mat comes with its own start pose, unless it was chosen for all runs.
+        # A new mat unsets the start pose (None), so that its own applies, unless the pose was chosen for all runs.
         remaining = {
             key: value
             for key, value in changes.items()
@@ -165,12 +173,15 @@ class Plan:
                 yield self.task(index)
 
     def count_seeds(self) -> int:
-        """Return how many runs with consecutive indices differ in the seed only, if it varies fastest."""
+        """Return how many runs with consecutive indices differ only in the seed.
+
+        The number is 1 if the seed does not vary fastest.
+        """
         last = self.grid.axes[-1] if self.grid.axes else None
         return len(last.points) if last and last.names == (SEED,) else 1
 
     def task(self, index: int) -> Task:
-        """Return one task; `index` counts from 0."""
+        """Return the task of a run, whose `index` counts from 0."""
         subject = self.find_subject(index)
         values = self.grid.find_values(index % len(self.grid))
         spec = self.build_spec(subject, values)
@@ -178,7 +189,7 @@ class Plan:
         if "arguments" in values:
             program = replace(program, arguments=self._merge_settings(subject, values)["arguments"])
         if any(name.partition(".")[0] == "robot" for name in values):
-            # Treat the robot as named by the user: its parts do not depend on the ports that the program shows.
+            # The robot counts as named by the user, so its parts do not depend on the ports that the program shows.
             program = replace(program, shown_ports=None)
         return Task(
             index,
@@ -192,9 +203,9 @@ class Plan:
         )
 
     def build_identity(self) -> dict[str, Any]:
-        """Return what identifies the batch, ready for JSON: it is equal for batches with equal rows.
+        """Return a dict for JSON that is equal for batches with equal rows.
 
-        Goals belong to it; expressions do not, since they are computed from the rows.
+        It includes goals, but not expressions, since these are computed from the rows.
         """
         programs = [
             {

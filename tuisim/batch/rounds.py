@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tuisim.batch.sweep import Sweep
 
 MIN_RUNS = 10
-"""So many runs of a combination come first: the spread of fewer says little."""
+"""The number of runs with which each combination begins: the spread of fewer says little."""
 _MIN_MORE = 4
 _CONFIDENCE = 0.95
 _FORM = re.compile(rf"\s*(?P<column>[^±]+?)\s*(?:±|\+-)\s*(?P<margin>{NUMBER})\s*")
@@ -28,7 +28,7 @@ _FORM = re.compile(rf"\s*(?P<column>[^±]+?)\s*(?:±|\+-)\s*(?P<margin>{NUMBER})
 
 @dataclass(frozen=True, slots=True)
 class Precision:
-    """How precisely a mean must be known."""
+    """How precisely the mean of a column must be known: its margin."""
 
     column: str
     margin: float
@@ -36,16 +36,16 @@ class Precision:
 
 
 def parse_precision(text: str, key: str, plan: Plan, columns: Iterable[str]) -> Precision:
-    """Parse `COLUMN ± MARGIN`.
+    """Return the precision in a text `COLUMN ± MARGIN`.
 
     Args:
         text: The text; `+-` is the same as `±`.
-        key: What errors blame.
+        key: The argument, for errors.
         plan: The runs.
         columns: The columns that the table has besides those of every batch.
 
     Raises:
-        ConfigError: it cannot be read, there will be no such column of numbers, or the seeds are too few.
+        ConfigError: it cannot be parsed, there will be no such column of numbers, or the seeds are too few.
     """
     match = _FORM.fullmatch(text) if isinstance(text, str) else None
     if match is None or not 0 < float(match["margin"]) < math.inf:
@@ -62,13 +62,13 @@ def parse_precision(text: str, key: str, plan: Plan, columns: Iterable[str]) -> 
 
 
 class Rounds(Iterator[int]):
-    """The indices of the tasks to run until each mean is known precisely enough.
+    """An iterator over the indices of the tasks to run until each mean is known precisely enough.
 
-    The iterator stops when it has to wait for results, and goes on after them. Which tasks come next depends only on
-    the rows of their combination, not on the order in which rows come.
+    It stops when it has to wait for results, and can be continued after them. Which tasks come next depends only on the
+    rows of their combination, not on the order in which rows arrive.
 
     Args:
-        plan: All runs that there may be.
+        plan: All runs that may be necessary.
         sweep: The finished runs.
         precision: How precisely the mean of each combination must be known.
     """
@@ -79,7 +79,7 @@ class Rounds(Iterator[int]):
         self._due: deque[int] = deque()
         seeds = plan.count_seeds()
         self._counts = {range(first, first + seeds): 0 for first in range(0, len(plan), seeds)}
-        """How many of its runs are asked for, by the indices of the combination; only while it needs more."""
+        """The number of runs that each combination needs so far, by its indices; only while it needs more."""
         self.unknown: list[float] = []
         """The margins of the combinations that have no more seeds, or whose runs have all raised."""
 
@@ -92,7 +92,7 @@ class Rounds(Iterator[int]):
         return self._due.popleft()
 
     def _ask(self, indices: range) -> None:
-        """Add further runs of a combination, if all of its runs so far are done and its mean is not precise enough."""
+        """Add further runs of a combination if all of its runs are done and its mean is not precise enough."""
         rows = self._sweep.rows
         while all(index in rows for index in indices[: self._counts[indices]]):
             count = self._counts[indices]
@@ -110,7 +110,12 @@ class Rounds(Iterator[int]):
             ]
 
     def _find_next_count(self, count: int, margin: float) -> int:
-        """Return how many runs a combination probably needs; at most twice as many as it has."""
+        """Return how many runs a combination probably needs, at most twice as many as it has.
+
+        Args:
+            count: The number of its runs so far.
+            margin: The margin of its mean so far.
+        """
         share = (margin / self._precision.margin) ** 2
         return max(MIN_RUNS, count + _MIN_MORE, math.ceil(count * min(share, 2)))
 
@@ -134,7 +139,7 @@ def compute_margin(values: list[float]) -> float:
 
 
 def _compute_quantile(freedom: int) -> float:
-    """Return the quantile of Student's t from its series expansion, within 0.1 % from nine degrees of freedom on."""
+    """Return the quantile of Student's t for a 95 % interval, within 0.1 % for nine degrees of freedom or more."""
     z = NormalDist().inv_cdf((1 + _CONFIDENCE) / 2)
     terms = (
         z,

@@ -38,16 +38,16 @@ if TYPE_CHECKING:
 
 SUFFIX = ".part"
 MEASURED = "measured"
-"""What identifies metrics and columns of a batch."""
+"""The key of what identifies metrics and columns of a batch."""
 
 
 def find_partial(target: Path) -> Path:
-    """Return the file for the finished rows of a batch, beside the table that it will become."""
+    """Return the path of the file with the finished rows of a batch, in the folder of its table."""
     return target.with_name(target.name + SUFFIX)
 
 
 class PartialTable:
-    """A file with the finished rows of a batch: JSON lines after a line that identifies the batch.
+    """A file with the finished rows of a batch: a line that identifies the batch, then one JSON line for each row.
 
     Args:
         path: The file.
@@ -59,8 +59,9 @@ class PartialTable:
         self._file: BinaryIO | None = None
 
     def rows(self) -> dict[int, Row]:
-        """Return the rows of an earlier batch by the index of their task; empty if there is no file, or if it has other
-        metrics, since no run can be measured again.
+        """Return the rows of an interrupted batch by the index of their task; empty if there is no file.
+
+        It is also empty if the file has other metrics, since the finished runs cannot be measured again.
 
         Raises:
             ConfigError: the file is of another batch, or cannot be read.
@@ -83,7 +84,7 @@ class PartialTable:
         return _select_started(rows)
 
     def open(self, rows: Mapping[int, Row]) -> Self:
-        """Begin a file, with some finished rows; close it with `close` or `remove`.
+        """Create the file with some finished rows, and return this object; close it with `close` or `remove`.
 
         Raises:
             ExportError: it cannot be written.
@@ -97,7 +98,7 @@ class PartialTable:
         return self
 
     def add(self, row: Row) -> None:
-        """Append a row.
+        """Append a row to the file.
 
         Raises:
             ExportError: it cannot be written.
@@ -110,9 +111,9 @@ class PartialTable:
             raise ExportError(f"cannot write {self._path}: {error.strerror or error}") from error
 
     def close(self) -> None:
-        """Close the file, and leave it for `--resume`."""
+        """Close the file, and keep it for `--resume`."""
         if self._file is not None:
-            # Errors of writing have been reported by `add`.
+            # `add` has already reported errors of writing.
             with suppress(OSError):
                 self._file.close()
             self._file = None
@@ -131,7 +132,7 @@ class PartialTable:
 
 
 def has_batch(path: Path, identity: Mapping[str, Any]) -> bool:
-    """Return whether a file has the table of a batch."""
+    """Return whether a file is the table of the batch with an identity."""
     from tuisim.logs.reader import open_log
 
     try:
@@ -144,6 +145,7 @@ def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -
     """Return the rows of a complete table by the index of their task; empty if the table is not that of the batch.
 
     Args:
+        path: The file of the table.
         identity: What identifies the batch.
         columns: The columns of rows besides those of sample variables; further columns of the table are left out.
     """
@@ -158,7 +160,7 @@ def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -
     usual = {*columns, RUN_ID}
     usual_frame = frame[[name for name in frame.columns if name in usual or is_statistic(name)]]
     rows: list[Row] = [
-        # A run has no statistics of what it has not printed; of the other columns some texts are empty.
+        # Missing statistics of variables are left out of a row; a missing text is an empty one.
         {
             str(name): _read(str(name), value)
             for name, value in row.items()
@@ -166,20 +168,20 @@ def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -
         }
         for row in usual_frame.to_dict("records")
     ]
-    # A table of Python's `experiment` has the numbers of the store there.
+    # Rows are numbered again, as in a table of Python's `experiment` these are numbers of the store.
     rows = [{**row, RUN: number} for number, row in enumerate(rows, start=1)]
     return _select_started(rows)
 
 
 def _read(name: str, value: Any) -> Any:
-    """Return a cell as it was written: a whole number is read as a float if its column has empty cells."""
+    """Return a cell of a table with its original type: beside empty cells, a whole number is read as a float."""
     if value != value:
         return None
     return int(value) if name.endswith("_count") and isinstance(value, float) else value
 
 
 def _select_started(rows: Iterable[Row]) -> dict[int, Row]:
-    """Return rows by the index of their task, without runs that could not be started: these are tried again."""
+    """Return rows by the index of their task, without runs that could not be started, which are tried again."""
     return {int(row[RUN]) - 1: row for row in rows if row.get("end")}
 
 
@@ -196,7 +198,7 @@ def _decode_line(line: bytes) -> object:
 
 @dataclass(frozen=True, slots=True)
 class Workers:
-    """The processes that execute tasks."""
+    """The processes that execute the tasks of a batch: on this machine, or on a cluster."""
 
     jobs: int = 0
     """Number of local worker processes; 0 is one for each processor."""
@@ -216,17 +218,21 @@ class Workers:
 
 
 def is_interrupted(out: Path) -> bool:
-    """Return whether an interrupted batch has left rows for the table in a file."""
+    """Return whether there are finished rows of an interrupted batch for a table.
+
+    Args:
+        out: The file of the table.
+    """
     return os.path.exists(find_partial(out))
 
 
 class Sweep:
-    """The runs of a plan: the rows of those that are done, and the table that they become.
+    """The execution of a plan: the rows of the finished runs, and the table of these.
 
     Args:
         plan: The plan.
         expressions: Further columns of the table, by name.
-        out: The table that is written; None for none.
+        out: The file of the table; None for none.
         version: Version of tuisim: an interrupted batch is resumed only with the same.
         resumes: Whether to resume an interrupted batch.
 
@@ -234,7 +240,7 @@ class Sweep:
         rows: The finished rows, by the index of the task.
 
     Raises:
-        ConfigError: an interrupted batch is there and not to be resumed, or its rows are of another batch.
+        ConfigError: there is an interrupted batch that is not to be resumed, or its rows are of another batch.
         ExportError: the rows cannot be written.
     """
 
@@ -279,9 +285,9 @@ class Sweep:
         measure: Callable[[Result], Row] = lambda _: {},
         due: Iterator[int] | None = None,
     ) -> None:
-        """Execute the tasks that are not done, and block until they are.
+        """Execute the tasks without a row, and block until all are done.
 
-        An interrupt stops the tasks that are running and is raised again; finished rows stay.
+        An interrupt stops the running tasks and is raised again; finished rows are kept.
 
         Args:
             workers: The processes that execute the tasks.
@@ -290,13 +296,13 @@ class Sweep:
             due: The indices of the tasks; None for all. After it has stopped, it may go on when there are further rows.
 
         Raises:
-            ConfigError, HostError: there is no such cluster, or it is lost.
+            ConfigError, HostError: there is no such cluster, or the connection to it is lost.
             ExportError: the rows cannot be written.
             LogError: the folder for the recordings cannot be created.
         """
         plan = self._plan
         several = len(self._plan.subjects) > 1
-        # A copy: `rows` grows while the tasks are iterated.
+        # The set is a copy, since `rows` grows while the tasks are iterated.
         every = plan.iterate_tasks(frozenset(self.rows))
         tasks = every if due is None else map(plan.task, due)
         try:
@@ -319,22 +325,22 @@ class Sweep:
                 self._partial.close()
 
     def build_frame(self, indices: Iterable[int] | None = None) -> pd.DataFrame:
-        """Return the table of the finished rows, or of those with some indices.
+        """Return the table of the finished runs, or of those with some indices.
 
         Raises:
-            LogError: an expression is invalid, or names a column that there is not.
+            LogError: an expression is invalid, or names a column that does not exist.
         """
         rows = [self.rows[index] for index in (self.rows if indices is None else indices)]
         return build_frame(rows, self._expressions if rows else {})
 
     @property
     def replaces(self) -> bool:
-        """Whether the table will replace another file."""
+        """Whether the table will replace an existing file that is not the table of this batch."""
         out = self._out
         return out is not None and os.path.exists(out) and not has_batch(out, self._identity)
 
     def export(self, frame: pd.DataFrame) -> None:
-        """Write the table.
+        """Write the table to the file `out`.
 
         Raises:
             ExportError: it cannot be written.
@@ -343,15 +349,15 @@ class Sweep:
             export_frame(frame, self._out, build_metadata(frame, self._identity))
 
     def finish(self) -> None:
-        """Remove the rows that are kept for an interrupted batch.
+        """Remove the file with the rows, which only an interrupted batch needs.
 
         Raises:
-            ExportError: they cannot be removed.
+            ExportError: it cannot be removed.
         """
         if self._partial is not None:
             self._partial.remove()
 
     def summarize(self, frame: pd.DataFrame) -> list[ColumnSummary]:
-        """Return statistics of `list_result_columns`, for each combination of parameters unless these are many."""
+        """Return statistics of `list_result_columns`, for each combination of parameters unless there are many."""
         parameters = [*([PROGRAM] if PROGRAM in frame.columns else []), *self._plan.names]
         return build_summaries(frame, parameters, list_result_columns(frame, self._expressions))

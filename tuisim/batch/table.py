@@ -43,9 +43,10 @@ _DOTTED = re.compile(r"`[^`]*`|\b[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+\b")
 
 
 def build_row(result: Result, program: str, seed: int) -> Row:
-    """Return the row of a run.
+    """Return the row of a run for the table of a batch.
 
     Args:
+        result: The result of the run.
         program: The program's name; empty if all runs have the same one.
         seed: The seed of the run, whether it is a parameter or not.
     """
@@ -75,11 +76,11 @@ def build_frame(rows: Iterable[Row], expressions: Mapping[str, str] | None = Non
     A variable that a run has not printed is NaN. The columns of variables come last.
 
     Args:
-        rows: In any order.
+        rows: The rows of the runs, in any order.
         expressions: Expressions by the name of their column; a later one may use an earlier one.
 
     Raises:
-        LogError: an expression is invalid, or names a column that there is not.
+        LogError: an expression is invalid, or names a column that does not exist.
     """
     import pandas as pd
 
@@ -98,7 +99,7 @@ def _move_statistics(columns: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _build_column(values: Sequence[Any]) -> Any:
-    """Return a column of the narrowest type that holds all values: truth value, whole number, number or text."""
+    """Return a column of the narrowest type for all values: truth value, whole number, number or text."""
     import numpy as np
     import pandas as pd
 
@@ -119,8 +120,13 @@ def evaluate_expression(text: str, columns: Mapping[str, Any], length: int) -> A
 
     A statistic of a variable that no run has printed is NaN, as is a goal if no run could be judged.
 
+    Args:
+        text: The expression.
+        columns: The columns by name.
+        length: The number of rows.
+
     Raises:
-        LogError: the expression is invalid, or names another column that there is not.
+        LogError: the expression is invalid, or names another column that does not exist.
     """
     import numpy as np
 
@@ -146,18 +152,18 @@ def is_statistic(name: str) -> bool:
 
 
 def quote_names(text: str, columns: Iterable[str]) -> str:
-    """Return an expression with backticks around the names of columns that contain dots."""
+    """Return an expression with backticks around names of columns that contain dots."""
     dotted = {name for name in columns if "." in name}
     return _DOTTED.sub(lambda found: f"`{found[0]}`" if found[0] in dotted else found[0], text)
 
 
 def name_goals(goals: Iterable[str]) -> list[str]:
-    """Return the columns of goals, by their names."""
+    """Return the names of the columns of goals."""
     return [f"{GOAL}{name}" for name in goals]
 
 
 def list_usual_columns(parameters: Iterable[str], goals: Iterable[str]) -> list[str]:
-    """Return the columns of a table that are known before the first run: all but those of sample variables."""
+    """Return the names of a table's columns that are known before the first run: all but those of sample variables."""
     goal_columns = name_goals(goals)
     names = (
         RUN,
@@ -174,7 +180,7 @@ def list_usual_columns(parameters: Iterable[str], goals: Iterable[str]) -> list[
 def check_expressions(
     expressions: Mapping[str, str], parameters: Iterable[str], goals: Iterable[str]
 ) -> None:
-    """Check expressions before anything is run.
+    """Check expressions for further columns before any run starts.
 
     Args:
         expressions: By the name of their column.
@@ -182,7 +188,8 @@ def check_expressions(
         goals: The names of the goals.
 
     Raises:
-        ConfigError: one cannot be read, names a column that there will not be, or has the name of such a column.
+        ConfigError: one cannot be parsed, names a column that the table will not have, or has the name of such a
+            column.
     """
     known = list_usual_columns(parameters, goals)
     for name, text in expressions.items():
@@ -192,7 +199,7 @@ def check_expressions(
             raise ConfigError("cannot be the name of a new column", hint, key=key)
         try:
             used = find_names(quote_names(text, known))
-            # Evaluating no rows finds whatever is not allowed in the expression.
+            # Evaluating the expression for no rows finds everything that is not allowed in it.
             evaluate_expression(
                 text, {column_name: _build_column([]) for column_name in {*known, *used}}, 0
             )
@@ -220,11 +227,11 @@ class ColumnSummary:
 def build_summaries(
     frame: pd.DataFrame, parameters: Sequence[str], columns: Sequence[str]
 ) -> list[ColumnSummary]:
-    """Return statistics and quantiles of some columns, for each combination of parameters unless these are many.
+    """Return statistics and quantiles of some columns, for each combination of parameters unless there are many.
 
     Args:
         frame: The table.
-        parameters: The parameters, with or without the seed, which forms no groups.
+        parameters: The parameters; the seed, if it is among them, is ignored.
         columns: The names of numeric columns.
     """
     by = [name for name in parameters if name != SEED and frame[name].nunique() > 1]
@@ -242,7 +249,7 @@ def build_summaries(
 
 
 def list_result_columns(frame: pd.DataFrame, expressions: Iterable[str]) -> list[str]:
-    """Return the columns of a table to summarize: expressions, points, pose, time and last values."""
+    """Return the names of a table's columns to summarize: expressions, points, pose, time and last values."""
     first = [*expressions, POINTS, *POSE, "time_s"]
     lasts = [name for name in frame.columns if name.endswith("_last")]
     return [name for name in (*first, *lasts) if name in frame.columns]
