@@ -1,1 +1,1 @@
-"""Python's front door: runs, studies, marks and a simulation that a script moves on itself."""
+"""The Python API: runs, experiments, marks, and a simulation that a script advances itself."""

@@ -22,11 +22,11 @@ from tuisim.settings.build import build_run_spec
 from tuisim.settings.presses import press_actions
 
 _NO_NAME = frozenset("\n(=:")
-"""What a text has that is no name of a program, but one."""
+"""Characters of a text that is a program, not the name of one."""
 
 
 def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:
-    """Return a program.
+    """Return the program that a file, an example's name, a text or a function gives.
 
     Args:
         program: Its file, the name of an example, its text, or a function.
@@ -48,14 +48,14 @@ def prepare_program(
     *layers: Mapping[str, Any],
     constants: Mapping[str, object],
 ) -> tuple[Program, ProgramSettings]:
-    """Return a program to start, and its settings.
+    """Return a program that is ready to start, and its settings.
 
     Args:
         source: The program.
         arguments: Its `sys.argv[1:]`; empty for those in the settings.
         layers: Settings by path, the later ones take precedence.
-        constants: Other values of its constants. A robot that is read from the program is that of the values that
-            stand in it, so a wrong value is not made right by a robot that fits it.
+        constants: Other values of its constants. A robot that is read from the program is that of the values in its
+            text.
 
     Raises:
         ConfigError: its settings do not fit it, or it has no such constant.
@@ -67,7 +67,11 @@ def prepare_program(
 
 
 def build_run_options(timeout_s: float, answers: Sequence[str]) -> RunOptions:
-    """Return how a run is executed.
+    """Return the options of a run.
+
+    Args:
+        timeout_s: Limit in simulated seconds.
+        answers: The answers to `input()`.
 
     Raises:
         ConfigError: the limit is no number above 0, or the answers are no list of texts.
@@ -79,10 +83,14 @@ def build_run_options(timeout_s: float, answers: Sequence[str]) -> RunOptions:
 
 
 def read_texts(texts: Sequence[str], key: str) -> tuple[str, ...]:
-    """Return a list of texts as a tuple; a single text is refused, as it would be taken for a list of letters.
+    """Return a list of texts as a tuple; a single text is an error, as it would be read as a list of letters.
+
+    Args:
+        texts: The texts.
+        key: The name of the argument, for errors.
 
     Raises:
-        ConfigError: it is no list of texts; the error names `key`.
+        ConfigError: it is no list of texts.
     """
     if isinstance(texts, str) or not all(isinstance(text, str) for text in texts):
         raise ConfigError(f"must be a list of texts, got {texts!r}", key=key)
@@ -98,7 +106,7 @@ def run_program(
     world: Any,
     **options: Any,
 ) -> Run:
-    """Run a program; arguments as of `tuisim.simulate`."""
+    """Run a program and return the run; the arguments are those of `tuisim.simulate`."""
     run_options = build_run_options(timeout_s, answers)
     chosen = read_options(options)
     in_world = read_world(world, chosen.get("mats"))

@@ -34,7 +34,7 @@ TIME = "time"
 
 
 class Description:
-    """The values, by name, that a script has chosen for a world or a robot. The same values make equal descriptions."""
+    """Values, by name, that a script chooses for a world or a robot. Descriptions with the same values are equal."""
 
     __slots__ = ("_values",)
 
@@ -49,7 +49,7 @@ class Description:
         return hash(repr(self))
 
     def _take(self, arguments: Mapping[str, Any]) -> None:
-        """Store the arguments of `__init__` that are not None, and check them."""
+        """Check and store the arguments of `__init__` that are not None."""
         self._values = {
             name: plain(value)
             for name, value in arguments.items()
@@ -65,7 +65,7 @@ class Description:
 
 
 class WorldDescription(Description):
-    """A world: a file, if any, and options that take precedence over it."""
+    """A world: a world file, if any, and options that take precedence over it."""
 
     __slots__ = ()
 
@@ -79,7 +79,7 @@ class WorldDescription(Description):
 
 
 class RobotDescription(Description):
-    """A robot: one of a name or a file, and the values in which it differs."""
+    """A robot: one given by name or file, and the values in which it differs from that."""
 
     __slots__ = ()
 
@@ -98,17 +98,17 @@ class RobotDescription(Description):
 
 
 def plain(value: Any) -> Any:
-    """Return a value as a file would have it: a path as a text, a number of NumPy as one of Python."""
+    """Return a value in the form of files: a path as a text, a NumPy number as a Python number."""
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     return value.item() if getattr(value, "size", None) == 1 else value
 
 
 def read_columns(columns: Sequence[str], spec: RunSpec) -> tuple[str, ...]:
-    """Return the names that the telemetry of a run has for columns.
+    """Return the full names of telemetry columns of a run.
 
     Args:
-        columns: Names; a text is a single name.
+        columns: Names, which may be short; a text is a single name.
         spec: The run.
 
     Raises:
@@ -119,10 +119,10 @@ def read_columns(columns: Sequence[str], spec: RunSpec) -> tuple[str, ...]:
 
 
 def read_seeds(seeds: Any) -> tuple[int, ...]:
-    """Return seeds as checked whole numbers.
+    """Return seeds as a tuple of whole numbers.
 
     Raises:
-        ConfigError: they are not several, there are none, or one is wrong.
+        ConfigError: they are no list, there are none, or one is wrong.
     """
     if isinstance(seeds, str) or not isinstance(seeds, Iterable):
         raise ConfigError(f"must be several, got {seeds!r}", "such as range(200)", key="seeds")
@@ -132,7 +132,7 @@ def read_seeds(seeds: Any) -> tuple[int, ...]:
 
 
 def read_options(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings that options make, by path.
+    """Return options as settings, by path.
 
     Args:
         options: Values by the name of the option, such as `background` or `x`; None is ignored.
@@ -159,7 +159,11 @@ def read_options(options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def read_world(world: str | Path | WorldDescription | None, mats: str | None) -> Mapping[str, Any]:
-    """Return the settings of a world, by path; no settings for None.
+    """Return the settings of a world, by path; empty for None.
+
+    Args:
+        world: A world, or its file.
+        mats: A folder of mats if the file names none.
 
     Raises:
         ConfigError: there is no such file, or it is wrong.

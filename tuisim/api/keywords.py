@@ -33,11 +33,16 @@ _ELSEWHERE = {
     "goals": "Run.judge(goals)",
     **dict.fromkeys(("constants", "metrics", "columns", "parameters"), "tuisim.experiment"),
 }
-"""What has an argument that a function does not have."""
+"""The function or class that has an argument, for hints."""
 
 
 def build_keyword_error(name: str, known: Sequence[str]) -> ConfigError:
-    """Return the error for an argument that a function does not have: what was meant, or what has it."""
+    """Return the error for an unknown argument, with a hint: a similar argument, or the function that has it.
+
+    Args:
+        name: The unknown argument.
+        known: The function's arguments.
+    """
     option = OPTIONS_BY_NAME.get(name)
     if _OTHER_NAMES.get(name) in known:
         hint = did_you_mean([_OTHER_NAMES[name]])
@@ -53,7 +58,7 @@ def build_keyword_error(name: str, known: Sequence[str]) -> ConfigError:
 
 
 def check_keywords(function: _Function) -> _Function:
-    """Return a function that raises ConfigError for a keyword argument that it does not have."""
+    """Return a function that raises ConfigError, not TypeError, for an unknown keyword argument."""
     known = [name for name in signature(function).parameters if name != "self"]
 
     @wraps(function)
@@ -67,7 +72,7 @@ def check_keywords(function: _Function) -> _Function:
             flag = error.key.partition(" ")[0]
             if not error.file and flag in _NAMES:
                 error.message = error.message.replace(flag, _NAMES[flag], 1)
-            # The line of the script stands above the message, without the lines in between.
+            # Without its traceback, the error shows the script's line just above the message.
             raise error.with_traceback(None) from None
         except KeyboardInterrupt as error:
             raise error.with_traceback(None) from None

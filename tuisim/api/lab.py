@@ -90,7 +90,7 @@ class Lab:
 
     @classmethod
     def of_run(cls, run: Run, columns: Sequence[str] = MOTION) -> Lab:
-        """Return a lab in the state in which a run began; arguments as of `Lab`."""
+        """Return a lab in the state at the beginning of a run; arguments as of `Lab`."""
         lab = cls.__new__(cls)
         lab._open(run.stored.first_spec, columns)
         return lab
@@ -115,7 +115,7 @@ class Lab:
 
     @property
     def spec(self) -> RunSpec:
-        """World, robot, profile and seed."""
+        """The specification of the lab: world, robot, profile and seed."""
         return self._spec
 
     @property
@@ -134,7 +134,7 @@ class Lab:
         return self._run.max_speed_dps
 
     def reset(self, seed: int | None = None) -> dict[str, float]:
-        """Begin again, with another seed if one is given; return the columns at the start."""
+        """Return to the start and return the columns there; with a seed, noise and drift are those of this seed."""
         if seed is not None:
             self._spec = replace(self._spec, seed=plain(seed))
         self._run = SteppedRun(self._spec, self._field, is_recorded=bool(self._goals))
@@ -179,7 +179,7 @@ class Lab:
         return self.read()
 
     def read(self) -> dict[str, float]:
-        """Return the columns now, by name, as the telemetry of a run would have them."""
+        """Return the present values of the columns by name, as the telemetry of a run has them."""
         if self.columns == MOTION:
             drive = self._run.drive
             return {"x_mm": drive.x_mm, "y_mm": drive.y_mm, "heading_deg": drive.heading_deg}
@@ -196,8 +196,9 @@ class Lab:
         return draw_world(self._spec, field_files(self._spec).read_pixels(), self.pose)
 
     def judge(self) -> tuple[float, bool]:
-        """Return the points if the run ended now, and whether all goals not met at the start are met or missed for
-        good.
+        """Return the points if the run ended now, and whether the goals are decided.
+
+        They are if each goal that was not met at the start is met, or missed for good.
 
         Raises:
             ConfigError: the lab has no goals.
@@ -208,7 +209,7 @@ class Lab:
 
 
 def read_speeds(left: Any, right: Any) -> tuple[float, float]:
-    """Return two speeds, also of NumPy, as Python's own numbers.
+    """Return two speeds, which may be NumPy numbers, as Python numbers.
 
     Raises:
         ConfigError: one is no number.

@@ -33,7 +33,7 @@ _TICKS = "(columns)"
 
 
 class Measures:
-    """Computes metrics and columns of the runs of an experiment from their recordings.
+    """Computes the metrics and telemetry columns of an experiment's runs from their recordings.
 
     Args:
         metrics: Functions of a run by the names of their columns.
@@ -48,7 +48,7 @@ class Measures:
 
     @property
     def identity(self) -> list[str]:
-        """The metrics, with what their functions do, and the columns: equal for equal values of the same runs."""
+        """Texts that identify the metrics, by their functions' code, and the columns: equal for equal values."""
         metrics = (f"{name} {describe(metric)}" for name, metric in self._metrics.items())
         return [*(sha256(text.encode()).hexdigest() for text in metrics), *self._columns]
 
@@ -58,7 +58,7 @@ class Measures:
         return bool(self._metrics or self._columns)
 
     def check(self, plan: Plan, chosen: Collection[str]) -> None:
-        """Check names before anything is run.
+        """Check the names of metrics and columns before any run starts.
 
         Args:
             plan: The runs.
@@ -76,11 +76,11 @@ class Measures:
             spec = plan.build_spec(subject, {})
             names = read_columns([name for name in self._columns if name != LINE], spec)
             lines = (LINE,) if LINE in self._columns else ()
-            # The time is not asked for: telemetry always has it.
+            # The time is left out here, since telemetry always has it.
             self._columns = (*(name for name in names if name != TIME), *lines)
 
     def measure(self, result: Result) -> Row:
-        """Return the metrics of a run by name, and its columns as one packed cell."""
+        """Return the metrics of a run by name, and its telemetry columns packed in one cell."""
         if not result.files:
             return dict.fromkeys(self._metrics)
         import pandas as pd
@@ -101,16 +101,24 @@ class Measures:
 
 
 def compute_cell(name: str, metric: Metric, run: Run, index: int) -> Any:
-    """Return the value of a metric as a cell; None if the metric raises an exception after the program has.
+    """Return the value of a metric as a cell.
+
+    The result is None if the metric raises an exception and the program has raised one, too.
 
     Any other exception of the metric gets a note with the names of the metric and the run.
+
+    Args:
+        name: The name of the metric.
+        metric: Its function.
+        run: The run.
+        index: The run's index in the experiment.
 
     Raises:
         ConfigError: the value is no number and no text.
     """
     try:
         value = metric(run)
-    except Exception as error:  # Whatever it is, it is raised again.
+    except Exception as error:  # Any error is raised again with a note.
         if run.state == End.RAISED:
             return None
         error.add_note(f"in the metric {name!r} of run {index + 1}")
@@ -123,7 +131,7 @@ def compute_cell(name: str, metric: Metric, run: Run, index: int) -> Any:
 
 
 def take_columns(rows: Mapping[int, Row]) -> dict[int, pd.DataFrame]:
-    """Remove the packed columns over time from the rows, and return them by the index of their run."""
+    """Remove the packed telemetry columns from the rows, and return them as frames by the index of the run."""
     import pandas as pd
 
     return {
@@ -134,7 +142,12 @@ def take_columns(rows: Mapping[int, Row]) -> dict[int, pd.DataFrame]:
 
 
 def describe(value: Any, known: frozenset[int] = frozenset()) -> str:
-    """Return what a value is: of a function its code, its defaults, and the constants and functions of its file."""
+    """Return a text that identifies a value: for a function its code, defaults, and what it uses of its file.
+
+    Args:
+        value: The value.
+        known: Ids of the functions that are being described, to stop at recursion.
+    """
     if isinstance(value, partial):
         return describe([value.func, *value.args, *value.keywords.items()], known)
     if isinstance(value, CodeType):
@@ -159,7 +172,10 @@ def describe(value: Any, known: frozenset[int] = frozenset()) -> str:
 
 @contextmanager
 def show_progress(total: int | None = None) -> Iterator[Callable[..., None]]:
-    """Show a progress bar on a terminal or in a notebook if there is tqdm; yield a function to call after each run."""
+    """Show a progress bar on a terminal or in a notebook, if tqdm is installed.
+
+    Yield a function to call after each run.
+    """
     bar = None
     with suppress(ImportError):
         from tqdm.auto import tqdm

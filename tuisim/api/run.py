@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A run that is over: how it ended, what it recorded, and its picture.
+    """A finished run: how it ended, what it recorded, and its picture.
 
     A notebook shows it as its picture, how it ended, and its samples.
     """
@@ -39,7 +39,7 @@ class Run:
         return repr(self.stored)
 
     def _repr_html_(self) -> str:
-        """Return the HTML that a notebook shows: picture, end, error and samples."""
+        """Return the HTML with which a notebook shows the run: picture, end, error and samples."""
         png = BytesIO()
         self.picture().save(png, "PNG")
         picture = f'<img src="data:image/png;base64,{b64encode(png.getvalue()).decode()}">'
@@ -50,7 +50,7 @@ class Run:
 
     @property
     def number(self) -> int:
-        """Its number in the run store, which `load_run` takes; 0 in the metrics of an experiment."""
+        """The run's number in the run store, for `load_run`; 0 in the metrics of an experiment."""
         return self.stored.number
 
     @property
@@ -60,7 +60,7 @@ class Run:
 
     @property
     def error(self) -> str:
-        """The program's own traceback; empty if there is none."""
+        """The program's traceback; empty if there is none."""
         return self.stored.end.error if self.stored.end else ""
 
     @property
@@ -76,7 +76,7 @@ class Run:
 
     @property
     def output(self) -> str:
-        """What the program has printed on stdout."""
+        """The program's output on stdout."""
         return "".join(
             row.text + "\n" for row in self.stored.output.rows() if row.stream == Stream.STDOUT
         )
@@ -94,7 +94,7 @@ class Run:
 
     @property
     def telemetry(self) -> pd.DataFrame:
-        """One row for each tick: `time` in s, lengths in mm, angles in degrees, what each sensor and motor had.
+        """One row for each tick: `time` in s, lengths in mm, angles in degrees, and the state of each sensor and motor.
 
         Raises:
             LogError: the recording is damaged, or the mat no longer exists.
@@ -113,7 +113,7 @@ class Run:
         return self.stored.read_commands()
 
     def judge(self, goals: str | Path) -> pd.DataFrame:
-        """Return how the run did on a goals file, which is also a world for `simulate`: one row for each goal.
+        """Judge the run by a goals file, which is also a world for `simulate`; return one row for each goal.
 
         Columns: `goal`, `state` (`met`, `missed`, `open`, `unknown`), `points`, `time` in s when it was
         decided, `reason`, `line`.
@@ -151,7 +151,7 @@ def load_run(name: int | str | Path) -> Run:
     """Return a stored run.
 
     Args:
-        name: Its number, its id, its folder, or `last`.
+        name: Its number, its id, the path of its folder, or `last`.
 
     Raises:
         LogError: there is no such run, or it is damaged.

@@ -49,7 +49,7 @@ def run_experiment(
     until: str,
     **how: Any,
 ) -> pd.DataFrame:
-    """Run an experiment; arguments as of `tuisim.experiment`."""
+    """Run an experiment and return its table; the arguments are those of `tuisim.experiment`."""
     workers = build_workers(jobs, scheduler)
     study = Study(program, constants or {}, **how)
     metrics = metrics or {}
@@ -78,10 +78,12 @@ def run_experiment(
 def open_sweep(
     plan: Plan, expressions: Mapping[str, str], out: str | Path | None, measures: Measures
 ) -> Sweep:
-    """Return the runs of a plan, without those that an interrupted experiment has finished; warn of what is lost.
+    """Return the sweep of a plan, with the runs that an interrupted experiment has finished.
+
+    Warns if the rows of an interrupted experiment cannot be used, or if another table is replaced.
 
     Raises:
-        ConfigError: an interrupted experiment has had other runs.
+        ConfigError: the interrupted experiment has other runs.
         ExportError: the table cannot be written.
     """
     target = check_target(user_path(str(out))) if out is not None else None
@@ -97,7 +99,11 @@ def open_sweep(
 
 
 def build_workers(jobs: int, scheduler: str) -> Workers:
-    """Return the processes that run the programs.
+    """Return the workers that run the programs.
+
+    Args:
+        jobs: Number of processes on this machine; 0 is one for each processor.
+        scheduler: Address of a Dask scheduler; empty for this machine.
 
     Raises:
         ConfigError: `jobs` is no whole number, or is too large.
@@ -108,11 +114,11 @@ def build_workers(jobs: int, scheduler: str) -> Workers:
 
 
 def warn_unknown(until: str, margins: Sequence[float]) -> None:
-    """Warn that some means are less exact than `until` asks for.
+    """Warn that some means are less precise than `until` requires.
 
     Args:
         until: The column and its margin.
-        margins: The margins that these means have after all seeds.
+        margins: The margins of these means after all seeds.
     """
     if not margins:
         return
@@ -123,7 +129,7 @@ def warn_unknown(until: str, margins: Sequence[float]) -> None:
 
 
 def warn_raised(table: pd.DataFrame) -> None:
-    """Warn of the runs in which a program has raised an error: their values are those of a part of a run."""
+    """Warn about the runs whose program raised an error: their values are those of an incomplete run."""
     raised = table["summary"][table["end"] == End.RAISED]
     if len(raised):
         what = f"{len(raised)} of {counted(len(table), 'run')} raised"
@@ -131,7 +137,7 @@ def warn_raised(table: pd.DataFrame) -> None:
 
 
 class Study:
-    """The programs of an experiment, and what varies besides seeds.
+    """The programs of an experiment, with everything that varies except seeds.
 
     Args:
         program: As of `tuisim.experiment`.
@@ -162,7 +168,7 @@ class Study:
         self._programs = [read_source(each) for each in named]
         self._names = number_repeated(
             [
-                # A function goes by its own name, without that of its file.
+                # A function is listed by its own name, without that of its file.
                 source.program.name.rpartition(":")[2] if callable(each) else source.program.name
                 for each, source in zip(named, self._programs, strict=True)
             ]
@@ -187,7 +193,7 @@ class Study:
         """Return the plan of all runs.
 
         Args:
-            seeds: None for the default.
+            seeds: The seeds; None for the default.
             keep: Which runs to store.
             returns_files: Whether workers return the recorded files.
 
@@ -243,11 +249,11 @@ class Study:
 def join_columns(
     table: pd.DataFrame, frames: Mapping[int, pd.DataFrame], names: Sequence[str]
 ) -> pd.DataFrame:
-    """Return the columns over time of all runs, one run below the other, beside the values of each run.
+    """Return one frame with the telemetry columns of all runs, one run below another, beside the values of each run.
 
     Args:
-        table: One row for each run: up to `seed`, its columns stand before those over time.
-        frames: The columns over time by the index of their run, in the order of the result.
+        table: One row for each run; its columns up to `seed` come before those of telemetry.
+        frames: The telemetry columns by the index of their run, in the order of the result.
         names: Other columns of the table that follow those up to `seed`.
     """
     import pandas as pd
@@ -262,7 +268,10 @@ def join_columns(
 
 
 def number_stored(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return a table with the numbers of the store in place of those of the experiment, if all its runs are stored."""
+    """Return a table whose column `run` has the numbers of the run store, if all its runs are stored.
+
+    Otherwise the table is unchanged.
+    """
     if RUN_ID not in frame:
         return frame
     numbers = {info.id: info.number for info in RunStore().runs()}
@@ -271,7 +280,7 @@ def number_stored(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def number_repeated(names: Sequence[str]) -> list[str]:
-    """Return names with a number behind all that have been there before, such as those of functions made by one."""
+    """Return names in which each repeated name, such as that of a function made in a loop, gets a number at its end."""
     counts = [names[: place + 1].count(name) for place, name in enumerate(names)]
     return [
         name if count == 1 else f"{name} {count}" for name, count in zip(names, counts, strict=True)
@@ -301,10 +310,10 @@ def _is_varied(name: str, value: object) -> bool:
 
 
 def _read_choice(name: str, values: Any) -> Choice:
-    """Return the values of a parameter; a text is read as after `--set`.
+    """Return the values of a parameter; a text is parsed like the value of the option `--set`.
 
     Raises:
-        ConfigError: there are none, or the text cannot be read.
+        ConfigError: there are none, or the text cannot be parsed.
     """
     if isinstance(values, str):
         return parse_values(values, name)
@@ -322,6 +331,6 @@ def _read_choice(name: str, values: Any) -> Choice:
 
 
 def _name_value(value: object) -> object:
-    """Return a value as a cell of a table: a number or a text."""
+    """Return a value as a number or a text, for a cell of a table."""
     cell = plain(value)
     return cell if isinstance(cell, bool | int | float | str) else str(cell)
