@@ -1,1 +1,1 @@
-"""What every room may use: errors, frozen values, files and folders, texts of programs. It knows no robot."""
+"""What every package may use: errors, data classes, files and folders, texts of programs; nothing of robots."""

@@ -14,13 +14,13 @@ _PART_SUFFIX = ".tmp"
 
 _LEFT_OVER_S = 3600.0
 
-# Saved: in the process that runs a program it is replaced by one that notes what the program opens.
+# The original is saved: in a program's process, `os.open` is replaced by one that records opened files.
 _open = os.open
 _OWNER_FOLDER, _OWNER_FILE = 0o700, 0o600
 
 
 def private(path: str, flags: int) -> int:
-    """Opener for `open` that creates files with owner-only permissions."""
+    """Open a file as `opener` of `open`; a new file gets owner-only permissions. Return its descriptor."""
     return _open(path, flags, _OWNER_FILE)
 
 
@@ -41,7 +41,7 @@ def make_private_folder(folder: Path) -> None:
 def replacing(
     path: Path, *, durable: bool = True, owner_only: bool = False, follow_links: bool = True
 ) -> Iterator[BinaryIO]:
-    """Open a new file that replaces `path` when the block ends without an exception.
+    """In a `with` block, open a new file that replaces `path` when the block ends without an exception.
 
     If the block raises, or a write fails, `path` is unchanged and no temporary file is left.
 
@@ -57,7 +57,7 @@ def replacing(
         OSError: the folder or the file cannot be written.
     """
     target = Path(os.path.realpath(path)) if follow_links else path
-    # Not `tempfile`, which ignores the umask. Not `secrets`, which imports `random`: a child process imports this
+    # `tempfile` would ignore the umask, and `secrets` would import `random` too early: a child process imports this
     # module before it seeds `random`.
     beside = target.with_name(f".{target.name}.{os.urandom(4).hex()}{_PART_SUFFIX}")
     _unfinished[beside] = target
@@ -70,9 +70,9 @@ def replacing(
             if durable:
                 os.fsync(handle.fileno())
         os.replace(beside, target)
-    # Also when the command is interrupted.
+    # The temporary file is removed even when the command is interrupted.
     except BaseException:
-        # The first error is the one to raise, not one of removing the file.
+        # An error of removing the file must not replace the first error.
         with suppress(OSError):
             beside.unlink()
         raise
@@ -100,13 +100,13 @@ def drop_unfinished() -> list[Path]:
 
 
 def sweep(folder: Path, name: str = "*") -> None:
-    """Remove temporary files that killed processes left for files of this name; `*` is a wildcard.
+    """Remove the temporary files of killed processes for files of a name in a folder; `*` is a wildcard.
 
     Files younger than an hour are kept: a process may still be writing them.
     """
-    # With `*` at the end: SQLite keeps further files beside a temporary database.
+    # The `*` at the end includes the further files that SQLite keeps beside a temporary database.
     for beside in folder.glob(f".{name}.*{_PART_SUFFIX}*"):
-        # Another process may be sweeping too, and a program may have put anything there.
+        # Another process may remove the same file, and a program may have put a folder of this name there.
         with suppress(OSError):
             if time.time() - beside.stat().st_mtime > _LEFT_OVER_S:
                 beside.unlink()

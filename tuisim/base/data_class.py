@@ -20,7 +20,7 @@ _Class = TypeVar("_Class", bound=type)
 
 
 class _Factory:
-    """Stands as the default in a signature if each object gets a new value of `default_factory`."""
+    """The default that a signature shows for a field whose value `default_factory` creates for each object."""
 
     def __repr__(self) -> str:
         return "<factory>"
@@ -91,7 +91,7 @@ def _init(cls: type, frozen: bool) -> Any:
 
 
 class _LateInit:
-    """Stands for the `__init__` of a class until somebody asks for it; only then it is compiled.
+    """A descriptor in place of the `__init__` of a class, which compiles the real one at its first use.
 
     Args:
         cls: The class.
@@ -108,7 +108,7 @@ class _LateInit:
         return init if instance is None else init.__get__(instance)
 
     def write(self) -> Any:
-        """Compile the `__init__`, put it into the class and return it."""
+        """Compile the `__init__`, set it in the class and return it."""
         init = _init(self._cls, self._frozen)
         type.__setattr__(self._cls, "__init__", init)
         return init
@@ -118,13 +118,13 @@ _LATE: list[_LateInit] = []
 
 
 def prepare() -> None:
-    """Compile every `__init__` that waits for its first use, so that no process that is forked from this one has to."""
+    """Compile every `__init__` that was not used yet, so that processes forked from this one need not do so."""
     while _LATE:
         _LATE.pop().write()
 
 
 def _contents(all_fields: tuple[Field[Any], ...]) -> Callable[[Any], tuple[Any, ...]]:
-    """Return a function that returns the values of an object that `==` compares."""
+    """Return a function that returns the values of an object's fields that `==` compares."""
     names = [one.name for one in all_fields if one.compare]
     if len(names) > 1:
         return attrgetter(*names)
@@ -163,7 +163,7 @@ if TYPE_CHECKING:
 else:
 
     def dataclass(cls=None, /, *, frozen=False, slots=False, eq=True, order=False):
-        """Make a class a data class; the options are those of Python's own."""
+        """Make a class a data class; the options are those of Python's own decorator."""
         if cls is None:
             return lambda cls: _decorated(cls, frozen, slots, eq, order)
         return _decorated(cls, frozen, slots, eq, order)

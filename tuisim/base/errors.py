@@ -31,7 +31,7 @@ MOST_NAME = 80
 
 
 def shortened(text: str, most: int = MOST_REASON) -> str:
-    """Return a text of at most `most` characters, with `…` for the rest: a damaged file may hold a long one."""
+    """Return a text of at most `most` characters, with `…` for the rest: a damaged file may contain a long one."""
     return text if len(text) <= most else f"{text[:most]}…"
 
 
@@ -43,18 +43,24 @@ def listed(names: Iterable[str]) -> str:
 
 
 def counted(count: int, one: str, many: str = "") -> str:
-    """Return a number with its noun, such as `1 row` or `1,500 rows`; `many` is a plural other than `one` and `s`."""
+    """Return a number with its noun, such as `1 row` or `1,500 rows`.
+
+    Args:
+        count: The number.
+        one: The noun in the singular.
+        many: The noun in the plural; empty for the singular and `s`.
+    """
     return f"{count:,} {one if count == 1 else many or one + 's'}"
 
 
 def closest(name: str, known: Iterable[str], most: int = 3, likeness: float = 0.6) -> list[str]:
-    """Return the known names that are most like a name, the most similar first; case does not matter.
+    """Return the known names that are most similar to a name, the most similar first; case is ignored.
 
     Args:
         name: The name to compare.
         known: The known names.
         most: How many names to return, at most.
-        likeness: The least likeness, from 0 to 1, as of `difflib`.
+        likeness: The least similarity, from 0 to 1, as of `difflib`.
     """
     from difflib import get_close_matches
 
@@ -63,20 +69,26 @@ def closest(name: str, known: Iterable[str], most: int = 3, likeness: float = 0.
 
 
 def nearest(name: str, allowed: Iterable[str]) -> str:
-    """Return the hint for an unknown name: the allowed names that are most like it, or all if none is."""
+    """Return the hint for an unknown name: the most similar allowed names, or all if none is similar."""
     names = list(allowed)
     return did_you_mean(closest(name, names, 3, 0.5)) or f"one of {', '.join(names)}"
 
 
 def among(name: str, allowed: Iterable[str], unlisted: Iterable[str] = ()) -> str:
-    """Return the hint for an unknown name in data: the most similar name, `unlisted` ones included, and all allowed."""
+    """Return the hint for an unknown name in data: the most similar name, and all allowed ones.
+
+    Args:
+        name: The unknown name.
+        allowed: The names to list.
+        unlisted: Other names that are also compared.
+    """
     names = list(allowed)
     close = closest(name, [*names, *unlisted], 1)
     return f"{did_you_mean(list(map(repr, close)))} there are {listed(names)}".lstrip()
 
 
 def see_page(topic: str) -> str:
-    """Return the hint to read a page of the guide."""
+    """Return the hint to read the page of the guide on a topic."""
     return f"see `tuisim guide {topic}`"
 
 
@@ -97,7 +109,7 @@ def printable(text: str) -> str:
 
 
 def _without_middle(line: str) -> str:
-    """Return a line of at most `MOST_LINE` characters, with `…` for its middle: it may quote a very long word."""
+    """Return a line of at most `MOST_LINE` characters; if it is longer, with `…` in place of its middle."""
     return (
         line
         if len(line) <= MOST_LINE
@@ -106,7 +118,7 @@ def _without_middle(line: str) -> str:
 
 
 class TuisimError(Exception):
-    """Base of all expected errors.
+    """The base class of all expected errors.
 
     Args:
         message: What was wrong and where, one line, no full stop needed.
@@ -131,7 +143,7 @@ class ConfigError(TuisimError):
 
     Args:
         file: The file that contains it, if any.
-        key: The key or option, such as `ultrasonic.max_range_mm` or `-x`.
+        key: The key or option that is wrong, such as `ultrasonic.max_range_mm` or `-x`.
     """
 
     def __init__(self, message: str, hint: str = "", *, file: str = "", key: str = "") -> None:
@@ -142,19 +154,19 @@ class ConfigError(TuisimError):
 
 
 class BackgroundError(ConfigError):
-    """No such mat, or an image that cannot be used as one."""
+    """There is no such mat, or an image cannot be used as one."""
 
 
 class RobotError(ConfigError):
-    """An invalid robot."""
+    """A robot, or its file, is invalid."""
 
 
 class ObstacleError(ConfigError):
-    """An invalid obstacle."""
+    """An obstacle, or its file, is invalid."""
 
 
 class ProfileError(ConfigError):
-    """No such profile, or an invalid one."""
+    """There is no such profile, or it is invalid."""
 
 
 def _place(file: str, what: str, number: int) -> str:

@@ -13,7 +13,7 @@ from tuisim.base.folders import home_folder
 
 UNJUDGED = "could not be judged"
 _MAX_BYTES = 1 << 20
-"""A longer file of reports begins anew."""
+"""A longer file of reports is overwritten."""
 
 
 def report_file() -> Path:
@@ -22,14 +22,17 @@ def report_file() -> Path:
 
 
 def describe_fault(error: Exception) -> str:
-    """Return in one line why something could not be judged; add a fault of tuisim's own to the report file."""
+    """Return in one line why a run could not be judged.
+
+    Append the traceback to the report file if tuisim is at fault.
+    """
     if isinstance(error, TuisimError):
         where = str(getattr(error, "file", ""))
         return f"{UNJUDGED}: {printable(error.message.removeprefix(f'{where}: '))}"
     # If the report cannot be written, as on a full disk, the other runs must still be judged.
     with suppress(Exception):
         _add_report("".join(traceback.format_exception(error)))
-    # No path of a file in the reason: it must be the same when the same run is marked again.
+    # The reason has no path, since it must be equal when the same run is marked again.
     reason = error.strerror if isinstance(error, OSError) else error
     return printable(shortened(f"{UNJUDGED}: {type(error).__name__}: {reason}"))
 

@@ -18,7 +18,10 @@ _FOLDERS = ("backgrounds", "programs")
 
 
 def user_path(word: str | Path) -> Path:
-    """Return a path with `~` or `~NAME` at its start replaced by a user's home folder; an unknown user's name stays."""
+    """Return a path in which `~` or `~NAME` at the start is replaced by a user's home folder.
+
+    The path is unchanged for an unknown user.
+    """
     return Path(os.path.expanduser(word))
 
 
@@ -33,9 +36,9 @@ def home_folder() -> Path:
 
 
 def session_folder() -> Path:
-    """Return the folder of panels, unsaved texts and the like that an app opens again at its next start.
+    """Return the folder with the panels, unsaved texts and the like that an app restores at its next start.
 
-    It is `TUISIM_SESSION` for an app with a session of its own, else `home_folder`.
+    It is `TUISIM_SESSION` for an app with its own session, else `home_folder`.
     """
     session = os.environ.get("TUISIM_SESSION")
     return Path(session) if session else home_folder()
@@ -53,7 +56,7 @@ def cache_folder() -> Path:
 def _folder(name: str) -> Path:
     assets = os.environ.get("TUISIM_ASSETS")
     places = [Path(assets)] if assets else [_PACKAGE.parent, _PACKAGE / "_assets"]
-    # A single folder of such a name beside the package may belong to another project: all must be there.
+    # All folders must be there, since one folder of such a name may belong to another project.
     needed = (name,) if assets else _FOLDERS
     for place in places:
         if all((place / each).is_dir() for each in needed):
@@ -108,7 +111,7 @@ def remove_tree(folder: Path, ignore_errors: bool = True) -> None:
 
 
 def _remove_by_layers(folder: Path) -> None:
-    """Delete a folder without recursion: move each folder two levels down up to the first level, until none is left."""
+    """Delete a folder without recursion: move each folder of its second level up to the first, until none is left."""
     os.chmod(folder, _OWNER)
     while entries := list(os.scandir(folder)):
         for entry in entries:

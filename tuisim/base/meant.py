@@ -24,8 +24,8 @@ _WELL_KNOWN = ("time", "random", "math", "statistics", "threading", "datetime")
 def find_meant_names(wrong: str, names: Set[str]) -> list[str]:
     """Return the public names that may be meant by a wrong name, the most likely first.
 
-    They are the names that begin with the wrong one; if there are none, the one that is spelled most like it; else
-    those that contain it.
+    They are the names that begin with the wrong one; if there are none, the most similar name; else those that contain
+    it.
     """
     public = sorted((name for name in names if not name.startswith("_")), key=lambda n: (len(n), n))
     containing = [name for name in public if wrong in name] if len(wrong) >= _MIN_LETTERS else []
@@ -37,7 +37,7 @@ def find_meant_names(wrong: str, names: Set[str]) -> list[str]:
 
 
 def _find_shortest(names: Sequence[str]) -> list[str]:
-    """Return names in their order, without those that begin with an earlier one; at most `_MAX_NAMES`."""
+    """Return names in their order, without those that begin with an earlier name; at most `_MAX_NAMES`."""
     shortest: list[str] = []
     for name in names:
         if not name.startswith(tuple(shortest)):
@@ -47,7 +47,7 @@ def _find_shortest(names: Sequence[str]) -> list[str]:
 
 @cache
 def map_modules() -> Mapping[str, str]:
-    """Return the module of each name that a prelude imports."""
+    """Return the names that preludes import, each with its module."""
     lines = PRELUDE_TEXTS["imports"].removeprefix("from ").split("\nfrom ")
     imports = (line.strip().split(" import ") for line in lines)
     return {name: module for module, names in imports for name in names.split(", ")}
@@ -55,7 +55,7 @@ def map_modules() -> Mapping[str, str]:
 
 @cache
 def map_functions() -> Mapping[str, str]:
-    """Return the module of each function of the standard library that programs for robots use."""
+    """Return the functions of the standard library that are common in programs for robots, each with its module."""
     modules = {}
     for name in reversed(_WELL_KNOWN):
         # A program may have changed how modules are found.

@@ -8,17 +8,19 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
-# Saved: in the process that runs a program it is replaced by one that notes what the program opens.
+# The original is saved: in a program's process, `os.open` is replaced by one that records opened files.
 _open = os.open
 _OF_THE_MACHINE = frozenset({errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ENOSPC})
 
 
 def open_regular(path: Path, follow_links: bool = False) -> BinaryIO:
-    """Open a file for reading, unbuffered. Never blocks.
+    """Open a regular file for reading, unbuffered. Never blocks.
 
     Args:
-        follow_links: Whether the path may end in a link, as users expect of their own files; not where a program could
-            have put one.
+        path: The file.
+        follow_links: Whether the path may end in a link, as users expect of their own files; False where a program
+            could
+            have put a link.
 
     Raises:
         OSError: it cannot be opened; ELOOP for a link, EINVAL for a pipe, a device, a socket or a folder.
@@ -32,10 +34,10 @@ def open_regular(path: Path, follow_links: bool = False) -> BinaryIO:
 
 
 def read_regular(path: Path, most_bytes: int, follow_links: bool = False) -> bytes:
-    """Return the contents of a file that is opened as by `open_regular`.
+    """Return the contents of a regular file, which is opened as by `open_regular`.
 
     Raises:
-        OSError: it cannot be read, or is longer than `most_bytes`: then EFBIG.
+        OSError: it cannot be read; EFBIG if it is longer than `most_bytes`.
     """
     with open_regular(path, follow_links) as handle:
         content = bytearray()

@@ -11,11 +11,11 @@ _MAX_FOLDERS = 200
 
 
 def find_module_folder(name: str, folder: str) -> str:
-    """Return the folder that has a module, as a path relative to `folder`; empty if there is none.
+    """Return the folder of a repository that contains a module, as a path relative to `folder`; empty if there is none.
 
     Args:
-        name: Of the module, without dots.
-        folder: Of the program.
+        name: The name of the module, without dots.
+        folder: The folder of the program.
     """
     folder = os.path.abspath(folder)
     if not os.path.isdir(folder):
@@ -30,7 +30,7 @@ def find_module_folder(name: str, folder: str) -> str:
 
 
 def _root_of(folder: str) -> str:
-    """Return the folder of the repository that `folder` is in; if it is in none, the folder above it."""
+    """Return the root folder of the repository that contains `folder`; without a repository, the parent of `folder`."""
     root = folder
     for _ in range(_MAX_LEVELS_UP):
         if os.path.exists(os.path.join(root, ".git")):

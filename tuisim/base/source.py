@@ -98,12 +98,12 @@ class Program:
 
     @property
     def file(self) -> str:
-        """The file name in its tracebacks: its path, or its name if it is in no file."""
+        """The file name in the program's tracebacks: its path, or its name if it is not in a file."""
         return self.path or self.name
 
     @property
     def sha256(self) -> str:
-        """Hash of the text in UTF-8, hexadecimal."""
+        """The hash of the program's text in UTF-8, hexadecimal."""
         # Imported here: the child process that runs a program does not need it.
         import hashlib
 
@@ -111,7 +111,7 @@ class Program:
 
 
 def find_code_line(lines: Sequence[str], line: int) -> int:
-    """Return the number, from 1, of the first line from `line` on with code; 0 if there is none.
+    """Return the number of the first line with code from `line` on, both from 1; 0 if there is none.
 
     Blank lines, comments and magics are not code.
     """
@@ -154,7 +154,7 @@ def decode_source(data: bytes, shown: str) -> tuple[str, str]:
     try:
         encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
         return data.decode(encoding), encoding
-    # For example `rot13`, which is not a text encoding, and `undefined`, which always raises.
+    # The encoding may be one such as `rot13`, which is not for text, or `undefined`, which always raises.
     except (SyntaxError, LookupError, ValueError) as error:
         raise ConfigError(f"is not Python text: {error}", "save it as UTF-8", file=shown) from None
 

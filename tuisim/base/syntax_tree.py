@@ -20,7 +20,7 @@ NOT_PYTHON = (SyntaxError, ValueError, RecursionError, MemoryError)
 
 @contextmanager
 def _collect_later() -> Iterator[None]:
-    # Two threads that take turns here could leave the collector as the other one had set it.
+    # Without the lock, a thread could restore a setting of the garbage collector that another one has made.
     with _lock:
         collects = gc.isenabled()
         gc.disable()
@@ -42,6 +42,6 @@ def parse_module(text: str) -> ast.Module:
 
 
 def parse_expression(text: str) -> ast.Expression:
-    """Return the syntax tree of an expression; errors as of `parse_module`."""
+    """Return the syntax tree of an expression; raises the errors of `parse_module`."""
     with _collect_later():
         return ast.parse(text, mode="eval")
