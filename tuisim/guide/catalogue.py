@@ -24,7 +24,7 @@ LINK = re.compile(r"\[([^\[\]]+)\]\(([\w-]+)\.md\)")
 
 
 class GuidePart(StrEnum):
-    """A part of the guide: what its pages are for."""
+    """The parts of the guide, by the purpose of their pages."""
 
     TUTORIAL = "Tutorials"
     HOW_TO = "How to …"
@@ -98,7 +98,7 @@ class Page:
 
 @cache
 def load_pages() -> Mapping[str, Page]:
-    """Return all pages by name, in their order."""
+    """Return all pages of the guide by name, in their order."""
     return {name: _read_page(name, part) for part, names in CONTENTS.items() for name in names}
 
 

@@ -66,18 +66,18 @@ def _build_column_table(names: tuple[str, ...]) -> Table:
 
 
 def list_sample_columns() -> Table:
-    """Return the columns of samples."""
+    """Return the table of the columns of samples."""
     return _build_column_table(SAMPLE_COLUMNS)
 
 
 def list_telemetry_columns() -> Table:
-    """Return the columns of the telemetry of the default robot."""
+    """Return the table of the columns of telemetry of the default robot."""
     sensors = [name for mount in list_mounted(RobotSpec()) for name in mount.names]
     return _build_column_table(("time", *MOTION_COLUMNS, *sensors, "line"))
 
 
 def list_formats() -> Table:
-    """Return the formats of exported data."""
+    """Return the table of the formats of exported data."""
     rows = [
         (
             code(suffix),
@@ -90,7 +90,7 @@ def list_formats() -> Table:
 
 
 def list_options() -> Table:
-    """Return the shared options."""
+    """Return the table of the shared options."""
     rows = [
         (
             " ".join(code(flag) for flag in option.flags),
@@ -104,7 +104,7 @@ def list_options() -> Table:
 
 
 def list_settings() -> Table:
-    """Return the settings of `config.toml`."""
+    """Return the table of the settings of `config.toml`."""
     rows = [
         (
             f"[{setting.section}]",
@@ -119,7 +119,7 @@ def list_settings() -> Table:
 
 
 def list_profile_rules() -> Table:
-    """Return every rule of a profile, its value in each profile, and its source."""
+    """Return the table of the rules of profiles, with each rule's value in each profile, and its source."""
     rows = [
         (
             code(key.removesuffix("_ns")),
@@ -133,7 +133,7 @@ def list_profile_rules() -> Table:
 
 
 def list_drift_sizes() -> Table:
-    """Return the sizes of drift, each with its typical size and its source."""
+    """Return the table of the sizes of drift, each with its typical value and its source."""
     numbers = [
         (key, number)
         for key, number in list_values(type(WorldSpec().drift)).items()
@@ -154,12 +154,12 @@ def _format_rule(key: str, profile: ProfileSpec) -> str:
 
 
 def list_breakpoints() -> Table:
-    """Return the forms of a breakpoint."""
+    """Return the table of the forms of a breakpoint."""
     return Table(("text", "pauses when"), [(code(form), meaning) for form, meaning in FORMS])
 
 
 def list_columns() -> Table:
-    """Return the columns of a run of the default robot, with those of motors that only profile `ev3` has."""
+    """Return the table of the columns of a run of the default robot, with those of motors only in profile `ev3`."""
     return _build_column_table(
         list_column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"]))
     )

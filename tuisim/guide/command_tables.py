@@ -12,8 +12,8 @@ from tuisim.settings.command_line import Group, GroupedOption
 
 
 def _iterate_commands() -> Iterator[tuple[str, click.Command, str]]:
-    """Yield every command and subcommand: the words to type, the command, and a sentence on what it does."""
-    # By name: the command line imports the guide, so the guide may not import the command line.
+    """Yield every command and subcommand: the words to type, the command, and a sentence on its purpose."""
+    # The module is imported by name, since an import statement would be circular: the command line imports the guide.
     entries = import_module("tuisim.cli").COMMANDS
     for name, entry in entries.items():
         command = entry.load()
@@ -30,7 +30,7 @@ def _format_usage(words: str, command: click.Command) -> str:
 
 
 def list_commands() -> Table:
-    """Return every command with a sentence on what it does."""
+    """Return the table of the commands, each with a sentence on its purpose."""
     return Table(
         ("command", "does"),
         [
@@ -41,7 +41,7 @@ def list_commands() -> Table:
 
 
 def list_command_options() -> Table:
-    """Return the options of each command, without those that set up the world."""
+    """Return the table of each command's options, without those that set up the world."""
     rows = []
     for words, command, _ in _iterate_commands():
         for param in command.params:

@@ -35,14 +35,14 @@ _MIN_LINES = 3
 def draw_excerpt(
     passage: SearchResult, width: int, max_lines: int, pattern: re.Pattern[str] | None = None
 ) -> list[Line]:
-    """Return the lines that show a found passage: its beginning, or the part with most words of the question.
+    """Return the lines of an excerpt of a found passage: its beginning, or the part with most words of the question.
 
     Args:
         passage: The passage.
-        width: Columns.
-        max_lines: The most lines; an ellipsis stands for what is left out.
-        pattern: Matches the words of the question. A longer passage begins at the sentence, its code at the line, from
-            which on there are most matches.
+        width: The width of the lines in columns.
+        max_lines: The largest number of lines; an ellipsis stands for what is left out.
+        pattern: Matches the words of the question; None for the beginning. The excerpt of a long passage begins at the
+            sentence, or the line of code, after which there are most matches.
     """
     words, *set_in = (
         ("", passage.passage)
@@ -66,8 +66,9 @@ def draw_excerpt(
 
 
 def _cut_lines(lines: list[Line], max_lines: int) -> list[Line]:
-    """Return the first lines, `max_lines` with an ellipsis as the last one; without it if there is room for only
-    one.
+    """Return the first lines, at most `max_lines`; the last one is an ellipsis if there are more lines.
+
+    With `max_lines` of 1, there is no ellipsis.
     """
     return (
         [*lines[: max_lines - 1], [(_ELLIPSIS.strip(), PLAIN)]]
@@ -77,8 +78,9 @@ def _cut_lines(lines: list[Line], max_lines: int) -> list[Line]:
 
 
 def _cut_code(code: list[str], max_lines: int, pattern: re.Pattern[str] | None) -> list[str]:
-    """Return the lines of code with most words of a question, at most `max_lines`; an ellipsis stands for later
-    ones.
+    """Return the consecutive lines of code with most words of a question, at most `max_lines`.
+
+    An ellipsis stands for later lines.
     """
     if len(code) <= max_lines or max_lines < _MIN_LINES:
         return code[:max_lines]
@@ -88,7 +90,7 @@ def _cut_code(code: list[str], max_lines: int, pattern: re.Pattern[str] | None) 
 
 
 def _wrap_code(line: str, width: int) -> list[str]:
-    """Return a line of code as lines of at most `width` columns; an empty list if it is empty."""
+    """Return a line of code as lines of at most `width` columns; no lines if it is empty."""
     further = " " * (len(line) - len(line.lstrip()) + 4)
     return wrap(_NOTE.sub("  #", line), width, subsequent_indent=further, replace_whitespace=False)
 
@@ -104,12 +106,15 @@ def _draw_shortened(markdown: str, width: int, max_lines: int) -> list[Line]:
 
 @lru_cache(_CACHED_TEXTS)
 def _draw_markdown(markdown: str, width: int) -> list[Line]:
-    """Return Markdown as lines, which callers must not change: they are stored, as answers are drawn many times."""
+    """Return Markdown as lines of at most `width` columns, cached since answers are drawn often.
+
+    Callers must not change them.
+    """
     return render_markdown(markdown, width)
 
 
 def _draw_item(item: str, width: int) -> list[Line]:
-    """Return an item of a list, or a row of a table, as lines."""
+    """Return an item of a list, or a row of a table, as lines of at most `width` columns."""
     lines = _draw_markdown(_strip_marks(item), width - len(_BULLET))
     return [
         [(" " * len(_BULLET) if row else _BULLET, PLAIN), *line] for row, line in enumerate(lines)
@@ -117,7 +122,7 @@ def _draw_item(item: str, width: int) -> list[Line]:
 
 
 def _cut_beginning(text: str, letters: int, pattern: re.Pattern[str]) -> str:
-    """Return a text from one of its sentences on: that whose next `letters` have most words of the question."""
+    """Return a text from the sentence whose next `letters` characters have most words of the question."""
     starts = [0, *(match.end() for match in _SENTENCE_END.finditer(text))]
     start = max(
         starts,
@@ -142,7 +147,10 @@ def _count_words(text: str, pattern: re.Pattern[str]) -> int:
 
 
 def _add_heads(passage: str, head: str) -> str:
-    """Return a table's row with the head of its column before each cell but the first; one of few columns unchanged."""
+    """Return a table's row with the column's heading before each cell but the first.
+
+    A row of few columns is unchanged.
+    """
     cells = split_cells(passage)
     heads = split_cells(head)
     if not head or len(cells) <= _CLEAR_COLUMNS or len(heads) != len(cells):
@@ -166,14 +174,14 @@ def flatten_passage(markdown: str) -> str:
 
 
 def _strip_marks(markdown: str) -> str:
-    """Return a passage as one line without the marks of Markdown: of an item, between cells and in links."""
+    """Return a passage as one line without Markdown's marks of items, between cells and in links."""
     text = " · ".join(filter(None, split_cells(_MARK.sub("", markdown))))
-    # Joined to one line: a line that begins with a number would be drawn as an item of a list.
+    # The text becomes one line: a line that begins with a number would be drawn as an item of a list.
     return " ".join(LINK.sub(lambda link: link[1], text).split())
 
 
 def split_cells(markdown: str) -> list[str]:
-    """Return the cells of a passage that is a row of a table, else a list of the passage alone."""
+    """Return the cells of a passage that is a row of a table; for any other passage, a list with only the passage."""
     return (
         [cell.strip() for cell in markdown.strip("|").split(" | ")]
         if markdown.startswith("|")

@@ -12,7 +12,7 @@ _WHEELS = ((55.5, 104), (56, 114), (56, 180), (43.2, 120), (68.8, 150))
 
 
 def list_motors() -> Table:
-    """Return the settings of a new motor of each kind, under each profile of Pybricks."""
+    """Return the table of the settings of a new motor of each kind, in each profile of Pybricks."""
     settings = {
         f"{kind}, {code(profile.name)}": words
         for profile in _PROFILES
@@ -24,7 +24,7 @@ def list_motors() -> Table:
 
 
 def list_drive_bases() -> Table:
-    """Return how a new drive base of usual sizes moves, under each profile of Pybricks."""
+    """Return the table of how a new drive base of usual sizes moves, in each profile of Pybricks."""
     columns = (
         "`wheel_diameter`, `axle_track`",
         *(f"`settings()`, {code(profile.name)}" for profile in _PROFILES),

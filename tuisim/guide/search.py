@@ -34,7 +34,7 @@ _PLAIN = ("not", "one")
 
 @cache
 def load_questions() -> Mapping[str, Mapping[str, tuple[str, ...]]]:
-    """Return the questions that each page answers: by its name, then by a text in the passage that answers them."""
+    """Return the questions that the guide answers: by the page's name, then by a text in the answering passage."""
     text = (Path(__file__).parent / "questions.toml").read_text(encoding="utf-8")
     return {
         page: {key: tuple(asks) for key, asks in of.items()}
@@ -49,11 +49,11 @@ _PASSAGE_END = re.compile(r"(?<!:)\n\s*\n(?!    )|\n(?=- |\| |\d+\. )")
 table."""
 _ITEM = re.compile(r"- |\| |\d+\. ")
 SET_IN = "    "
-"""Begins each line of a text that is set in, such as code."""
+"""The beginning of each line of indented text, such as code."""
 _RULE = re.compile(r"[-| ]+")
 """Matches the line below the head of a table."""
 _NO_ANSWER = re.compile(r"# .*|")
-"""The title of a page."""
+"""Matches the title of a page, which is no passage."""
 _MIN_PREFIX_LETTERS = 3
 """Letters from which a word may be the beginning of another."""
 _ALIKE = 0.8
@@ -95,7 +95,7 @@ _Stems: TypeAlias = frozenset[str]
 
 @dataclass(frozen=True, slots=True)
 class SearchResult:
-    """A passage that answers a question."""
+    """A passage of the guide that answers a question."""
 
     name: str
     """The name of its page."""
@@ -110,7 +110,7 @@ class SearchResult:
 
 
 class _Postings:
-    """Finds by their stems the texts that are like a question.
+    """An index of texts by their stems, which finds the texts that are most similar to a question.
 
     Args:
         texts: The stems of each text, with their weights.
@@ -126,10 +126,10 @@ class _Postings:
                 self._rows[stem].append((row, weight / (length**power * usual)))
 
     def compute_cosines(self, question: Mapping[str, float]) -> Mapping[int, float]:
-        """Return how much each text that has a stem of the question is like it, by the text's row.
+        """Return the similarity to a question of each text that shares a stem with it, by the text's row.
 
         Args:
-            question: Weights by stem, with a length of 1 as a vector.
+            question: The weights of the question's stems, with a length of 1 as a vector.
         """
         cosines: defaultdict[int, float] = defaultdict(float)
         for stem, weight in question.items():
@@ -175,8 +175,13 @@ class _Index:
         self.all_asks = _Postings(self._sum_questions(question_stems))
 
     def _find_row(self, name: str, key: str) -> int:
-        """Return the row of the passage of page `name` with the text `key`; -1 if none has it: a user may change
-        keys.
+        """Return the row of the passage of a page that contains a text.
+
+        The result is -1 if none does, as users may change the questions.
+
+        Args:
+            name: The page.
+            key: The text.
         """
         return next(
             (
@@ -204,7 +209,7 @@ class _Index:
         return sums
 
     def weights(self, stems: Iterable[str]) -> dict[str, float]:
-        """Return the weight of each stem: the fewer passages have it, the larger."""
+        """Return the weight of each stem, which is larger for stems that fewer passages contain."""
         count = len(self.passages) + 1
         return {
             stem: max(math.log(count / (self._having[stem] + 0.5)), _MIN_STEM_WEIGHT)
@@ -212,7 +217,10 @@ class _Index:
         }
 
     def expand_stems(self, typed: _Stems) -> _Stems:
-        """Return the known stems of a question; for an unknown one, those that begin with it, or the most like it."""
+        """Return the known stems for those of a question.
+
+        An unknown stem is replaced by those that begin with it, or by the most similar.
+        """
         unknown = [stem for stem in typed - self.stems if len(stem) >= _MIN_PREFIX_LETTERS]
         return (typed & self.stems).union(*map(self._find_alike, unknown))
 
@@ -224,7 +232,12 @@ class _Index:
 def _count_passages(
     texts: Sequence[_Stems], question_stems: Iterable[tuple[int, _Stems]]
 ) -> Counter[str]:
-    """Return in how many passages, or in the questions that they answer, each stem is."""
+    """Return for each stem the number of passages that have it in their text or in the questions that they answer.
+
+    Args:
+        texts: The stems of each passage.
+        question_stems: The row of the passage and the stems of each question.
+    """
     of_each = [{*stems} for stems in texts]
     for row, stems in question_stems:
         of_each[row] |= stems
@@ -258,7 +271,7 @@ def _indent_fenced(fenced: re.Match[str]) -> str:
 
 
 def _pair_heads(passages: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Yield each passage with the head of its table, or an empty text; leave out heads, which answer nothing."""
+    """Yield each passage with the heading row of its table, or an empty text; heading rows themselves are left out."""
     head = ""
     for passage, below in pairwise(passages):
         if _RULE.fullmatch(below):
@@ -274,7 +287,12 @@ def _load_index() -> _Index:
 
 
 def _score_passages(index: _Index, typed: _Stems) -> Mapping[int, float]:
-    """Return how well passages answer a question, by their row."""
+    """Return the scores of the passages that may answer a question, by their row.
+
+    Args:
+        index: The passages.
+        typed: The stems of the question.
+    """
     weights = index.weights(typed)
     length = math.hypot(*weights.values())
     question = {stem: weight / length for stem, weight in weights.items()}
@@ -305,7 +323,7 @@ def _score_passages(index: _Index, typed: _Stems) -> Mapping[int, float]:
 
 
 def _rank_passages(index: _Index, question: str) -> list[int]:
-    """Return the rows of the passages that answer a question, the best one first, without those far behind."""
+    """Return the rows of the passages that answer a question, the best first, without those with far lower scores."""
     typed = index.expand_stems(find_stems([question])[0])
     if not typed:
         return []
@@ -319,7 +337,7 @@ def _rank_passages(index: _Index, question: str) -> list[int]:
 
 
 def _split_question(question: str) -> list[str]:
-    """Return the parts of a question that asks for several things; an empty list if it asks for one."""
+    """Return the parts of a question about several things; an empty list if it is about one."""
     parts = [
         part
         for part in _PART_BREAK.split(question)
@@ -336,11 +354,12 @@ def compile_pattern(question: str) -> re.Pattern[str] | None:
 
 
 def search(question: str) -> list[SearchResult]:
-    """Return the passages that answer a question best, the best one first.
+    """Return the passages of the guide that answer a question best, the best first.
 
     Args:
-        question: Words; a word that is on no page may be the beginning of another, or mistyped. If the question asks
-            for several things, the best answers to its parts follow the first two.
+        question: Words; a word that is on no page may be the beginning of another, or mistyped. If the question is
+            about
+            several things, the best answers to its parts follow the first two.
     """
     index = _load_index()
     rows = _rank_passages(index, question)
@@ -373,13 +392,13 @@ _IGNORED = frozenset(_SAYS_NOTHING.split())
 
 
 def split_words(text: str) -> Iterable[str]:
-    """Return the words of a text without those that say nothing, such as articles, each once."""
+    """Return the words of a text, each once, without words such as articles that do not help the search."""
     plain = _COLOR.sub("colour", _CONTRACTED.sub("", _DENIES.sub(" not ", text.lower())))
     return dict.fromkeys(word for word in _WORD.findall(plain) if word not in _IGNORED)
 
 
 def find_stems(texts: Iterable[str]) -> list[frozenset[str]]:
-    """Return for each text the stems of its words, and the meanings of those stems that have one."""
+    """Return for each text the stems of its words, with the groups of synonyms of these stems."""
     return [
         stems.union(*(_load_meanings().get(stem, ()) for stem in stems))
         for stems in _stem_words(texts)
@@ -401,7 +420,10 @@ def _stem_words(texts: Iterable[str]) -> list[frozenset[str]]:
 
 @cache
 def _load_meanings() -> Mapping[str, frozenset[str]]:
-    """Return the meanings of stems: their groups in `synonyms.toml`, each named by its first word, as `=chart`."""
+    """Return the groups of synonyms of each stem in `synonyms.toml`.
+
+    A group is named by its first word, such as `=chart`.
+    """
     groups = tomllib.loads((Path(__file__).parent / "synonyms.toml").read_text(encoding="utf-8"))[
         "groups"
     ]

@@ -40,7 +40,7 @@ _MARK = re.compile(r"^<!-- table: ([\w-]+) -->$", re.MULTILINE)
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table whose cells are Markdown."""
+    """A table of the guide, whose cells are Markdown."""
 
     columns: tuple[str, ...]
     rows: Sequence[tuple[str, ...]]
@@ -54,13 +54,13 @@ class Table:
 
 
 def code(text: str) -> str:
-    """Return a text as a cell that shows it as code."""
+    """Return a text as a Markdown cell that shows it as code."""
     return f"`{text}`" if text else ""
 
 
 @cache
 def load_table(name: str) -> Table:
-    """Call the function that builds a table, and return the table.
+    """Return a table of the guide, which a function builds.
 
     Args:
         name: One of `TABLES`.
@@ -70,6 +70,6 @@ def load_table(name: str) -> Table:
 
 
 def build_markdown(page: Page) -> str:
-    """Return a whole page as Markdown, with its title and its tables."""
+    """Return a page of the guide as Markdown, with its title and its tables."""
     body = _MARK.sub(lambda mark: load_table(mark[1]).to_markdown(), page.source)
     return f"# {page.title}\n\n{body}"

@@ -24,7 +24,7 @@ def list_links(page: Page) -> list[str]:
 
 
 def list_headings(page: Page) -> list[str]:
-    """Return the headings of the sections of a page, as they are shown."""
+    """Return the headings of the sections of a page, as readers see them."""
     return [heading.replace("`", "") for heading in _HEADING.findall(page.source)]
 
 
@@ -41,18 +41,18 @@ def _format_link(link: re.Match[str]) -> str:
 
 
 def find_rows(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
-    """Return the rows of a drawn page at which a section and a passage in it begin.
+    """Return two rows of a drawn page: where a section begins, and where a passage in it begins.
 
     Without the passage, both are the row of the section.
 
     Args:
-        lines: The page.
-        heading: As it is shown; empty for the beginning of the page.
-        passage: In Markdown; empty for none.
+        lines: The lines of the page.
+        heading: The section's heading as readers see it; empty for the beginning of the page.
+        passage: The passage in Markdown; empty for none.
     """
     texts = ["".join(part for part, _ in line) for line in lines]
     top = next((row for row, text in enumerate(texts) if heading and text.strip() == heading), 0)
-    # Compare letters only: drawn lines break elsewhere than the source, and tables lay out their cells anew.
+    # Only letters are compared, as drawn lines break at other places than the source, and tables are laid out.
     letters = [_LETTERS.sub("", text) for text in texts[top:]]
     plain_texts = [
         _LETTERS.sub("", text)
@@ -69,12 +69,18 @@ def find_rows(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
     ends = accumulate(map(len, letters))
     row = top + next((row for row, end in enumerate(ends) if end > offset), 0)
     while passage.startswith("|") and row > top and texts[row].startswith("  "):
-        row -= 1  # to the first cell of the table's row
+        row -= 1  # go up to the first cell of the table's row
     return top, row
 
 
 def find_passage_end(lines: list[Line], row: int, passage: str) -> int:
-    """Return the row below a passage of a drawn page that begins at a row."""
+    """Return the row below a passage of a drawn page.
+
+    Args:
+        lines: The lines of the page.
+        row: The row at which the passage begins.
+        passage: The passage in Markdown.
+    """
     left = len(_LETTERS.sub("", flatten_passage(passage)))
     while left > 0 and row < len(lines):
         left -= len(_LETTERS.sub("", "".join(part for part, _ in lines[row])))
