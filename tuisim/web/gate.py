@@ -33,7 +33,7 @@ _NO_ROOM = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
 
 
 class Door:
-    """Accepts connections; closes those that do not send the token in time, or that are too many.
+    """A listening socket that closes connections which do not send the token in time, and those that are too many.
 
     Args:
         report: Called with a message for the server's terminal.
@@ -50,7 +50,7 @@ class Door:
 
     @asynccontextmanager
     async def open(self, answers: web.Server, host: str | None, port: int) -> AsyncIterator[int]:
-        """Listen while in the context; yield the port.
+        """In an `async with` block, listen for connections; the block gets the port.
 
         Args:
             answers: The server that handles the connections.
@@ -81,7 +81,7 @@ class Door:
                 timer.cancel()
 
     def admit(self, request: web.BaseRequest) -> None:
-        """Keep the connection of a request that the gate allows: it is no longer closed after a time."""
+        """Keep the connection of a request with the token, which would otherwise be closed after a time."""
         if (timer := self._strangers.pop(request.protocol, None)) is not None:
             timer.cancel()
 
@@ -94,7 +94,10 @@ class Door:
             asyncio.get_running_loop().call_later(_NOT_YET_S, _abort_connection, handler)
 
     def _hear(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-        """Handle an error of the event loop; one that prevents any connection is reported only from time to time."""
+        """Handle an error of the event loop.
+
+        An error that prevents all connections is reported only from time to time.
+        """
         error = context.get("exception")
         if not isinstance(error, OSError) or error.errno not in _NO_ROOM:
             loop.default_exception_handler(context)
@@ -114,7 +117,7 @@ _LOCAL = frozenset({"127.0.0.1", "localhost", "::1"})
 
 
 def is_any_address(host: str) -> bool:
-    """Return whether a host to listen on stands for all addresses of the machine."""
+    """Return whether a host to listen on means all addresses of the machine."""
     try:
         return ip_address(host).is_unspecified
     except ValueError:
@@ -122,13 +125,13 @@ def is_any_address(host: str) -> bool:
 
 
 def create_token() -> str:
-    """Return a token that nobody can guess."""
+    """Return a new random token for the address of a server."""
     return secrets.token_urlsafe(24)
 
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """The rules that say which requests are answered and who may show the page."""
+    """The rules of a server: which requests it answers, and which sites may show its page in a frame."""
 
     listens_on: str
     """Host name or address that the server listens on."""
@@ -138,28 +141,28 @@ class Gate:
     off as a part of theirs."""
 
     def renew(self, frames: Iterable[str]) -> Gate:
-        """Return the gate with another token, and with further pages that may show the page."""
+        """Return a gate with a new token and further sites that may show the page in a frame."""
         return replace(
             self, token=create_token(), frames=tuple(dict.fromkeys((*self.frames, *frames)))
         )
 
     def format_address(self, port: int) -> str:
-        """Return the address to open in a browser, for a server on a port."""
+        """Return the address, with the token, to open in a browser for a server on a port."""
         host = socket.gethostname() if is_any_address(self.listens_on) else self.listens_on
         host = f"[{host}]" if ":" in host else host
         return f"http://{host}:{port}/{self.token}/"
 
     def is_allowed(self, path: str, host: str, origin: str | None, *, from_a_page: bool) -> bool:
-        """Return whether to answer a request.
+        """Return whether the server may answer a request.
 
         Args:
-            path: Its path; must begin with the token.
+            path: The request's path; must begin with the token.
             host: Its header `Host`. It must name the host that the server listens on, or this machine, so that no other
                 site can pass this server off as a part of itself.
             origin: Its header `Origin`: the site whose page sends the request; None if it has none.
             from_a_page: Whether only a page may send the request, so that it must have an origin.
         """
-        # In constant time: nobody can find out the token letter by letter from how long an answer takes.
+        # The comparison takes constant time, so that nobody can guess the token letter by letter from the time.
         if not secrets.compare_digest(
             path.partition("/")[2].partition("/")[0].encode(), self.token.encode()
         ):
@@ -172,8 +175,8 @@ class Gate:
 
     @property
     def framed_by(self) -> str:
-        """Who may show the page in a frame, in the words of a content security policy."""
-        # 'self': behind a proxy, the page has the proxy's origin, which `frames` need not name.
+        """The sites that may show the page in a frame, as the source list of a content security policy."""
+        # 'self' is allowed, too: behind a proxy, the page has the proxy's origin, which `frames` need not name.
         return " ".join(("'self'", *self.frames)) if self.frames else "'none'"
 
     def _is_ours(self, host: str) -> bool:

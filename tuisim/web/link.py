@@ -10,14 +10,20 @@ from aiohttp import WSCloseCode, web
 TAKEN_OVER = 4001
 """The code with which a socket is closed because another browser shows the app."""
 _MAX_WAITING = 20
-"""The most messages that wait for a browser."""
+"""The largest number of messages that are kept for a browser."""
 _MAX_REASON_BYTES = 123
 """The most bytes that the closing message of a socket can have."""
 _Data = TypeVar("_Data")
 
 
 async def close(socket: web.WebSocketResponse, reason: str, code: int = WSCloseCode.OK) -> None:
-    """Close a socket with a reason, which the page shows; for an empty one, the page shows a text of its own."""
+    """Close a socket.
+
+    Args:
+        socket: The socket.
+        reason: The reason, which the page shows; if it is empty, the page shows a default text.
+        code: The code of the WebSocket protocol.
+    """
     text = reason.encode()[:_MAX_REASON_BYTES].decode("utf-8", "ignore")
     await socket.close(code=code, message=text.encode())
 
@@ -25,7 +31,7 @@ async def close(socket: web.WebSocketResponse, reason: str, code: int = WSCloseC
 async def _send(
     socket: web.WebSocketResponse, send: Callable[[_Data], Awaitable[None]], data: _Data
 ) -> bool:
-    """Send data to a browser; return False if the browser has gone."""
+    """Send data to a browser; return False if the browser is no longer connected."""
     if socket.closed:
         return False
     try:
@@ -36,7 +42,10 @@ async def _send(
 
 
 class Link:
-    """Passes on to the browser what an app sends; without a browser, pictures are dropped and messages wait."""
+    """The connection of an app to the browser that shows it.
+
+    Without a browser, frames are dropped and messages wait.
+    """
 
     def __init__(self) -> None:
         self.socket: web.WebSocketResponse | None = None
@@ -44,22 +53,22 @@ class Link:
         self._waiting: list[str] = []
 
     async def send_bytes(self, data: bytes) -> None:
-        """Send what the app draws; drop it if no browser shows the app."""
+        """Send a frame of the app to the browser; drop it if no browser shows the app."""
         if self.socket is not None:
             await _send(self.socket, self.socket.send_bytes, data)
 
     async def send_str(self, text: str) -> None:
-        """Send a message to the browser; without one, keep it for the next browser."""
+        """Send a message to the browser; without a browser, keep the message for the next one."""
         if self.socket is None or not await _send(self.socket, self.socket.send_str, text):
             self._waiting = [*self._waiting, text][-_MAX_WAITING:]
 
     async def take(self, socket: web.WebSocketResponse, first: str, reason: str) -> None:
-        """Show the app in another browser from now on.
+        """Connect the app to another browser from now on.
 
         Args:
             socket: The connection to the new browser.
-            first: The first message that the new browser gets.
-            reason: What the browser that has shown the app until now is told.
+            first: The first message to the new browser.
+            reason: The reason with which the connection to the previous browser is closed.
         """
         await _send(socket, socket.send_str, first)
         before = self.socket
@@ -72,7 +81,7 @@ class Link:
             await close(before, reason, TAKEN_OVER)
 
     def leave(self, socket: web.WebSocketResponse) -> bool:
-        """Note that a browser has gone; return whether no other browser shows the app."""
+        """Forget the connection to a browser that has disconnected; return whether no other browser shows the app."""
         if self.socket is socket:
             self.socket = None
         return self.socket is None

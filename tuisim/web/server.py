@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from textual_serve.app_service import AppService
 
 ANSWER_WITHIN_S = 4.0
-"""Time for an app to send the piece of a file that it is asked for."""
+"""Seconds in which an app must send a requested piece of a file."""
 MAX_OFFERED, MAX_KEY = 20, 100
 """The most files that an app can offer at a time, of which the oldest is withdrawn for a new one, and the most
 characters of a key.
@@ -42,17 +42,20 @@ _MAX_PIECE_BYTES = 4 * DOWNLOAD_CHUNK_SIZE
 
 
 class Downloads(DownloadManager):
-    """Offers files of apps and passes them on; data that an app sends without being asked is dropped."""
+    """The files that apps offer for download; data that an app sends without a request is dropped."""
 
     def __init__(self) -> None:
         super().__init__()
         self._asked: dict[str, asyncio.Future[bytes | str]] = {}
-        """The pieces that apps have been asked for, by the keys of their files."""
+        """The pieces that were requested from apps, by the keys of their files."""
 
     async def create_download(
         self, *, app_service: AppService, delivery_key: str, **about: Any
     ) -> None:
-        """Offer a file, unless one with the same key is offered; an app with too many offers loses its first one."""
+        """Offer a file, unless one with the same key is offered.
+
+        If an app has too many offers, its first one is withdrawn.
+        """
         if len(delivery_key) > MAX_KEY or delivery_key in self._active_downloads:
             return
         own = self._list_keys(app_service.app_service_id)
@@ -61,15 +64,15 @@ class Downloads(DownloadManager):
         await super().create_download(app_service=app_service, delivery_key=delivery_key, **about)
 
     def take(self, key: str) -> Download:
-        """Return the file that is offered under a key, and withdraw the offer.
+        """Withdraw the offer of a file and return it.
 
         Raises:
-            KeyError: no file is offered under it.
+            KeyError: no file is offered with this key.
         """
         return self._active_downloads.pop(key)
 
     async def read_pieces(self, download: Download) -> AsyncIterator[bytes]:
-        """Yield the pieces of a file.
+        """Yield the contents of a file piece by piece, each requested from the app.
 
         Raises:
             TimeoutError: the app does not send the next piece in time.
@@ -94,13 +97,13 @@ class Downloads(DownloadManager):
             yield piece.encode(download.encoding or "utf-8") if isinstance(piece, str) else piece
 
     async def chunk_received(self, delivery_key: str, chunk: bytes | str) -> None:
-        """Take a piece from an app."""
+        """Receive a requested piece of a file from an app."""
         answer = self._asked.get(delivery_key)
         if answer is not None and not answer.done() and len(chunk) <= _MAX_PIECE_BYTES:
             answer.set_result(chunk)
 
     async def cancel_app_downloads(self, app_service_id: str) -> None:
-        """Withdraw the offers of an app."""
+        """Withdraw all offers of an app."""
         for key in self._list_keys(app_service_id):
             del self._active_downloads[key]
 
@@ -141,7 +144,7 @@ _Result = TypeVar("_Result")
 
 @dataclass(frozen=True, slots=True)
 class ServerLimits:
-    """How many apps visitors may use, and for how long."""
+    """Limits of a server: how many apps may run, and for how long."""
 
     visitors: int
     """Most apps at the same time, with those that no tab shows now."""
@@ -150,13 +153,13 @@ class ServerLimits:
 
 
 class Server:
-    """Answers the requests of visitors.
+    """A web server that starts an app for each visitor.
 
     Args:
         command: The command of the app, as words.
         gate: Decides which requests are answered.
-        limits: What visitors may use.
-        report: Called with what an app that has failed wrote to stderr.
+        limits: The limits for visitors.
+        report: Called with the error output of an app that has failed.
     """
 
     def __init__(
@@ -172,16 +175,14 @@ class Server:
         self.gate = gate
         self._downloads, self._uploads = Downloads(), Uploads()
         self.door = Door(report)
-        """Where visitors come in."""
+        """The listening socket of the server."""
         self._visits: dict[str, Visit] = {}
         self._lives: dict[str, asyncio.Task[None]] = {}
 
     def build_application(self) -> web.Application:
-        """Return the web application; requests that the gate does not allow all get the same answer, whatever is
-        there.
-        """
+        """Return the web application, which gives the same answer to all requests that the gate does not allow."""
         application = web.Application(middlewares=[self._guard])
-        # The router takes any token, as it may change: the gate compares it.
+        # The router accepts any token, which may change; the gate compares it.
         application.router.add_routes(
             [
                 web.get("/{token}", _redirect),
@@ -213,10 +214,10 @@ class Server:
         raise web.HTTPForbidden(text=_REFUSAL)
 
     async def _protect(self, request: web.Request, response: web.StreamResponse) -> None:
-        """Set the headers of every response.
+        """Set the security headers of every response.
 
-        The page may load nothing from other sites, only the sites that the gate names may show it in a frame, and it
-        tells no other site its address, which has the token.
+        The page may load nothing from other sites, only the sites that the gate names may show it in a frame, and its
+        address, which contains the token, is not sent to other sites.
         """
         sockets = f"ws://{request.host} wss://{request.host}" if request.host else ""
         response.headers.update(
@@ -271,13 +272,13 @@ class Server:
         socket: web.WebSocketResponse | None = None,
         on_message: Callable[[Mapping[str, Any]], None] | None = None,
     ) -> Visit | None:
-        """Start an app for a visitor; return None if the most apps run that may.
+        """Start an app for a visitor and return the visit; return None if the largest number of apps runs already.
 
-        If one of them is ending, wait until it has ended and start the new one then.
+        If one of them is ending, wait until it has ended, and then start the new one.
 
         Args:
             width: Columns of the visitor's terminal.
-            height: Its rows.
+            height: Rows of the visitor's terminal.
             socket: The connection to the browser that shows the app from its first frame; None for none yet.
             on_message: Called with each message of the app from its start on; see `Visit.listen`.
         """
@@ -322,7 +323,7 @@ class Server:
         except TuisimError as error:
             raise web.HTTPBadRequest(text=f"{error}\n") from None
         except (ConnectionError, ClientError):
-            # The visitor has left before the file was complete.
+            # The visitor disconnected before the file was complete.
             raise web.HTTPBadRequest from None
         await visit.open_file(path)
         return web.json_response({"name": path.name})
@@ -351,18 +352,18 @@ class Server:
         return response
 
     async def send_all_away(self, _: object = None) -> None:
-        """End the apps of all visitors."""
+        """End the visits and apps of all visitors."""
         for visit in self._visits.values():
             visit.end("The server has stopped.")
         await asyncio.gather(*self._lives.values())
 
     def serve(self, host: str, port: int, announce: Callable[[int], None]) -> int:
-        """Serve until a signal ends it, and with it the apps of all visitors. Return the exit code.
+        """Serve until a signal stops the server and the apps of all visitors. Return the exit code.
 
         Args:
             host: Host name or address to listen on.
             port: Port to listen on; 0 takes any free one.
-            announce: Called with the port as soon as visitors can come.
+            announce: Called with the port as soon as the server accepts requests.
 
         Raises:
             ConfigError: the address cannot be used.
@@ -371,7 +372,7 @@ class Server:
 
 
 async def _redirect(request: web.Request) -> web.StreamResponse:
-    """Redirect to the address of the page, which ends in a slash: addresses in the page are relative to it."""
+    """Redirect a request to the page's address with a slash at its end, to which addresses in the page are relative."""
     raise web.HTTPFound(f"{request.rel_url.raw_path}/")
 
 
@@ -387,7 +388,7 @@ async def _handle_page_file(request: web.Request) -> web.StreamResponse:
 
 
 def _read_size(request: web.Request) -> tuple[int, int]:
-    """Return columns and rows of the visitor's terminal, which the page sends; default ones if it does not."""
+    """Return columns and rows of the visitor's terminal from a request; default ones if it has none."""
     try:
         return int(request.query["width"]), int(request.query["height"])
     except (KeyError, ValueError):
@@ -408,7 +409,7 @@ async def _serve(server: Server, host: str, port: int, announce: Callable[[int],
 
 @asynccontextmanager
 async def run_server(server: Server, host: str, port: int) -> AsyncIterator[int]:
-    """Answer requests in the context, which gets the port; at its end, end the apps of all visitors.
+    """In an `async with` block, which gets the port, answer requests; at its end, end the apps of all visitors.
 
     Args:
         server: Answers the requests.
@@ -442,7 +443,7 @@ async def run_server(server: Server, host: str, port: int) -> AsyncIterator[int]
 
 
 def _is_no_wrong_request(record: logging.LogRecord) -> bool:
-    """Return whether to log a record: False for a request that is not HTTP, which anybody can send."""
+    """Return whether to log a record: False for the error of a request that is not HTTP, which anybody can send."""
     return not (record.exc_info and isinstance(record.exc_info[1], HttpProcessingError))
 
 
@@ -466,7 +467,7 @@ def _build_listen_error(host: str, port: int, error: OSError) -> ConfigError:
 
 
 class BackgroundServer:
-    """A server in a thread of its own, on a free port of this machine only.
+    """A server that runs in its own thread, on a free port of this machine only.
 
     Args:
         server: Answers the requests.
@@ -478,7 +479,7 @@ class BackgroundServer:
         self._thread = Thread(target=self._loop.run_forever, name="tuisim-server", daemon=True)
         self._thread.start()
         self.port: int = self.call(self._listen())
-        # The daemon thread just stops with this process: end the apps here.
+        # The daemon thread stops with this process without cleanup, so the apps are ended here.
         atexit.register(self.close)
 
     async def _listen(self) -> int:

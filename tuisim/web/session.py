@@ -19,7 +19,7 @@ from textual_serve.download_manager import DownloadManager
 from tuisim.web.link import Link
 
 END_WITHIN_S = 5.0
-"""Time for an app to end by itself; after that it is killed."""
+"""Seconds in which an app must end by itself; after that it is killed."""
 _HEAD = b"__GANGLION__\n"
 """The line before the first packet of an app."""
 _MAX_ERROR_BYTES = 4096
@@ -62,21 +62,22 @@ _PACKAGE_FOLDER = str(Path(__file__).parent.parent.parent)
 
 
 def build_app_command(words: Sequence[str], session_folder: str = "") -> list[str]:
-    """Return the command, as words, that starts an app.
+    """Return the command that starts an app, as words.
 
     Args:
         words: What the app opens, as words of `tuisim open`.
-        session_folder: Where the app keeps panels and unsaved texts; empty for the folder of the user's other apps.
+        session_folder: The folder for the app's panels and unsaved texts; empty for the folder of the user's other
+            apps.
     """
     return [sys.executable, "-P", "-c", _BOOT, _PACKAGE_FOLDER, session_folder, "open", *words]
 
 
 class WebSession(AppService):
-    """Starts an app, connects it with a browser, and ends it.
+    """An app process that is connected to a browser.
 
     Args:
         command: The command of the app, as words.
-        link: Passes on to a browser what the app sends.
+        link: The connection to the browser.
         downloads: The files that apps offer.
     """
 
@@ -90,7 +91,7 @@ class WebSession(AppService):
         )
         self._words = command
         self.told: Callable[[Mapping[str, Any]], None] = lambda _: None
-        """Called with what the app tells."""
+        """Called with each message of the app."""
         self.errors = ""
         """The last that the app has written to stderr, once it has ended."""
 
@@ -124,7 +125,7 @@ class WebSession(AppService):
             await super().on_meta(data)
 
     async def run(self) -> None:
-        """Pass on what the app writes until it ends."""
+        """Send the app's output to the browser until the app ends."""
         assert (
             self._process is not None
             and self._process.stdout is not None
@@ -150,17 +151,20 @@ class WebSession(AppService):
             payload = await output.readexactly(size)
             try:
                 await handlers[kind](payload)
-            # A bad packet may raise anything. It ends this app only, not the server with the others.
+            # A bad packet may raise any error, which must end this app only, not the server.
             except Exception:
                 self._kill()
                 return
 
     async def show(self, width: int, height: int) -> None:
-        """Tell the app that a terminal of this size, in columns and rows, shows it from now on: it draws everything."""
+        """Send the app the size of the terminal that now shows it, in columns and rows.
+
+        The app then draws everything.
+        """
         await self.send_meta({"type": "show", "width": width, "height": height})
 
     async def wait_until_ended(self) -> None:
-        """Wait until the app has ended by itself."""
+        """Wait until the app ends by itself."""
         # An app that could not be started has no task.
         if self._task is not None:
             await asyncio.shield(self._task)
@@ -177,7 +181,7 @@ class WebSession(AppService):
 
     @property
     def reason(self) -> str:
-        """What to tell the visitor after the app has failed; empty if it has not."""
+        """The text for the visitor after the app has failed; empty if it has not."""
         if not self.has_failed:
             return ""
         last = self.errors.rpartition("\n")[2]
@@ -188,7 +192,7 @@ class WebSession(AppService):
         )
 
     async def stop(self) -> None:
-        """Ask the app to end, and wait; kill it and the processes of its group if it does not end in time."""
+        """Request the app to end, and wait; kill it and the processes of its group if it does not end in time."""
         if self._task is None or self._process is None:
             return
         await self._download_manager.cancel_app_downloads(app_service_id=self.app_service_id)
@@ -201,18 +205,18 @@ class WebSession(AppService):
         self._task = None
 
     def _kill(self) -> None:
-        """End the app and all processes of its group at once."""
+        """Kill the app and all processes of its group."""
         assert self._process is not None
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)
 
 
 async def _do_nothing() -> None:
-    """Do nothing when the app says that it will end: the socket is closed after it has ended."""
+    """Do nothing when the app announces its end: the socket is closed after the app has ended."""
 
 
 async def _read_last_bytes(stream: asyncio.StreamReader) -> bytes:
-    """Read a stream to its end; return the last bytes, at most `_MAX_ERROR_BYTES`."""
+    """Read a stream to its end; return its last bytes, at most `_MAX_ERROR_BYTES`."""
     last = b""
     while data := await stream.read(_MAX_ERROR_BYTES):
         last = (last + data)[-_MAX_ERROR_BYTES:]

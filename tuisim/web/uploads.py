@@ -21,13 +21,13 @@ _PIECE = 1 << 20
 
 
 class Uploads:
-    """Stores files that visitors bring, as long as there is room for them."""
+    """Stores the files that visitors upload, within a limit of total size."""
 
     def __init__(self) -> None:
         self._used_bytes = 0
 
     async def take(self, folder: Path, name: str, content: AsyncIterable[bytes]) -> Path:
-        """Store a file under its name, with a number if another file has that name; return its path.
+        """Store an uploaded file in a folder and return its path; if another file has its name, a number is added.
 
         Raises:
             ConfigError: the name has parts of a path or is hidden, there is no room, or the file cannot be written.
@@ -36,7 +36,7 @@ class Uploads:
         size = 0
         path = None
         try:
-            # The file has no name yet: if this process is killed, nothing is left of it.
+            # The file has no name yet, so nothing remains of it if this process is killed.
             with TemporaryFile(dir=folder) as file:
                 async for piece in content:
                     size = size + len(piece)
@@ -63,7 +63,7 @@ class Uploads:
 
 
 def _check_name(name: str) -> None:
-    # No hidden files: other programs may read settings from them.
+    # Hidden files are refused, as other programs may read settings from them.
     if (
         not name.isprintable()
         or set("/\\") & set(name)
@@ -78,7 +78,7 @@ def _check_name(name: str) -> None:
 
 
 def keep_file(folder: Path, name: str, content: IO[bytes]) -> Path:
-    """Store a file as `Uploads.take` does, unless one of this name has the same content; return the path.
+    """Store a file as `Uploads.take` does, unless a file of this name has the same content; return the path.
 
     Raises:
         OSError: it cannot be written.
@@ -103,7 +103,7 @@ def keep_file(folder: Path, name: str, content: IO[bytes]) -> Path:
 
 
 def _has_content(path: Path, content: IO[bytes]) -> bool:
-    """Return whether a file has the same bytes as `content`."""
+    """Return whether a file contains the same bytes as `content`."""
     with path.open("rb") as file:
         while piece := content.read(_PIECE):
             if file.read(_PIECE) != piece:

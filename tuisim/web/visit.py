@@ -35,17 +35,17 @@ _MOVE = re.compile(r"\x1b\[<(3[59]|4[37]|5[159]|63);\d+;\d+M")
 
 
 def is_done_by_a_person(text: str) -> bool:
-    """Return whether input has more than answers of the terminal: a key, the mouse or pasted text."""
+    """Return whether terminal input contains a key, the mouse or pasted text, not only answers of the terminal."""
     return _ANSWER.sub("", text) != ""
 
 
 def is_use(text: str) -> bool:
-    """Return whether input has a key, a click or pasted text, and not only movements of the mouse."""
+    """Return whether terminal input contains a key, a click or pasted text, not only movements of the mouse."""
     return is_done_by_a_person(_MOVE.sub("", text))
 
 
 class Activity:
-    """Measures how long a visitor has done nothing.
+    """Measures how long a visitor has been idle.
 
     Args:
         clock: A monotonic clock in seconds.
@@ -56,18 +56,18 @@ class Activity:
         self._last_s = clock()
 
     def note(self) -> None:
-        """Note that the visitor has done something."""
+        """Record that the visitor is active now."""
         self._last_s = self._clock()
 
     @property
     def idle_s(self) -> float:
-        """Seconds since the visitor has done something."""
+        """Seconds since the visitor was last active."""
         return self._clock() - self._last_s
 
 
 @dataclass(frozen=True, slots=True)
 class VisitLimits:
-    """How long a visit lasts."""
+    """How long a visit can last without use or without a browser."""
 
     idle_s: float = float("inf")
     """The visit ends when the visitor does nothing for this time."""
@@ -78,13 +78,13 @@ class VisitLimits:
 
 
 class Visit:
-    """The app of a visitor and the browser, if any, that shows it now.
+    """A visitor's app, and the browser, if any, that shows it now.
 
     Args:
         command: The command of the app, as words.
         downloads: The files that apps offer.
         limits: How long the visit lasts.
-        report: Called with what an app that has failed wrote to stderr.
+        report: Called with the error output of an app that has failed.
     """
 
     def __init__(
@@ -101,11 +101,11 @@ class Visit:
         self._session.told = self._handle_news
         self._program = ""
         self._runs = False
-        """The name of the program in the app, and whether the program runs, as the app has told last."""
+        """The name of the program in the app, and whether the program runs, from the app's last message."""
         self._is_used = False
         """Whether somebody has used the app, or it has run a program."""
         self._panels: list[str] = []
-        """The panels that the app shows, as it has told last."""
+        """The panels that the app shows, from its last message."""
         self._telling: asyncio.Task[None] | None = None
         self._size = 0, 0
         self._begun_s = time.monotonic()
@@ -115,12 +115,13 @@ class Visit:
 
     @property
     def id(self) -> str:
-        """The name by which the page and the server know the visit."""
+        """The id of the visit, which the page and the server use."""
         return self._session.app_service_id
 
     def to_plain(self) -> dict[str, Any]:
-        """Return the visit for a list in JSON: id, age, idle time, whether it is shown, its program and if that
-        runs.
+        """Return the visit as a JSON-compatible dict.
+
+        It has the id, age and idle time in s, whether a browser shows the app, its program, and whether that runs.
         """
         age_s = time.monotonic() - self._begun_s
         times = {"age_s": round(age_s), "idle_s": round(self._activity.idle_s)}
@@ -128,11 +129,11 @@ class Visit:
         return {"id": self.id, **times, **shows, "runs": self._runs}
 
     async def run(self, width: int, height: int, began: Callable[[], None]) -> None:
-        """Run the app until it ends, or until nobody has used it for too long; then end it.
+        """Run the app until it ends, or until it has been idle for too long; then end it.
 
         Args:
             width: Columns of the visitor's terminal.
-            height: Its rows.
+            height: Rows of the visitor's terminal.
             began: Called once a browser can show the app.
         """
         self._size = _clamp_size(width, height)
@@ -145,7 +146,7 @@ class Visit:
         try:
             await asyncio.wait({self._end, *waits}, return_when=asyncio.FIRST_COMPLETED)
             reason = next(wait.result() for wait in (self._end, *waits) if wait.done())
-            # A browser that comes from now on is told the reason at once.
+            # A browser that connects from now on gets the reason immediately.
             self.end(reason)
             if self._link.socket is not None:
                 await close(self._link.socket, reason)
@@ -156,7 +157,10 @@ class Visit:
             await self._session.stop()
 
     async def take(self, socket: web.WebSocketResponse) -> None:
-        """Let a browser show the app, which has not drawn yet or is asked afterwards to draw everything."""
+        """Connect the app to a browser.
+
+        The app must not have drawn yet, or the caller must request it to draw everything afterwards.
+        """
         self._cancel_timeout()
         await self._link.take(
             socket, json.dumps(["session", self.id]), "Another tab has taken this session over."
@@ -165,12 +169,12 @@ class Visit:
             await self._tell_panels()
 
     async def replace_socket(self, socket: web.WebSocketResponse, width: int, height: int) -> None:
-        """Let another browser show the app from now on, and tell the one before that it no longer does.
+        """Connect the app to another browser, and close the connection to the previous one with a reason.
 
         Args:
             socket: The connection to the browser.
             width: Columns of its terminal.
-            height: Its rows.
+            height: Rows of its terminal.
         """
         await self.take(socket)
         self._size = _clamp_size(width, height)
@@ -189,12 +193,15 @@ class Visit:
                 self._telling = asyncio.create_task(self._tell_panels())
 
     async def _tell_panels(self) -> None:
-        # Not kept for a later browser, which gets the panels when it comes.
+        # The message is not kept for a later browser, which gets the panels when it connects.
         if (socket := self._link.socket) is not None and not socket.closed:
             await self._link.send_str(json.dumps(["panels", self._panels]))
 
     async def follow(self, socket: web.WebSocketResponse) -> None:
-        """Handle the messages of the browser that shows the app until it has gone; then, end the visit after a time."""
+        """Handle the messages of the browser that shows the app until it disconnects.
+
+        Without another browser, the visit then ends after a time.
+        """
         if self._end.done():
             await close(socket, self._end.result())
         try:
@@ -211,12 +218,12 @@ class Visit:
                 )
 
     async def open_file(self, path: Path) -> None:
-        """Let the app open a file that the visitor has dropped on the page."""
+        """Open a file in the app that the visitor has dropped on the page."""
         self._note_use()
         await self.ask({"what": "open", "path": str(path)})
 
     async def ask(self, request: Mapping[str, Any]) -> None:
-        """Send the app a request; see `ServerAsks`."""
+        """Send a request to the app; see `ServerAsks`."""
         await self._session.send_meta({"type": "ask", **request})
 
     @property
@@ -226,11 +233,11 @@ class Visit:
 
     @property
     def has_ended(self) -> bool:
-        """Whether the app has ended, or will because the visit has."""
+        """Whether the app has ended, or is ending because the visit has ended."""
         return self._end.done() or self._session.has_ended
 
     def listen(self, on_message: Callable[[Mapping[str, Any]], None]) -> None:
-        """Call a function with each message of the app from now on: a run begins or ends, a problem."""
+        """Call a function with each message of the app from now on: on the begin or end of a run, or a problem."""
         self._session.told = on_message
 
     @property
@@ -239,7 +246,11 @@ class Visit:
         return self._end.done()
 
     def end(self, reason: str) -> None:
-        """End the visit and tell the visitor why."""
+        """End the visit.
+
+        Args:
+            reason: The reason, which the visitor sees.
+        """
         if not self._end.done():
             self._end.set_result(reason)
 
@@ -266,7 +277,7 @@ class Visit:
         )
 
     async def _handle_page_message(self, data: str) -> None:
-        """Handle one message of the page; ignore one that no page sends."""
+        """Handle a message of the page; ignore a message in another form than the page sends."""
         with suppress(ValueError, RecursionError):
             match json.loads(data):
                 case ["stdin", str(text)]:
