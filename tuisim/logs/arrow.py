@@ -27,7 +27,7 @@ METADATA_KEY = b"tuisim"
 
 
 def build_text_array(texts: Sequence[str]) -> pa.Array:
-    """Return texts as an Arrow string array."""
+    """Return texts as an Arrow array of strings."""
     encoded = [text.encode("utf-8", "replace") for text in texts]
     ends = np.cumsum([0, *map(len, encoded)], dtype=np.int32)
     return pa.StringArray.from_buffers(
@@ -36,8 +36,8 @@ def build_text_array(texts: Sequence[str]) -> pa.Array:
 
 
 def build_table(columns: Mapping[str, Any]) -> pa.Table:
-    """Return columns, lists of texts or arrays of numbers, as a table as if from a frame: NaN becomes null."""
-    # A name in a damaged run may be no text that UTF-8 can have.
+    """Return columns, lists of texts or arrays of numbers, as an Arrow table; NaN becomes null, as for a frame."""
+    # A name in a damaged run may contain surrogates, which UTF-8 cannot encode.
     names = [name.encode("utf-8", "replace").decode() for name in columns]
     return pa.table([_build_column(cells) for cells in columns.values()], names=names)
 
@@ -46,7 +46,7 @@ def _build_column(cells: Any) -> pa.Array:
     if isinstance(cells, list):
         return build_text_array(cells).cast(pa.large_string())
     numbers = np.ascontiguousarray(cells)
-    # Not `pa.array`, which imports pandas.
+    # `pa.array` is avoided, as it imports pandas.
     known = None
     if numbers.dtype.kind == "f" and np.isnan(numbers).any():
         known = pa.py_buffer(np.packbits(~np.isnan(numbers), bitorder="little"))
@@ -56,7 +56,7 @@ def _build_column(cells: Any) -> pa.Array:
 
 
 def convert_to_floats(column: pa.ChunkedArray) -> FloatArray:
-    """Return a numeric column as floats, shape (n,), NaN for nulls. Copied only if necessary."""
+    """Return a numeric column as floats, shape (n,), with NaN for nulls. The data are copied only if necessary."""
     if not pa.types.is_floating(column.type) or pa.types.is_float16(column.type):
         column = column.cast(pa.float64(), safe=False)
     parts = [
@@ -70,13 +70,13 @@ def convert_to_floats(column: pa.ChunkedArray) -> FloatArray:
 
 
 def read_numbers(chunk: pa.Array) -> np.ndarray[Any, Any]:
-    """Return an array of numbers without nulls, shape (n,), not copied."""
-    # Not `to_numpy`, which imports pandas.
+    """Return an Arrow array of numbers without nulls as a NumPy array, shape (n,), without copying it."""
+    # `to_numpy` is avoided, as it imports pandas.
     return np.from_dlpack(chunk)
 
 
 def wrap_int64(numbers: np.ndarray[Any, np.dtype[np.int64]]) -> pa.ChunkedArray:
-    """Return 64-bit integers, shape (n,), as a column, not copied."""
+    """Return 64-bit integers, shape (n,), as an Arrow column, without copying them."""
     return pa.chunked_array([_build_column(numbers)])
 
 
@@ -84,21 +84,21 @@ BoolArray = np.ndarray[Any, np.dtype[np.bool_]]
 
 
 def convert_to_texts(column: pa.ChunkedArray) -> pa.ChunkedArray:
-    """Return a column as texts; spans of time as their numbers."""
+    """Return a column as texts; time spans become the texts of their numbers."""
     if pa.types.is_duration(column.type):
         column = column.cast(pa.int64()).cast(pa.float64(), safe=False)
     return column.cast(pa.string())
 
 
 def match_text(column: pa.ChunkedArray, text: str) -> BoolArray:
-    """Return which cells contain a text, in any case of letters, shape (n,)."""
+    """Return for each cell whether it contains a text, shape (n,); case is ignored."""
     return _convert_mask(pc.match_substring(convert_to_texts(column), text, ignore_case=True))
 
 
 def match_condition(column: pa.ChunkedArray, condition: ValueCondition) -> BoolArray:
-    """Return which cells meet a condition, shape (n,); empty ones do not.
+    """Return for each cell whether it meets a condition, shape (n,); False for empty cells.
 
-    Numbers, and spans of time in seconds, are compared as numbers, all else as texts.
+    Numbers, and time spans in seconds, are compared as numbers, everything else as texts.
 
     Raises:
         LogError: the value of the condition is not a number, but the column has numbers.
@@ -127,7 +127,7 @@ def _convert_mask(truths: Any) -> BoolArray:
 
 
 def sort_places(column: pa.ChunkedArray, descending: bool) -> IntArray:
-    """Return the positions of the cells in sorted order, shape (n,)."""
+    """Return the rows of a column's cells in sorted order, shape (n,)."""
     column = convert_to_texts(column) if pa.types.is_dictionary(column.type) else column
     way = "descending" if descending else "ascending"
     places: IntArray = pc.sort_indices(column, sort_keys=[("", way)]).to_numpy().astype(np.int64)
@@ -135,9 +135,9 @@ def sort_places(column: pa.ChunkedArray, descending: bool) -> IntArray:
 
 
 def format_cell(cell: pa.Scalar) -> str:
-    """Return a cell as text, spans of time in seconds."""
+    """Return a cell as text; a time span in seconds."""
     if pa.types.is_duration(cell.type):
-        # The Python object would be one of pandas, whose import takes longer than drawing a whole screen.
+        # `as_py` is avoided, as it imports pandas, which takes longer than drawing a whole screen.
         return f"{cell.value / PER_S[cell.type.unit]:.3f}" if cell.is_valid else ""
     value = cell.as_py()
     if value is None:
@@ -146,7 +146,7 @@ def format_cell(cell: pa.Scalar) -> str:
 
 
 def make_names_unique(names: Sequence[str], notes: Notes | None = None) -> list[str]:
-    """Return unique column names; renamed columns are noted."""
+    """Return column names of which repeated ones are changed to be unique; the changes are added to `notes`."""
     unique: list[str] = []
     for number, name in enumerate(names, 1):
         unique_name = name or f"column {number}"
@@ -165,7 +165,7 @@ _CUT_OFF = "the file is truncated: only the readable part was read"
 
 
 def read_metadata(schema: pa.Schema) -> Mapping[str, Any]:
-    """Return the metadata of our own exports; empty for other files."""
+    """Return the metadata of an export of tuisim; empty for other files."""
     try:
         metadata = json.loads((schema.metadata or {}).get(METADATA_KEY, b"{}"))
     except (ValueError, RecursionError):
@@ -174,7 +174,7 @@ def read_metadata(schema: pa.Schema) -> Mapping[str, Any]:
 
 
 def read_parquet(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
-    """Yield the row groups of a file, each with the fraction of the file that has been read.
+    """Yield the row groups of a Parquet file, each with the fraction of the file that has been read.
 
     Raises:
         LogError: the file has no readable footer.
@@ -208,13 +208,15 @@ def read_parquet(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
 
 
 def read_arrow(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
-    """Yield the record batches of a file or stream; if it was cut off, those that are complete.
+    """Yield the record batches of an Arrow file or stream, each with the fraction of the file that has been read.
+
+    If the file was cut off, only the complete ones are yielded.
 
     Raises:
         LogError: not even the names of the columns can be read.
     """
     with pa.memory_map(str(path)) as source:
-        # After eight magic bytes, a file is a stream of batches.
+        # In a file, unlike in a stream, the batches begin after eight magic bytes.
         source.seek(8 if source.read(len(_FILE_MAGIC)) == _FILE_MAGIC else 0)
         size = max(path.stat().st_size, 1)
         try:
@@ -250,20 +252,20 @@ def _validate_batch(batch: pa.RecordBatch) -> pa.Table:
 
 
 def _name_columns(part: pa.Table, notes: Notes) -> pa.Table:
-    # Renaming drops the metadata.
+    # Renaming columns drops the metadata, so they are set again.
     renamed = part.rename_columns(make_names_unique(part.column_names, notes))
     fields = [field.with_type(_choose_type(field.type)) for field in renamed.schema]
     return renamed.cast(pa.schema(fields, part.schema.metadata), safe=False)
 
 
 def _choose_type(kind: pa.DataType) -> pa.DataType:
-    """Return the type to which columns of a type are converted, such as decimals to floats; mostly the same."""
+    """Return the type to which columns of a type are converted, such as float for decimals; the same type for most."""
     if pa.types.is_decimal(kind):
         return pa.float64()
     if pa.types.is_date64(kind):
         message = "has a column of Arrow's type date64, which cannot be read"
         raise LogError(message, "write dates as date32 and times as timestamp")
-    # Times of day have no nanoseconds in pandas.
+    # Times of day become microseconds, as pandas has no nanoseconds for them.
     if kind == pa.time64("ns"):
         return pa.time64("us")
     return pa.string() if pa.types.is_string_view(kind) else kind

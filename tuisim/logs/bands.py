@@ -35,7 +35,7 @@ CUT_OFF = "cut off"
 
 @dataclass(frozen=True, slots=True)
 class Band:
-    """One plateau of one variable."""
+    """A band: a plateau of one variable, with its level, times and width."""
 
     variable: str
     number: int
@@ -86,28 +86,31 @@ class BandReport:
 
     @property
     def count(self) -> int:
-        """Number of bands."""
+        """The number of bands."""
         return len(self.columns["number"])
 
     @cached_property
     def has_true_levels(self) -> bool:
-        """Whether clamped noise has moved a level, so that the true levels say more than the levels."""
+        """Whether true levels differ from levels, as noise was clamped at the end of the scale."""
         return bool(np.any(self.columns["true_level"] != self.columns["level"]))
 
     @cached_property
     def bands(self) -> tuple[Band, ...]:
-        """The bands as objects; a long log has a hundred thousand, which take long to make."""
+        """The bands as objects; for a long log with a hundred thousand bands, creating them is slow."""
         return tuple(map(Band, *map(unpack_column, self.columns.values())))
 
 
 def count_samples(band: Band) -> str:
-    """Return how many samples a band has, such as `12, 1 stray`. Its level and its spread leave out the strays."""
+    """Return the number of samples of a band as text, such as `12, 1 stray`.
+
+    Strays do not affect the band's level and spread.
+    """
     strays = f", {counted(band.strays, 'stray')}" if band.strays else ""
     return f"{band.samples}{strays}"
 
 
 def unpack_column(column: Column) -> Sequence[Any]:
-    """Return the items of a column as Python's own objects."""
+    """Return the items of a column as Python objects."""
     return column.tolist() if isinstance(column, np.ndarray) else column
 
 
@@ -115,7 +118,9 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
     """Return the bands of a variable.
 
     Args:
-        search: Returns the plateaus of an array of samples: the bands.
+        log: The log.
+        name: The variable.
+        search: Returns the plateaus of an array of samples, which are the bands.
 
     Raises:
         LogError: there is no such variable.
@@ -152,7 +157,13 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
 def _measure_places(
     driven: FloatArray | None, values: FloatArray, levels: Levels
 ) -> dict[str, FloatArray]:
-    """Return `start_mm`, `stop_mm` and `width_mm` of bands, as in `Band`; all are NaN without `driven`."""
+    """Return the columns `start_mm`, `stop_mm` and `width_mm` of bands, as in `Band`.
+
+    Args:
+        driven: The distance driven at each sample in mm; None without positions: then all values are NaN.
+        values: The samples.
+        levels: The bands.
+    """
     if driven is None:
         unknown = np.full(len(levels.start), NAN)
         return dict.fromkeys(("start_mm", "stop_mm", "width_mm"), unknown)
@@ -164,7 +175,10 @@ def _measure_places(
 
 
 def describe_width(band: Band) -> str:
-    """Return the width of a band in mm, `CUT_OFF`, or `–` if it is unknown; empty for a log without positions."""
+    """Return the width of a band in mm as text.
+
+    The text is `CUT_OFF` or `–` if the width is unknown, and empty for a log without positions.
+    """
     if not isfinite(band.start_mm):
         return ""
     if isfinite(band.width_mm):
@@ -175,10 +189,10 @@ def describe_width(band: Band) -> str:
 
 
 def read_light(metadata: Mapping[str, Any], run: int) -> Light:
-    """Return the light noise of a run, and the response of its colour sensor; the defaults if the metadata lack them.
+    """Return the light noise of a run and the response of its colour sensor; defaults if the metadata lack them.
 
     Args:
-        metadata: Those of the log.
+        metadata: The metadata of the log.
         run: Number of the run in the log, from 1; 0 if the log does not number its runs.
     """
     spec = read_spec(metadata, max(run - 1, 0))
@@ -186,7 +200,7 @@ def read_light(metadata: Mapping[str, Any], run: int) -> Light:
 
 
 def compute_driven_mm(log: Log, series: Series) -> FloatArray | None:
-    """Return the distance driven at each sample, shape (n,); None if the log has no positions."""
+    """Return the distance driven at each sample in mm, shape (n,); None if the log has no positions."""
     if not {"x_mm", "y_mm"} <= set(list_numeric_columns(log.table.schema)) or not len(series.rows):
         return None
     x_mm, y_mm = (log.pick_numbers(name, series.rows) for name in ("x_mm", "y_mm"))
@@ -196,14 +210,14 @@ def compute_driven_mm(log: Log, series: Series) -> FloatArray | None:
 
 
 def distance_mm(x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
-    """Return the distance along a path since its first point, shape (n,)."""
+    """Return the distance in mm along a path since its first point, shape (n,)."""
     if not len(x_mm):
         return np.empty(0)
     return np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(x_mm), np.diff(y_mm)))))
 
 
 def describe_levels(report: BandReport) -> str:
-    """Return the levels of a report in words, for people."""
+    """Return the levels of the bands in a report, in words."""
     if not report.count:
         return f"{report.variable}: no level: its values stand still nowhere"
     levels = _group_levels(report)
@@ -226,10 +240,10 @@ def describe_levels(report: BandReport) -> str:
 
 
 def _group_levels(report: BandReport) -> list[list[tuple[str, float, int]]]:
-    """Return grey, level and samples of the bands, those of one level together, in order of their first bands.
+    """Return grey, level and number of samples of the bands, grouped by level, in order of their first bands.
 
-    Bands are of one level if they have the same grey or, without one, if their levels are no farther apart than their
-    samples spread.
+    Bands have the same level if they have the same grey or, without one, if their levels differ by no more than the
+    spread of their samples.
     """
     columns = (unpack_column(report.columns[name]) for name in ("grey", "level", "samples"))
     bands = list(zip(*columns, strict=True))
@@ -265,7 +279,7 @@ def measure_widths(values: FloatArray, driven_mm: FloatArray, levels: Levels) ->
     Args:
         values: Samples, shape (m,).
         driven_mm: The distance driven at each of them, shape (m,).
-        levels: Those of the samples, n of them.
+        levels: The n levels of the samples.
     """
     rows = np.flatnonzero(np.isfinite(values))
     last, first = np.searchsorted(rows, np.stack((levels.stop[:-1] - 1, levels.start[1:])))
@@ -279,7 +293,7 @@ def _find_edges(
 ) -> FloatArray:
     """Return where samples pass the middle between each level and the next one, in mm, shape (n - 1,).
 
-    With noise, they may pass it several times: the middle between the first and the last time counts.
+    With noise, they may pass it several times: the edge is in the middle between the first and the last time.
     """
     level, row = pairs
     middles = (levels.true_level[:-1] + levels.true_level[1:]) / 2.0
@@ -301,9 +315,9 @@ def _find_edges(
 
 
 def _find_pairs(last: IntArray, first: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the pairs of neighbouring samples from the last one of each level to the first one of the next.
+    """Return the pairs of neighbouring samples from the last sample of each level to the first sample of the next.
 
-    Returns: For each pair, the position of the level, and the row of its first sample.
+    Returns: For each pair, the index of the level, and the row of the pair's first sample.
     """
     sizes = first - last
     level = np.repeat(np.arange(len(sizes)), sizes)
@@ -311,6 +325,6 @@ def _find_pairs(last: IntArray, first: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def _measure_reach(levels: Levels) -> FloatArray:
-    """Return how far samples between each level and the next one may be from their middle, shape (n - 1,)."""
+    """Return by how much samples between each level and the next may differ from the middle of both, shape (n - 1,)."""
     spread = np.maximum(levels.spread[:-1], levels.spread[1:])
     return _FAR_OF_STEP * np.abs(np.diff(levels.true_level)) + _FAR_OF_SPREAD * spread

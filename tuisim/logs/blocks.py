@@ -27,7 +27,7 @@ _GUESSES = {"cp1252": "Windows-1252", "gbk": "GBK", "shift_jis": "Shift-JIS"}
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Whole lines of a file that follow each other."""
+    """Consecutive whole lines of a text file."""
 
     first_row: int
     """Row of the first line in the file, from 1."""
@@ -35,14 +35,14 @@ class Block:
     """Each line with its newline."""
 
     def lines(self) -> Iterator[tuple[int, str]]:
-        """Yield each line that is not blank, with its row."""
+        """Yield each line that is not blank, with its row in the file."""
         for row, line in enumerate(self.text.split("\n"), self.first_row):
             if line and not line.isspace():
                 yield row, line
 
 
 class LineCutter:
-    """Decodes bytes, and cuts their text into blocks of whole lines.
+    """Decodes the bytes of a text file, and cuts the text into blocks of whole lines.
 
     Args:
         longest: Characters of the longest line that is allowed.
@@ -62,7 +62,7 @@ class LineCutter:
         """Whether the encoding was chosen, so that bytes which do not fit are replaced."""
         encoding = encoding or _UTF_8
         try:
-            # Python knows more codecs than those of text: hex, rot13, undefined.
+            # This raises for Python's codecs that are not for text, such as hex and rot13.
             b"0".decode(encoding, "replace")
             self._choose(encoding)
         except (LookupError, ValueError) as error:
@@ -70,7 +70,7 @@ class LineCutter:
             raise LogError(f"no encoding {encoding!r}", hint) from error
 
     def feed(self, data: bytes) -> Block | None:
-        """Add bytes, none at the end; return the lines that are complete now, if any.
+        """Add bytes, or empty bytes at the end of the file; return the lines that are now complete, None without any.
 
         The first block has two lines if the text has them: a single one may be a heading or a row.
 
@@ -110,7 +110,7 @@ class LineCutter:
             return self._guess(self._decoder.getstate()[0] + data)
 
     def _find_utf_16(self, data: bytes) -> None:
-        """Choose UTF-16 if the first bytes of a text are in it."""
+        """Choose UTF-16 as the encoding if the first bytes of the text are in it."""
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             self._choose("utf-16")
             return
@@ -129,7 +129,7 @@ class LineCutter:
         )
 
     def _guess(self, data: bytes) -> str:
-        """Return bytes that are not UTF-8, decoded; the rest of the file is read in the same encoding."""
+        """Choose an encoding for a text that is not UTF-8, and return bytes decoded with it."""
         for encoding in _GUESSES:
             try:
                 codecs.getincrementaldecoder(encoding)().decode(data)
@@ -144,10 +144,10 @@ class LineCutter:
 
 
 class Readable(Protocol):
-    """A stream of bytes."""
+    """A stream from which bytes can be read."""
 
     def read(self, count: int, /) -> bytes | None:
-        """Return up to `count` bytes, none at the end."""
+        """Return up to `count` bytes; empty bytes at the end."""
 
 
 _UNPACKED_BYTES = 1 << 12
@@ -175,11 +175,12 @@ MAGIC_BYTES = max(map(len, MAGICS))
 
 
 def unpack(head: bytes, handle: Any, notes: Notes) -> Readable | None:
-    """Return the text in a compressed file, to be read; None if it is not compressed.
+    """Return a stream of the unpacked contents of a compressed file; None if it is not compressed.
 
     Args:
         head: The first `MAGIC_BYTES` bytes of the file.
         handle: The file, open at its beginning.
+        notes: Receives a note if the file is damaged.
 
     Raises:
         LogError: the format cannot be read.
@@ -195,14 +196,14 @@ def unpack(head: bytes, handle: Any, notes: Notes) -> Readable | None:
 
 
 class _Unpacked:
-    """A compressed file, read as far as it is intact."""
+    """A stream of the contents of a compressed file, which ends where the file is damaged."""
 
     def __init__(self, handle: Any, codec: str, notes: Notes) -> None:
         self._notes = notes
         self._stream = pa.CompressedInputStream(pa.PythonFile(handle, "r"), codec)
 
     def read(self, count: int, /) -> bytes:
-        """Return up to `count` bytes, none at the end or where it is damaged or cut off."""
+        """Return up to `count` bytes; empty bytes at the end, or where the file is damaged or cut off."""
         parts = []
         try:
             while count > 0 and (part := self._stream.read(min(count, _UNPACKED_BYTES))):

@@ -25,12 +25,12 @@ UNIT = (
 is_unit = re.compile(UNIT, re.IGNORECASE).fullmatch
 _UNIT = r"^(?P<number>.*\d\.?)(?P<gap>\s*)(?P<unit>%|°\w?|[A-Za-zµΩ][A-Za-z0-9µΩ²/]{0,7})$"
 _JUDGED_CELLS = 10_000
-"""Cells of a column from which the form of its numbers is told."""
+"""Cells of a column from which the form of its numbers is found."""
 
 
 @dataclass(frozen=True, slots=True)
 class NumberForm:
-    """How the numbers of a column are written."""
+    """The form of a column's numbers, such as their decimal sign."""
 
     pattern: str = rf"^{NUMBER}$|{_SPECIAL}"
     """Regular expression of a number."""
@@ -72,7 +72,11 @@ _TRUTHS = NumberForm(r"^(?i:true|false)$", ((r"(?i)true", "1"), (r"(?i)false", "
 
 
 def parse_numbers(cells: pa.Array, form: NumberForm) -> tuple[pa.Array, pa.Array]:
-    """Parse texts as float64, with nulls for those that are not numbers.
+    """Return texts as float64, with nulls for those that are not numbers.
+
+    Args:
+        cells: The texts.
+        form: The form of the numbers.
 
     Returns:
         Numbers, and a mask of the cells that are neither a number nor empty.
@@ -98,11 +102,11 @@ def _trim(cells: pa.Array) -> tuple[Any, Any]:
 
 
 def find_form(cells: pa.Array, separator: str, decimal: str) -> NumberForm | None:
-    """Return the form of most of the cells of a column; None if most are not numbers.
+    """Return the number form of most cells of a column; None if most are not numbers.
 
     Args:
         cells: Texts, at least one of which is not empty.
-        separator: What separates the cells: beside a comma, 1,000 is a thousand, else 1.
+        separator: The separator of cells: if it is a comma, 1,000 is a thousand, else 1.
         decimal: The decimal sign; empty to find it.
     """
     texts = _trim(cells)[0].drop_null()[:_JUDGED_CELLS]
@@ -119,15 +123,15 @@ def find_form(cells: pa.Array, separator: str, decimal: str) -> NumberForm | Non
 
 
 def _find_unit_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm | None:
-    """Return the form of numbers with a unit behind them, such as `12 cm`; None if most of the texts lack it."""
+    """Return the form of numbers followed by a unit, such as `12 cm`; None if most of the texts have no unit."""
     parts: Any = pc.extract_regex(texts, _UNIT)
     units = Counter(pc.struct_field(parts, "unit").drop_null().to_pylist())
     unit, count = next(iter(units.most_common(1)), ("", 0))
     inner = _choose_form(pc.struct_field(parts, "number").drop_null(), forms)
-    # Spans of pandas are times, also if all of them are `0 days`.
+    # Time spans of pandas are times, not numbers with a unit, even if all are `0 days`.
     if inner is None or unit == "days" or 2 * count <= len(texts):
         return None
-    # Labels such as 1a and 2a are no numbers.
+    # Labels such as 1a and 2a are not numbers with a unit.
     if not is_unit(unit) and not all(pc.struct_field(parts, "gap").to_pylist()):
         return None
     escaped = re.escape(unit)
@@ -137,7 +141,7 @@ def _find_unit_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm 
 
 
 def _choose_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm | None:
-    """Return the first of the forms that most of the texts have; None if no form has more than half."""
+    """Return the first of some forms that more than half of the texts have; None if no form does."""
     counts = []
     for form in forms:
         count = pc.sum(pc.match_substring_regex(texts, form.pattern)).as_py() or 0

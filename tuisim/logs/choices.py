@@ -19,7 +19,7 @@ WORDS = {"unit": tuple(SECONDS), "separator": tuple(SIGNS), "decimal": DECIMAL_S
 
 @dataclass(frozen=True, slots=True)
 class ReadChoices:
-    """What the user has chosen for reading a log; what is at its default is found out from the file.
+    """The user's choices for reading a log; choices that are not made follow from the file.
 
     Raises:
         LogError: there is no such unit, separator or decimal sign.
@@ -49,7 +49,7 @@ class ReadChoices:
                 raise LogError(f"no {name} {word!r}", among(word, allowed))
 
     def format_options(self) -> list[str]:
-        """Return what is chosen, as options of a command."""
+        """Return the choices as options of a command, such as `--unit ms`."""
         options = []
         for field in fields(self):
             word = getattr(self, field.name)
@@ -62,7 +62,7 @@ class ReadChoices:
 
     @property
     def sign(self) -> str:
-        """The separator itself; empty if it is to be found."""
+        """The character of the chosen separator; empty if the separator follows from the file."""
         return SIGNS.get(self.separator, "")
 
 

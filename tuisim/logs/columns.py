@@ -69,7 +69,7 @@ UNIT_NAMES = {seconds: words[-1] for seconds, words in _UNIT_WORDS_S.items()}
 
 
 class TimeName(NamedTuple):
-    """A column name, split into its base and its unit of time."""
+    """The name of a column, split into its base and its unit of time."""
 
     base: str
     """Lower case, without its unit and without surrounding punctuation."""
@@ -78,7 +78,7 @@ class TimeName(NamedTuple):
 
 
 def parse_time_name(name: str) -> TimeName:
-    """Return the name without its unit, and the unit; a name such as `ms` is its own unit."""
+    """Return a column's name as its base and its unit; a name such as `ms` is its own unit."""
     text = name.strip().lower()
     match = _UNIT.search(text, max(0, len(text) - _LONGEST_UNIT))
     unit_s = None
@@ -92,7 +92,7 @@ def parse_time_name(name: str) -> TimeName:
 
 
 def has_time_word(name: str) -> bool:
-    """Return whether one of the words of a name means a time, or its unit: `since start (s)`."""
+    """Return whether a word of a column's name means a time or a unit of time, as in `since start (s)`."""
     if parse_time_name(name).unit_s is not None:
         return True
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
@@ -103,7 +103,8 @@ def find_epoch_unit_s(column: pa.ChunkedArray, unit_s: float | None) -> float | 
     """Return the unit in seconds of numbers that are times since the beginning of 1970; None if they are not.
 
     Args:
-        unit_s: The unit, if it is known; None guesses it from the size of the numbers.
+        column: The numbers.
+        unit_s: The unit in seconds; None to guess it from the size of the numbers.
     """
     numbers = convert_to_floats(column[:_JUDGED_TIMES])
     first = next(iter(numbers[np.isfinite(numbers)]), 0.0)
@@ -121,7 +122,7 @@ _NO_ROWS: IntArray = np.empty(0, np.int64)
 
 
 class Times(NamedTuple):
-    """A time column in seconds."""
+    """The times of a log in seconds, with the rows at which its clock began again."""
 
     seconds: FloatArray
     """Shape (n,); NaN where there is no time."""
@@ -152,7 +153,7 @@ def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool) -> Tim
     if is_temporal or pa.types.is_integer(kind):
         column = column.cast(pa.int64())
     if since_first or pa.types.is_timestamp(kind):
-        # Subtracted as integers: floats have no digits left for nanoseconds since 1970.
+        # Integers are subtracted, as floats have too few digits for nanoseconds since 1970.
         column = pc.subtract(column, pc.first(column.filter(pc.is_finite(column))))
     seconds = np.asarray(convert_to_floats(column), np.float64)
     if is_temporal:
@@ -165,7 +166,8 @@ def _unwrap(seconds: FloatArray, period: float, words: str) -> Times:
     """Return times to which a period is added each time that their clock or counter begins again at 0.
 
     Args:
-        period: That of the clock or counter, in the unit of the times.
+        seconds: The times in seconds.
+        period: The period of the clock or counter in seconds.
         words: The period in words.
     """
     with np.errstate(invalid="ignore"):
@@ -224,7 +226,7 @@ _NO_VALUES = ("run", "line", "row", "x_mm", "y_mm", "heading_deg")
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Which columns of a table are the time, the variable, the values and the run."""
+    """The roles of a table's columns: time, variable, values and run."""
 
     time: str = ROW
     """Column with the time; `ROW` if the samples are counted."""
@@ -243,25 +245,25 @@ class Layout:
 
 
 def is_numeric(kind: pa.DataType) -> bool:
-    """Return whether a type is numeric."""
+    """Return whether an Arrow type is numeric."""
     return bool(
         pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_boolean(kind)
     )
 
 
 def list_numeric_columns(schema: pa.Schema) -> list[str]:
-    """Return the names of the numeric columns."""
+    """Return the names of a table's numeric columns."""
     return [field.name for field in schema if is_numeric(field.type)]
 
 
 def list_time_columns(table: pa.Table) -> list[str]:
-    """Return the names of the columns that can be the time: of numbers, dates, times and time spans."""
+    """Return the names of the columns that can be the time: those of numbers, dates, times and time spans."""
     names = list_numeric_columns(table.schema)[:_MAX_TIMES]
     return [*names, *_list_moments(table)]
 
 
 def _list_moments(table: pa.Table) -> list[str]:
-    """Return the columns of dates, times or time spans, also as texts."""
+    """Return the names of the columns of dates, times or time spans, including texts with these."""
     types = {field.name: field.type for field in table.schema}
     typed = [
         n
@@ -290,7 +292,7 @@ def guess_columns(table: pa.Table) -> Layout:
         sure = bool(named) or not set(numeric) - {value, *_NO_VALUES}
     else:
         variable = ""
-        # In telemetry, the pose is a value like any other.
+        # In telemetry, which has no column of values, the pose is not hidden.
         hidden = _NO_VALUES if value in numeric else ("line", "row")
         values = [n for n in numeric if n not in hidden] or numeric
         # With a single numeric column, there is no choice.
@@ -299,13 +301,19 @@ def guess_columns(table: pa.Table) -> Layout:
 
 
 def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataType], bool]) -> str:
-    """Return the column with the first of the names, in upper or lower case, if its type fits; empty if none has."""
+    """Return the column with the first of some names, ignoring case, if its type fits; empty if there is none."""
     columns = {field.name.strip().lower(): field.name for field in table.schema if fits(field.type)}
     return next((columns[name] for name in names if name in columns), "")
 
 
 def _set_time_unit(layout: Layout, table: pa.Table, unit_s: float | None = None) -> Layout:
-    """Return a layout with the unit of its time column: as given, or guessed from name and size of the numbers."""
+    """Return a layout with the unit of its time column.
+
+    Args:
+        layout: The layout.
+        table: The table.
+        unit_s: The unit in seconds; None to guess it from the name and the size of the numbers.
+    """
     date_unit_s = None
     if not layout.time or not is_numeric(table.field(layout.time).type):
         unit_s = 1.0
@@ -317,7 +325,7 @@ def _set_time_unit(layout: Layout, table: pa.Table, unit_s: float | None = None)
 
 
 def _find_named_time(table: pa.Table) -> str:
-    """Return the column that is the time by its name or type, empty if there is none."""
+    """Return the name of the column that is the time by its name or type; empty if there is none."""
     moments = _list_moments(table)
     numbers = list_numeric_columns(table.schema)
     usable = [n for n in (*moments, *numbers) if table.column(n).null_count < table.num_rows]
@@ -328,7 +336,12 @@ def _find_named_time(table: pa.Table) -> str:
 
 
 def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:
-    """Yield the columns of texts of whose first cells at least half fit."""
+    """Yield the names of the text columns in which at least half of the first cells fit.
+
+    Args:
+        table: The table.
+        fits: Returns whether a cell fits.
+    """
     for field in table.schema:
         if is_text(field.type):
             cells = table.column(field.name).slice(0, _JUDGED_CELLS).cast(pa.string()).to_pylist()
@@ -337,7 +350,10 @@ def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:
 
 
 def find_unread_time(table: pa.Table, layout: Layout) -> str:
-    """Return the column of texts with the name of a time, if no column could be read as the time; otherwise empty."""
+    """Return the text column with the name of a time, if no column could be read as the time.
+
+    Otherwise the text is empty.
+    """
     if layout.time:
         return ""
     named = (
@@ -347,14 +363,14 @@ def find_unread_time(table: pa.Table, layout: Layout) -> str:
 
 
 def has_guessed_order(table: pa.Table, layout: Layout) -> bool:
-    """Return whether the times are dates such as 03/04/2024, whose first number is only guessed to be the day."""
+    """Return whether the times are dates such as 03/04/2024, in which it is only a guess that the day comes first."""
     if not layout.time or not is_text(table.field(layout.time).type):
         return False
     return order_is_guessed(table.column(layout.time).cast(pa.string()))
 
 
 def time_in_words(layout: Layout) -> str:
-    """Return a sentence on which column is the time."""
+    """Return a sentence that says which column is the time."""
     if layout.time in (ROW, "row"):
         return "no time column: row numbers from 0 are used"
     unit = UNIT_NAMES.get(layout.unit_s, f"{layout.unit_s:g} s")
@@ -362,14 +378,14 @@ def time_in_words(layout: Layout) -> str:
 
 
 def _find_rising(table: pa.Table) -> str:
-    """Return the first column if no column has a name, and its numbers rise; else `ROW`."""
+    """Return the first column as the time if no column has a name, and its numbers rise; else `ROW`."""
     names = table.column_names
     nameless = all(name == f"column {number}" for number, name in enumerate(names, 1))
     return names[0] if nameless and len(names) > 1 and _is_rising(table, names[0]) else ROW
 
 
 def is_text(kind: pa.DataType) -> bool:
-    """Return whether a type is text, also dictionary-encoded."""
+    """Return whether an Arrow type is text, including dictionary-encoded text."""
     if pa.types.is_dictionary(kind):
         kind = kind.value_type
     return bool(pa.types.is_string(kind) or pa.types.is_large_string(kind))
@@ -379,13 +395,13 @@ def _is_rising(table: pa.Table, name: str) -> bool:
     column = table.column(name)
     if column.null_count or table.num_rows < 2 or not is_numeric(column.type):
         return False
-    # Compared, not subtracted: infinite values have no difference.
+    # Numbers are compared, not subtracted, as infinite ones have no difference.
     numbers = convert_to_floats(column)
     return bool((numbers[1:] > numbers[:-1]).all())
 
 
 def choose_columns(table: pa.Table, choices: ReadChoices) -> Layout:
-    """Return the roles of the columns; the user may have chosen some of them.
+    """Return the roles of a table's columns: those that the user has chosen, the others guessed.
 
     Raises:
         LogError: there is no such column, or it is not numeric.

@@ -21,19 +21,20 @@ _is_number = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?").fullmatch
 
 
 def escape_formula(text: str) -> str:
-    """Return a text with a ' before it if a spreadsheet would compute it, so that it is shown; numbers stay numbers."""
+    """Return a text with a ' in front if a spreadsheet would take it for a formula; numbers are unchanged."""
     return f"'{text}" if _is_risky(text) and not _is_number(text) else text
 
 
 def restore_formula(text: str) -> str:
-    """Return the text that `escape_formula` was given."""
+    """Return the original of a text returned by `escape_formula`."""
     return re.sub(WRITTEN, r"\1", text)
 
 
 def write_csv(frame: pd.DataFrame, handle: Any) -> None:
-    """Write a frame as CSV; in cells and names of columns, what a spreadsheet would take for a formula is escaped.
+    """Write a frame as CSV; cells and names of columns that a spreadsheet would take for formulas are escaped.
 
     Args:
+        frame: The frame.
         handle: An open file, of text or of bytes.
     """
     escaped = frame.copy(deep=False)
@@ -45,7 +46,7 @@ def write_csv(frame: pd.DataFrame, handle: Any) -> None:
         cells = column.tolist()
         texts = {cell for cell in cells if isinstance(cell, str)}
         if any("\r" in text for text in texts):
-            # Not quoted by itself, although a carriage return ends a row.
+            # pandas does not quote a carriage return by itself, although it ends a row.
             quoting = csv.QUOTE_NONNUMERIC
         if changed := {text: safe for text in texts if (safe := escape_formula(text)) != text}:
             escaped.isetitem(
@@ -53,7 +54,7 @@ def write_csv(frame: pd.DataFrame, handle: Any) -> None:
                 [changed.get(cell, cell) if isinstance(cell, str) else cell for cell in cells],
             )
     heading = [escape_formula(str(name)) for name in frame.columns]
-    # Floats are written as their shortest exact text, time spans as pandas prints them.
+    # pandas writes floats as their shortest exact text, and time spans as it prints them.
     escaped.to_csv(
         handle, header=heading, index=False, quoting=quoting, lineterminator="\n", encoding="utf-8"
     )

@@ -53,7 +53,7 @@ _LAST_MONTH = 12
 
 
 def is_moment(cell: str) -> bool:
-    """Return whether a cell is a date, a time of day with seconds, both, also in brackets, or a time span."""
+    """Return whether a cell is a date, a time of day with seconds, or both, perhaps in brackets, or a time span."""
     return (_MOMENT_CELL.fullmatch(cell) or re.fullmatch(SPAN, cell)) is not None
 
 
@@ -70,7 +70,7 @@ def is_clock(cell: str) -> bool:
 def normalize_dates(texts: Any) -> Any:
     """Return texts with dates as year-month-day, without blanks and brackets around them; other texts may change, too.
 
-    Dates with the year at the end begin with the day, unless one of the texts can only begin with the month.
+    Dates with the year at the end are read as day first, unless in one of the texts only the month can be first.
     """
     texts = pc.utf8_trim_whitespace(texts)
     if not pc.any(pc.invert(pc.match_substring_regex(texts, _USUAL))).as_py():
@@ -82,7 +82,7 @@ def normalize_dates(texts: Any) -> Any:
 
 
 def order_is_guessed(texts: Any) -> bool:
-    """Return whether there are different dates with the year at the end, all of which could begin with day or month."""
+    """Return whether there are different dates with the year at the end, which could all begin with day or month."""
     texts = _replace_patterns(texts, _REWRITTEN[:1])
     first, second = _find_largest_parts(texts)
     if not 0 < max(first, second) <= _LAST_MONTH:
@@ -104,7 +104,10 @@ def _replace_patterns(texts: Any, changes: Sequence[tuple[str, str]]) -> Any:
 
 
 def _find_largest_parts(texts: Any) -> tuple[int, int]:
-    """Return the largest first and the largest second number of dates with the year at the end; 0 if there are none."""
+    """Return the largest first number and the largest second number of dates with the year at the end.
+
+    Both are 0 without such dates.
+    """
     parts: Any = pc.extract_regex(texts, _YEAR_AT_END)
     numbers = (pc.cast(pc.struct_field(parts, name), pa.int64()) for name in ("first", "second"))
     first, second = (pc.max(number).as_py() or 0 for number in numbers)

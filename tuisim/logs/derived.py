@@ -50,7 +50,7 @@ _EVEN = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """The definition of a derived variable."""
+    """The definition of a derived variable: its name and its expression."""
 
     name: str
     expression: str
@@ -60,7 +60,7 @@ class Definition:
 
 
 def parse_definition(text: str) -> Definition:
-    """Parse a line such as `speed = slope(distance)`; without a name the expression is the name.
+    """Return the definition in a line such as `speed = slope(distance)`; without a name, the expression is the name.
 
     Raises:
         LogError: there is neither a name nor an expression.
@@ -78,12 +78,14 @@ def parse_definition(text: str) -> Definition:
 
 
 def compute_derived(log: Log, definition: Definition, otherwise: str) -> list[Series]:
-    """Return the series of a definition, one for each run that has the first variable of its expression.
+    """Return the series of a derived variable, one for each run that has the first variable of its expression.
 
     Variables sampled at other times are forward-filled; columns are read in the row of each sample.
 
     Args:
-        otherwise: The variable whose samples count if the expression has none.
+        log: The log.
+        definition: The definition of the variable.
+        otherwise: The variable at whose samples an expression without variables is computed.
 
     Raises:
         LogError: the expression is invalid, or names an unknown variable; or the name exists already.
@@ -96,7 +98,7 @@ def compute_derived(log: Log, definition: Definition, otherwise: str) -> list[Se
     names = find_names(definition.expression)
     known = {name.partition(" #")[0] for name in log.names} | set(log.names)
     first = next((name for name in names if name in known), otherwise.partition(" #")[0])
-    # One series for each run, unless the definition names a single run.
+    # Each run has a series, unless the definition names a single run.
     bases = [log.series(name) for name in log.names if first in (name, name.partition(" #")[0])]
     alone = len(bases) == 1
     return [
@@ -128,7 +130,7 @@ def _compute_series(log: Log, definition: Definition, names: Sequence[str], base
 
 
 def _sample_column(log: Log, name: str, base: Series) -> FloatArray:
-    """Return the values of a variable or column at each sample of the base."""
+    """Return the values of a variable or column at each sample of another series."""
     for candidate in (name, f"{name} #{base.run}"):
         if candidate in log.names:
             series = log.series(candidate)
@@ -146,20 +148,20 @@ def _sample_column(log: Log, name: str, base: Series) -> FloatArray:
 
 
 def _list_names(log: Log) -> list[str]:
-    """Return the names of variables, without numbers of runs, and of columns with numbers."""
+    """Return the names of a log's variables, without numbers of runs, and of its columns with numbers."""
     variables = (name.partition(" #")[0] for name in log.names)
     return [*dict.fromkeys((*variables, *list_numeric_columns(log.table.schema), TIME))]
 
 
 def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
-    """Return functions that compute columns which a log of telemetry lacks, by the names of the columns."""
+    """Return the columns that can be computed for a log of telemetry: functions by the names of the columns."""
     if (spec := read_spec(log.metadata)) is None:
         return {}
     return find_lacking_columns(spec, list_numeric_columns(log.table.schema), log.numbers)
 
 
 def list_expression_words(log: Log) -> Iterator[str]:
-    """Yield the words allowed in an expression: variables, columns, functions."""
+    """Yield the words that an expression may contain: variables, columns, functions."""
     yield from (name if name.isidentifier() else f"`{name}`" for name in _list_names(log))
     yield from find_computed_columns(log)
     yield from (f"{name}(" for name in (*SIGNALS, *FUNCTIONS))
@@ -167,7 +169,7 @@ def list_expression_words(log: Log) -> Iterator[str]:
 
 
 def find_named_columns(log: Log, text: str) -> list[str]:
-    """Return the names in `find_computed_columns` that a text contains."""
+    """Return the names in a text of columns that can be computed for a log, see `find_computed_columns`."""
     if not text.strip():
         return []
     return [name for name in find_computed_columns(log) if re.search(rf"\b{name}\b", text)]
@@ -177,7 +179,7 @@ def add_named_columns(log: Log, text: str) -> Log:
     """Return a log with the computed columns that a text names, see `find_named_columns`."""
     for name in find_named_columns(log, text):
         log = log.add_derived(name, compute_derived(log, Definition(name, name), log.names[0]))
-        # A damaged file may have something else as its units.
+        # In a damaged file, the units may be of another type.
         if isinstance(units := log.metadata.get("units"), dict):
             log = replace(
                 log, metadata={**log.metadata, "units": {**units, name: parse_unit(name).words}}
@@ -189,6 +191,7 @@ def read_spec(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
     """Return the specification of a run from the metadata of a log; None if they have none, or are damaged.
 
     Args:
+        metadata: The metadata.
         run: Index of the run among those of the log, from 0.
     """
     try:
@@ -201,7 +204,7 @@ def read_spec(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
 
 
 def _read_scale_changes(metadata: Mapping[str, Any]) -> Iterator[ScaleChange]:
-    """Yield the changes of scales of the first run of a log, without damaged ones."""
+    """Yield the changes of motor scales in the first run of a log, without damaged ones."""
     for change in metadata["runs"][0].get(SCALES, ()):
         match change:
             case int(tick), str(port), int(scale) | float(scale) if scale:
@@ -230,7 +233,7 @@ RECKONED_COLUMNS = ("reckoned_x_mm", "reckoned_y_mm", "reckoned_heading_deg", "e
 
 
 def build_reckoned_series(log: Log) -> list[Series]:
-    """Return a series for each name of `RECKONED_COLUMNS`.
+    """Return the pose by dead reckoning in a log of telemetry: a series for each name of `RECKONED_COLUMNS`.
 
     Raises:
         LogError: the log is not telemetry, or has no metadata of the robot.

@@ -29,14 +29,14 @@ def is_json_start(lines: Sequence[str]) -> bool:
 
 
 def has_objects(lines: Sequence[str]) -> bool:
-    """Return whether there are several lines, and most of them are a JSON object each."""
+    """Return whether there are several lines, most of which are a JSON object each."""
     return len(lines) > 1 and 2 * sum(
         line.lstrip().startswith("{") and is_row(line) for line in lines
     ) > len(lines)
 
 
 class DocumentReader:
-    """Reads one file of JSON: collects its blocks, and parses them at the end."""
+    """Reads a file that is one JSON document: collects its blocks, and parses them at the end."""
 
     def __init__(self, notes: Notes, choices: ReadChoices) -> None:
         self._notes = notes
@@ -44,7 +44,7 @@ class DocumentReader:
         self._text = ""
 
     def read(self, block: Block) -> None:
-        """Keep a block.
+        """Add a block of the file.
 
         Raises:
             LogError: the file is too large.
@@ -57,7 +57,9 @@ class DocumentReader:
             )
 
     def finish(self) -> pa.Table | None:
-        """Return the rows of the document, None if it has none; of a damaged one, the rows that have their own line.
+        """Return the rows of the document; None if it has none.
+
+        Of a damaged document, only the rows in a line of their own are returned.
 
         Raises:
             LogError: it is no table.
@@ -88,7 +90,10 @@ class DocumentReader:
         return build_json_reader(self._notes).build_table(objects) if any(objects[0][1]) else None
 
     def _build_from_lists(self, rows: Sequence[Any]) -> pa.Table | None:
-        """Return rows that are lists, the first of which may have the names, or single values."""
+        """Return a table of rows that are lists, the first of which may be the names, or single values.
+
+        The result is None without rows.
+        """
         text = io.StringIO()
         csv.writer(text, lineterminator="\n").writerows(
             row if isinstance(row, list) else [row] for row in rows
@@ -96,7 +101,7 @@ class DocumentReader:
         return CsvReader(self._notes, self._choices).read(Block(1, text.getvalue()))
 
     def _list_rows(self, value: Mapping[str, Any]) -> list[Any]:
-        """Return the rows in an object: of its only table, of its columns, or the object itself."""
+        """Return the rows in a JSON object: those of its only table or of its columns, or the object itself."""
         inner = [name for name, cells in value.items() if _is_table(cells)]
         if len(inner) > 1:
             raise LogError(f"has several tables: {listed(map(repr, inner))}", _ALLOWED)
@@ -123,7 +128,7 @@ def _is_table(value: Any) -> bool:
 
 
 def _list_rows(columns: Mapping[str, Any]) -> list[Any]:
-    """Return columns as rows.
+    """Return columns, lists by name, as rows.
 
     Raises:
         LogError: their lengths differ.

@@ -57,7 +57,7 @@ def check_target(path: str | Path, others: Sequence[str] = ()) -> Path:
 
 
 def check_targets(targets: Iterable[str | Path]) -> None:
-    """Check that all files can be written, and that none is named twice.
+    """Check that all files can be written, and that no file is named twice.
 
     Raises:
         ConfigError: two of them are the same file.
@@ -93,16 +93,17 @@ def check_place(place: Path) -> None:
         with tempfile.TemporaryFile(dir=place.parent):
             pass
     except OSError as error:
-        # This is also the error if the name is too long for the file system.
+        # A name that is too long for the file system also raises this error.
         raise ExportError(f"cannot write {place}: {error.strerror or error}") from error
 
 
 def export_frame(frame: pd.DataFrame, path: str | Path, metadata: Metadata) -> None:
-    """Write a frame in the format of the suffix; existing files are replaced.
+    """Write a frame in the format of the path's suffix; an existing file is replaced.
 
     Args:
         frame: Columns of numbers, texts and time spans.
-        metadata: Stored with it, ready for JSON. It must be the same for identical runs.
+        path: The file.
+        metadata: Stored with the frame, ready for JSON. It must be the same for identical runs.
 
     Raises:
         ExportError: it cannot be written; an existing file is unchanged.
@@ -121,7 +122,7 @@ def export_frame(frame: pd.DataFrame, path: str | Path, metadata: Metadata) -> N
 
 
 def export_samples(runs: Sequence[StoredRun], path: str | Path) -> int:
-    """Write the samples of one or more runs, see `frames.build_samples_frame`; return how many rows there are.
+    """Write the samples of one or more runs, see `frames.build_samples_frame`; return the number of rows.
 
     Raises:
         ExportError: it cannot be written.
@@ -136,7 +137,7 @@ def export_samples(runs: Sequence[StoredRun], path: str | Path) -> int:
 
 
 def export_telemetry(run: StoredRun, path: str | Path) -> int:
-    """Write every tick of a run, see `frames.build_telemetry_frame`; return how many rows there are.
+    """Write every tick of a run, see `frames.build_telemetry_frame`; return the number of rows.
 
     Raises:
         ExportError: it cannot be written.
@@ -151,11 +152,12 @@ def export_telemetry(run: StoredRun, path: str | Path) -> int:
 
 
 def export_log(log: Log, table: LogTable, path: str | Path) -> None:
-    """Write rows and columns of a log in the format of the suffix; existing files are replaced.
+    """Write rows and columns of a log in the format of the path's suffix; an existing file is replaced.
 
     Args:
         log: The log, whose metadata are stored with the rows.
         table: Some of its rows and columns, in any order.
+        path: The file.
 
     Raises:
         ExportError: it cannot be written; an existing file is unchanged.
@@ -179,7 +181,7 @@ def build_typed_frame(table: LogTable) -> pd.DataFrame:
     import numpy as np
     import pandas as pd
 
-    # What pandas has stored about its types may be damaged.
+    # The metadata of pandas are dropped, as they may be damaged.
     frame = table.replace_schema_metadata().to_pandas()
     for name in frame.columns:
         column = frame[name]
@@ -232,7 +234,7 @@ def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) 
 
 
 def build_table_metadata(table: str, columns: Iterable[str]) -> dict[str, Any]:
-    """Return what the metadata of every table have: their format, what the table is, and its columns' names."""
+    """Return the metadata that every table has: its format, what the table is, and its columns' names."""
     return {"format": LOG_FORMAT, "table": table, "columns": list(columns)}
 
 
@@ -245,7 +247,7 @@ Metadata = Mapping[str, Any]
 
 
 def describe_files(target: Path) -> str:
-    """Return the names of the files of an export: the file, and its companion if there is one."""
+    """Return the names of the files of an export: the file, and the companion file with metadata, if there is one."""
     exporter = EXPORTERS.get(target.suffix.lower())
     beside = (
         f"; what it is and its units: {find_companion(target).name}"
@@ -256,17 +258,17 @@ def describe_files(target: Path) -> str:
 
 
 def is_companion(path: Path) -> bool:
-    """Return whether a file has the name of one with the metadata of an export."""
+    """Return whether a file has the name of a companion file with the metadata of an export."""
     return path.suffix.lower() == ".json" and Path(path.stem).suffix.lower() in EXPORTERS
 
 
 def find_companion(path: Path) -> Path:
-    """Return the file for the metadata of a file in a format without metadata."""
+    """Return the path of the companion file with the metadata of a file whose format has none."""
     return path.with_name(path.name + ".json")
 
 
 class Exporter(NamedTuple):
-    """A file format of exports."""
+    """A file format of exports, with the function that writes it."""
 
     write: Callable[[pd.DataFrame, Metadata, BinaryIO], None]
     contents: str
@@ -288,7 +290,7 @@ def _write_jsonl(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> N
     ]
     for values in zip(*(column.tolist() for column in columns), strict=True):
         row = {name: _convert_cell(value) for name, value in zip(names, values, strict=True)}
-        # Dates and the like are written as text.
+        # Dates and similar values are written as text.
         handle.write(
             json.dumps(row, ensure_ascii=False, default=str).encode(errors="backslashreplace")
             + b"\n"
@@ -296,7 +298,7 @@ def _write_jsonl(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> N
 
 
 def _convert_cell(value: Any) -> Any:
-    """Return a cell for JSON: arrays as lists, None for NaN, which is not equal to itself."""
+    """Return a cell for JSON: arrays become lists, and NaN becomes None."""
     plain = value.tolist() if hasattr(value, "tolist") else value
     return plain if plain == plain else None
 

@@ -94,6 +94,7 @@ def evaluate(
     Args:
         text: The expression; a column name that is not a Python identifier is written in backticks.
         columns: Arrays of one length by name.
+        functions: The functions that it may call, by name.
 
     Returns:
         Shape (n,); conditions are 1 where they are true and 0 elsewhere.
@@ -110,7 +111,7 @@ def evaluate(
 
 
 def find_names(text: str) -> list[str]:
-    """Return the columns in an expression, in order of first appearance.
+    """Return the names of the columns in an expression, in order of first appearance.
 
     Raises:
         LogError: it cannot be parsed.
@@ -126,7 +127,7 @@ def find_names(text: str) -> list[str]:
 
 
 def _read(text: str) -> tuple[ast.Expression, dict[str, str]]:
-    """Return a parsed expression, and the names in backticks by the placeholders that replace them."""
+    """Return a parsed expression, and its names in backticks by the placeholders that replace them."""
     if len(text) > MAX_CHARS:
         raise LogError(f"the expression has {len(text)} characters", f"at most {MAX_CHARS}")
     names: dict[str, str] = {}
@@ -151,13 +152,13 @@ def _parse(source: str, text: str) -> ast.Expression:
         )
         message = f"cannot read the expression {text!r}{where}: {error.msg}"
         raise LogError(message, f"allowed are {ALLOWED}") from error
-    # ValueError: a null character; the others: too deeply nested for the parser.
+    # A null character raises ValueError; nesting too deep for the parser raises the others.
     except (ValueError, RecursionError, MemoryError) as error:
         raise LogError(f"cannot read the expression {text[:60]!r}") from error
 
 
 class _Evaluation:
-    """The evaluation of one expression; `names` are those in backticks by their placeholders."""
+    """The evaluation of one expression; `names` has its names in backticks by their placeholders."""
 
     def __init__(
         self,
@@ -172,10 +173,10 @@ class _Evaluation:
         self._functions = functions
 
     def value(self, node: ast.expr) -> Any:
-        """Return the value of a node: an array or a number.
+        """Return the value of a node of the expression: an array or a number.
 
         Raises:
-            LogError: it is not allowed in expressions.
+            LogError: the node is not allowed in expressions.
         """
         match node:
             case ast.Constant(value=bool() | int() | float() as number):

@@ -78,7 +78,7 @@ def read_log(
         error.message, error.hint = _name_arguments(error.message), _name_arguments(error.hint)
         raise
     for note in log.notes:
-        # The caller of `tuisim.read_log`, which checks the names of its arguments in between.
+        # Stack level 3 is the caller of `tuisim.read_log`: a wrapper, which checks its arguments, is in between.
         warnings.warn(f"{log.title}: {_name_arguments(note)}", stacklevel=3)
     layout = log.layout
     rows = log.table
@@ -91,12 +91,12 @@ def read_log(
 
 
 def _name_arguments(text: str) -> str:
-    """Return a text that names the arguments of `read_log` where it names the options of a command."""
+    """Return a text in which the options of a command are replaced by the arguments of `read_log`."""
     return re.sub(r"--(\w+)( (?=\d))?", r"\1=", text)
 
 
 def _read_export(source: Path) -> pd.DataFrame | None:
-    """Return the frame in an exported file; None if it is another file."""
+    """Return the frame in a file that tuisim exported; None if it is another file."""
     exporter = EXPORTERS.get(source.suffix.lower())
     if exporter is None or not os.path.isfile(source):
         return None
@@ -108,7 +108,7 @@ def _read_export(source: Path) -> pd.DataFrame | None:
         if not exporter.companion and arrow.METADATA_KEY not in (table.schema.metadata or {}):
             return None
         frame = build_typed_frame(table) if exporter.companion else table.to_pandas()
-    # Text that is not UTF-8 or not JSON, and all errors of Arrow.
+    # These are raised for text that is not UTF-8 or not JSON, and by Arrow.
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise LogError(f"cannot be read: {error}", file=str(source)) from error
     if notes.texts():
@@ -117,7 +117,7 @@ def _read_export(source: Path) -> pd.DataFrame | None:
 
 
 def _read_exported(source: Path, notes: Notes) -> pa.Table:
-    """Return the table in an exported file; `notes` receives what is wrong with it."""
+    """Return the table in a file that tuisim exported; faults in it are added to `notes`."""
     suffix = source.suffix.lower()
     if suffix == ".csv":
         return read_exported_csv(source.read_bytes().decode())
@@ -131,11 +131,11 @@ def _read_exported(source: Path, notes: Notes) -> pa.Table:
 
 
 def _build_column(name: str, rows: Sequence[Mapping[str, Any]]) -> pa.Array:
-    """Return a column of exported rows with the type that all its cells have."""
+    """Return a column of exported rows with a type that fits all its cells."""
     if not rows:
         return pa.nulls(0, pa.string() if name in (*TIMEDELTA, *TEXT) else pa.float64())
     column = pa.array([row[name] for row in rows])
-    # Of numbers and truth values, a missing one is not a number.
+    # A missing number or truth value becomes NaN.
     is_number = pa.types.is_null(column.type) or pa.types.is_boolean(column.type)
     return column.cast(pa.float64()) if column.null_count and is_number else column
 
@@ -143,7 +143,13 @@ def _build_column(name: str, rows: Sequence[Mapping[str, Any]]) -> pa.Array:
 def build_even_frame(
     all_series: Sequence[Series], period_s: float, between: Between
 ) -> pd.DataFrame:
-    """Return the values of each series at a fixed period: one column each, with unique names."""
+    """Return the values of each series at a fixed period: one column for each series, with unique names.
+
+    Args:
+        all_series: The series.
+        period_s: The period in seconds.
+        between: The interpolation between samples.
+    """
     start_s = min(float(series.time_s.min()) for series in all_series)
     stop_s = max(float(series.time_s.max()) for series in all_series)
     moments_s = build_even_moments(start_s, stop_s, period_s)
@@ -153,7 +159,7 @@ def build_even_frame(
 def _build_sampled_frame(
     moments_s: FloatArray, all_series: Sequence[Series], between: Between = Between.HOLD
 ) -> pd.DataFrame:
-    """Return the values of each series at given times: one column each, with unique names."""
+    """Return the values of each series at given times: one column for each series, with unique names."""
     import pandas as pd
 
     names = arrow.make_names_unique(["time", *(series.name for series in all_series)])
@@ -165,10 +171,10 @@ def _build_sampled_frame(
 
 
 def build_computed_frame(log: Log, expression: str) -> pd.DataFrame:
-    """Return a log with one column per variable, and a column `result` with the value of an expression over them.
+    """Return a log with a column for each variable, and a column `result` with the value of an expression.
 
     Raises:
-        LogError: the expression is invalid, or names a column that there is not.
+        LogError: the expression is invalid, or names a column that does not exist.
     """
     frame = _build_wide_frame(log)
     columns = {str(name): frame[name].to_numpy(np.float64) for name in frame.columns}
@@ -177,7 +183,7 @@ def build_computed_frame(log: Log, expression: str) -> pd.DataFrame:
 
 
 def _build_wide_frame(log: Log) -> pd.DataFrame:
-    """Return a log with one column per variable; if its variables share a column, they are forward-filled."""
+    """Return a log with a column for each variable; variables that share a column in the log are forward-filled."""
     import pandas as pd
 
     if not log.layout.variable:

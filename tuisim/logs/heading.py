@@ -43,7 +43,7 @@ _MAX_LINES, _MAX_JOINS = 100, 100
 
 @dataclass(frozen=True, slots=True)
 class Heading:
-    """Where a table begins in a text, and how it is written."""
+    """The beginning of a table in a text: its first row, the names of its columns, and its separator."""
 
     names: tuple[str, ...] = ()
     """Names of the columns; empty if there were only comments."""
@@ -69,7 +69,10 @@ class _Line(NamedTuple):
 
 
 class _Rank(NamedTuple):
-    """How certainly some lines are the rows of a table, to be compared: what matters most comes first."""
+    """How certainly some lines are the rows of a table.
+
+    Ranks are compared by their fields, the most important first.
+    """
 
     is_table: bool
     """Whether there are several columns, and numbers."""
@@ -82,7 +85,7 @@ class _Rank(NamedTuple):
 
 
 class _Run(NamedTuple):
-    """Lines that follow each other, with the same number and kinds of cells."""
+    """Consecutive lines with the same number and kinds of cells."""
 
     start: int
     length: int
@@ -90,7 +93,7 @@ class _Run(NamedTuple):
 
     @property
     def rank(self) -> _Rank:
-        """How certainly these are the rows of a table."""
+        """How certainly these lines are the rows of a table."""
         numbers = sum(kind in "nt" for kind in self.kinds)
         words = -self.kinds.count("w")
         width = len(self.kinds)
@@ -98,7 +101,7 @@ class _Run(NamedTuple):
 
 
 def parse_kinds(cells: Sequence[str]) -> str:
-    """Return a letter for each cell: `n` for a number, `t` for a time, `-` for nothing, `w` for words."""
+    """Return a letter for the kind of each cell: `n` for a number, `t` for a time, `-` for nothing, `w` for words."""
     return "".join(map(_classify_cell, cells))
 
 
@@ -116,10 +119,11 @@ def _classify_cell(cell: str) -> str:
 def find_heading(
     lines: Sequence[tuple[int, str]], notes: Notes, separator: str, header_row: int
 ) -> Heading:
-    """Find the table in the first lines of a text.
+    """Return where a table begins in the first lines of a text.
 
     Args:
         lines: Those that are not blank, each with its number in the file.
+        notes: Receives what was guessed.
         separator: One of `SEPARATORS` or `BLANKS`; empty to find it.
         header_row: Number of the line with the heading; 0 to find it.
 
@@ -132,7 +136,7 @@ def find_heading(
     else:
         separator, lines = _read_excel_line(lines, separator)
         comments, lines = _split_comments(lines)
-    # Other signs may also begin a row below: percent signs, a row of units.
+    # Only `#` marks comments below: a row of units, too, may begin with a percent sign.
     has_comments = bool(comments) and comments[0][1].startswith("#")
     if not lines:
         return Heading(has_comments=has_comments)
@@ -160,7 +164,7 @@ def find_heading(
 
 
 def _skip_to(lines: Sequence[tuple[int, str]], row: int) -> Sequence[tuple[int, str]]:
-    """Return the lines from one on; raise a LogError if there is none with its number."""
+    """Return the lines from the one with a number on; raise LogError if no line has that number."""
     lines = [line for line in lines if line[0] >= row]
     if not lines or lines[0][0] != row:
         raise LogError(f"has no line {row} for --header", "lines count from 1")
@@ -170,7 +174,7 @@ def _skip_to(lines: Sequence[tuple[int, str]], row: int) -> Sequence[tuple[int, 
 def _read_excel_line(
     lines: Sequence[tuple[int, str]], separator: str
 ) -> tuple[str, Sequence[tuple[int, str]]]:
-    """Return the separator, and the lines without a first one such as `sep=;`, in which Excel names the separator."""
+    """Return the separator, and the lines without a first line such as `sep=;`, in which Excel gives the separator."""
     excel = _EXCEL.fullmatch(lines[0][1])
     return (separator or excel[1], lines[1:]) if excel else (separator, lines)
 
@@ -178,7 +182,7 @@ def _read_excel_line(
 def _split_comments(
     lines: Sequence[tuple[int, str]],
 ) -> tuple[Sequence[tuple[int, str]], Sequence[tuple[int, str]]]:
-    """Return the comments above a table, and the other lines."""
+    """Return the comment lines above a table, and the other lines."""
     texts = [text for _, text in lines]
     sign = next((sign for sign in _COMMENT_SIGNS if texts and texts[0].startswith(sign)), "")
     rest = [text for text in texts if not text.startswith(sign)]
@@ -190,7 +194,10 @@ def _split_comments(
 
 
 def _read_comment(comment: tuple[int, str], below: _Line, separator: str) -> _Line | None:
-    """Return a comment as a line of names; None if it has more or fewer words than the line below it has cells."""
+    """Return a comment as a line of column names.
+
+    The result is None if its number of words is not that of the cells in the next line.
+    """
     row, text = comment
     names = [name.strip() for name in split_cells(text.lstrip("#%/; \t"), separator)]
     kinds = parse_kinds(names)
@@ -204,12 +211,12 @@ def _tell_unread(lines: Sequence[_Line], where: str, notes: Notes) -> None:
 
 
 def _clean_names(names: Sequence[str], notes: Notes) -> tuple[str, ...]:
-    """Return names of columns without line breaks, all different."""
+    """Return column names without line breaks, changed to be unique."""
     return tuple(make_names_unique([" ".join(name.split()) for name in names], notes))
 
 
 def split_cells(line: str, separator: str) -> list[str]:
-    """Return the cells of a line; an unclosed quote is an ordinary character."""
+    """Return the cells of a line; a quote that is not closed is an ordinary character."""
     if separator == BLANKS:
         return [word.strip('"') for word in _WORD.findall(line)]
     try:
@@ -219,7 +226,7 @@ def split_cells(line: str, separator: str) -> list[str]:
 
 
 def close_quotes(text: str, separator: str) -> str:
-    """Return a text without blanks between separators and the quotes of cells."""
+    """Return a text without the blanks between separators and the quotes around cells."""
     if '"' not in text:
         return text
     sign = re.escape(separator)
@@ -236,11 +243,14 @@ def _split_lines(lines: Sequence[tuple[int, str]], separator: str) -> list[_Line
 def split_rows(
     lines: Sequence[tuple[int, str]], separator: str, width: int
 ) -> Iterator[tuple[int, list[str], int]]:
-    """Yield the line of each row, its cells, and the next line; a quoted cell may span lines.
+    """Yield for each row its line number, its cells, and the number of the next row's line.
+
+    A quoted cell may span lines.
 
     Args:
         lines: Each with its number in the file; blank ones are skipped.
-        width: Number of cells of a row; 0 if it is that of the line below.
+        separator: The separator of cells.
+        width: Number of cells of a row; 0 if it is that of the next line.
     """
     # Searching for the end of each unclosed quote, an ordinary character, would be too slow.
     joins_left = _MAX_JOINS
@@ -261,7 +271,10 @@ def split_rows(
 def _join_lines(
     lines: Sequence[tuple[int, str]], start: int, separator: str, width: int
 ) -> tuple[list[str], int]:
-    """Return the cells of a row with line breaks between quotes, none if it has none, and the index of the next one."""
+    """Return the cells of a row that spans several lines, and the index of the line after it.
+
+    There are no cells if the row does not span lines.
+    """
     texts = [text for _, text in lines[start : start + _MAX_LINES]]
     reader = csv.reader([text + "\n" for text in texts], delimiter=separator, strict=True)
     try:
@@ -279,9 +292,9 @@ def _join_lines(
 
 
 def sniff_separator(lines: Sequence[str]) -> str:
-    """Return the separator with which lines are most certainly rows of a table, one of `SEPARATORS` or `BLANKS`."""
+    """Return the separator, one of `SEPARATORS` or `BLANKS`, with which lines are most certainly rows of a table."""
     ranks = {sign: _rank_separator(lines, sign) for sign in (*SEPARATORS, BLANKS)}
-    # Without any number, the separator is the one that the lines have equally often.
+    # Without any number, the separator that all lines have equally often is the best.
     best = max(SEPARATORS, key=lambda sign: (ranks[sign].width > 1, ranks[sign]))
     signs = ranks[best]
     blanks = ranks[BLANKS]
@@ -307,7 +320,7 @@ def _has_inner_commas(lines: Sequence[str]) -> bool:
 
 
 def _find_table(table: Sequence[_Line]) -> _Run:
-    """Return the run that is the table: the first of those that begin with numbers, else the most certain one."""
+    """Return the lines that are the table: the first long run that begins with numbers, else the most certain run."""
     runs = list(_find_runs(table))
     best = max(runs, key=lambda run: run.rank._replace(is_table=run.rank.numbers > 0))
     strong = [run for run in runs if run.kinds[0] in "nt" and run.rank.is_table]
@@ -329,7 +342,10 @@ def _find_runs(table: Sequence[_Line]) -> Iterator[_Run]:
 
 
 def _merge_kinds(kinds: str, others: str) -> str | None:
-    """Return the kinds of cells that two lines have in common, an empty cell being of any kind; None if they differ."""
+    """Return the common kinds of the cells of two lines, where an empty cell can be of any kind.
+
+    The result is None if they differ.
+    """
     pairs = list(zip(kinds, others, strict=False))
     if len(kinds) != len(others) or any(a != b and "-" not in (a, b) for a, b in pairs):
         return None
@@ -337,7 +353,10 @@ def _merge_kinds(kinds: str, others: str) -> str | None:
 
 
 def _find_first_row(table: Sequence[_Line], run: _Run) -> int:
-    """Return the index of the table's first row: rows above a run belong to it even if a cell is of another kind."""
+    """Return the index of the table's first row, given the run of its typical rows.
+
+    Rows directly above the run belong to the table even if one of their cells is of another kind.
+    """
     start = run.start
     while start and _is_row(table[start - 1].kinds, run.kinds):
         start -= 1
@@ -351,19 +370,22 @@ def _is_row(kinds: str, usual: str) -> bool:
 
 
 def has_numbers(kinds: str) -> bool:
-    """Return whether one of cells of these kinds is a number or a time."""
+    """Return whether at least one cell of some kinds is a number or a time."""
     return not {"n", "t"}.isdisjoint(kinds)
 
 
 def is_words(kinds: str) -> bool:
-    """Return whether cells of these kinds may be names: there are words, and no numbers."""
+    """Return whether cells of some kinds can be names: there are words, and no numbers."""
     return "w" in kinds and "n" not in kinds
 
 
 def _find_names(
     table: Sequence[_Line], above: list[_Line], start: int, run: _Run
 ) -> tuple[list[str] | None, list[_Line], int]:
-    """Return the names of the columns, None without a heading; the lines above it; and the index of the first row."""
+    """Return the names of a table's columns, the lines above its heading, and the index of its first row.
+
+    The names are None if the table has no heading.
+    """
     width = len(run.kinds)
     if above:
         *before, last = above
@@ -373,7 +395,7 @@ def _find_names(
                 return list(starmap(_join_unit, pairs)), before[:-1], start
             return last.cells, before, start
         if is_words(last.kinds) and len(last.kinds) > 1 and abs(len(last.kinds) - width) == 1:
-            # R writes no name above the names of rows; a separator may end each row.
+            # R writes no name above the names of rows, and some programs end each row with a separator.
             if len(last.kinds) > width or run.kinds[-1] == "-":
                 return last.cells, before, start
             if not before and run.kinds[0] != "t":
@@ -387,7 +409,7 @@ def _find_names(
 
 
 def _join_unit(name: str, unit: str) -> str:
-    """Return a name with the unit from the row below it in brackets, unless the name has a unit itself."""
+    """Return a column's name with the unit from the next row in brackets, unless the name has a unit itself."""
     name = name.strip()
     unit = unit.strip(" ()[]")
     has_unit = (
@@ -404,7 +426,7 @@ def _has_units(cells: Sequence[str], names: _Line) -> bool:
 
 
 def _has_names(rows: Sequence[_Line]) -> bool:
-    """Return whether the first row is a heading although its cells are of the same kinds as those of the other rows."""
+    """Return whether the first row is a heading, given that its cells are of the same kinds as those of the others."""
     first = rows[0]
     if first.kinds[0] == "t" and (len(rows) < 2 or rows[1].kinds[0] == "t"):
         return False
@@ -415,10 +437,11 @@ def _has_names(rows: Sequence[_Line]) -> bool:
 
 
 def _number_columns(cells: Sequence[str], notes: Notes) -> list[str]:
-    """Return names for columns without a heading: one `date`, one `time`, the others with numbers.
+    """Return names for columns without a heading: one `date`, one `time`, the others `column` with a number.
 
     Args:
-        cells: Those of the first row.
+        cells: The cells of the first row.
+        notes: Receives a note about the names.
     """
     notes.say("no header: the columns are numbered")
     names: list[str] = []

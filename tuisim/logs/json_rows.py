@@ -15,7 +15,7 @@ from tuisim.logs.typed_columns import TypedColumns
 from tuisim.logs.warnings import Notes
 
 _NAMELESS = "(no name)"
-# Python prints more than JSON has: sets, bytes, numbers as names.
+# Python's output can contain values that JSON does not have, such as sets and bytes.
 _format_value = json.JSONEncoder(default=repr, skipkeys=True).encode
 
 Row = Mapping[str, Any]
@@ -23,11 +23,13 @@ Row = Mapping[str, Any]
 
 
 class ObjectReader:
-    """Reads blocks of lines of one file; names and types of the columns are fixed by the first block.
+    """Reads a file block by block, in which each line has objects.
+
+    The first block fixes names and types of the columns.
 
     Args:
-        parse: Returns the rows in a line, of which the number is given, too; none if it has none.
-        kind: What a line has to be, in the singular and in the plural.
+        parse: Returns the objects in a line, given its number and text; none if it has none.
+        kind: What a line must be, in the singular and in the plural.
     """
 
     def __init__(
@@ -39,7 +41,7 @@ class ObjectReader:
         self._columns = TypedColumns(notes, "")
 
     def read(self, block: Block) -> pa.Table | None:
-        """Return the rows of a block; None if it has none."""
+        """Return the objects in a block as a table; None if it has none."""
         numbered_rows: list[tuple[int, Row]] = []
         others: list[int] = []
         for number, line in block.lines():
@@ -53,7 +55,11 @@ class ObjectReader:
         return self.build_table(numbered_rows) if numbered_rows else None
 
     def build_table(self, numbered_rows: Sequence[tuple[int, Row]]) -> pa.Table:
-        """Return a table of objects, each of which comes with its row in the file."""
+        """Return objects as a table.
+
+        Args:
+            numbered_rows: The objects, each with its row in the file.
+        """
         names = dict.fromkeys(name for _, cells in numbered_rows for name in cells)
         texts = {
             _escape_surrogates(str(name)) or _NAMELESS: pa.array(
@@ -65,7 +71,7 @@ class ObjectReader:
 
 
 def build_json_reader(notes: Notes) -> ObjectReader:
-    """Return a reader of lines that are an object, or a list of objects, each."""
+    """Return a reader for a file each of whose lines is a JSON object, or a list of objects."""
     return ObjectReader(notes, lambda _, line: _parse_rows(line), "a JSON object", "JSON objects")
 
 
@@ -78,12 +84,15 @@ def _format_cell(cell: object) -> str | None:
 
 
 def _escape_surrogates(text: str) -> str:
-    """Return a text with surrogates, which are halves of characters, as escape sequences."""
+    """Return a text in which surrogates, halves of characters, are replaced by escape sequences."""
     return text if text.isascii() else text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def parse_value(line: str) -> Any:
-    """Return the value of a line in JSON, or as Python prints dictionaries and lists; None if it is neither."""
+    """Return the value of a line in JSON, or in the form in which Python prints dictionaries and lists.
+
+    The result is None for others.
+    """
     text = line.strip().removesuffix(",")
     # Values that are nested too deeply for a parser raise RecursionError or MemoryError.
     with suppress(ValueError, RecursionError):
@@ -99,7 +108,7 @@ def is_row(line: str) -> bool:
 
 
 def _parse_rows(line: str) -> list[dict[str, Any]]:
-    """Return the object, or the objects in the list, of a line; none if it is anything else."""
+    """Return the object in a line, or the objects in its list; empty for other lines."""
     value = parse_value(line)
     rows = value if isinstance(value, list) else [value]
     return rows if all(isinstance(row, dict) for row in rows) else []

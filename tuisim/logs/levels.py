@@ -19,7 +19,7 @@ from tuisim.logs.plateaus import Search, find_plateaus
 from tuisim.logs.stillness import FIELDS
 
 NEAR_PERCENT = 2.0
-"""Largest distance from a named grey."""
+"""Largest distance in percent at which a level gets the name of a grey."""
 
 FULL = 255.0
 
@@ -30,7 +30,7 @@ _PLAIN_NAMES = MappingProxyType({0: "black", 128: "grey", 255: "white", 211: "li
 
 @dataclass(frozen=True, slots=True)
 class Grey:
-    """A grey with a name."""
+    """A named grey of the course's mats."""
 
     name: str
     percent: float
@@ -39,7 +39,7 @@ class Grey:
 
 @cache
 def list_greys() -> Mapping[int, Grey]:
-    """Return the named greys by channel value, 0 to 255."""
+    """Return the named greys by their channel value, 0 to 255."""
     names = {
         red: name for name, (red, green, blue) in load_css_colors().items() if red == green == blue
     }
@@ -48,7 +48,7 @@ def list_greys() -> Mapping[int, Grey]:
 
 
 def find_nearest_greys(percents: FloatArray) -> list[Grey | None]:
-    """Return the grey nearest to each level of 0 to 100 %, None if none is within NEAR_PERCENT."""
+    """Return the named grey nearest to each level of 0 to 100 %; None if none is within `NEAR_PERCENT`."""
     named = list(list_greys().values())
     apart = np.abs(np.array([grey.percent for grey in named]) - percents[:, None])
     nearest = np.where((apart <= NEAR_PERCENT).any(axis=1), apart.argmin(axis=1), -1)
@@ -56,7 +56,7 @@ def find_nearest_greys(percents: FloatArray) -> list[Grey | None]:
 
 
 def undo_clamping(percents: FloatArray, noise: int) -> FloatArray:
-    """Return the true levels from the means of noisy pixels.
+    """Return the true levels in percent from the means of noisy pixels.
 
     Noise is uniform within ±`noise`, and values outside 0 to 255 are clamped, so that
     near both ends the mean is too far inside. The mean of a pixel of value 255 - u, u
@@ -73,7 +73,12 @@ def undo_clamping(percents: FloatArray, noise: int) -> FloatArray:
 
 
 def _undo_end_clamping(below: FloatArray, noise: int) -> FloatArray:
-    """Undo the clamping at one end of the scale; `below` are the distances of levels from this end."""
+    """Return the true distances of levels from one end of the scale, from the distances after clamping.
+
+    Args:
+        below: The distances after clamping.
+        noise: Light noise of the run.
+    """
     undone = np.maximum(0.0, 2.0 * np.sqrt(noise * np.maximum(below, 0.0)) - noise)
     return np.where(below >= noise, below, undone)
 
@@ -97,11 +102,11 @@ class Light(NamedTuple):
     """The sensor's reading of white, in percent."""
 
     def undo_response(self, percents: FloatArray) -> FloatArray:
-        """Return the greys of the mat that give readings, both 0 to 100."""
+        """Return the greys of the mat, 0 to 100 %, for which the sensor gives some readings, 0 to 100."""
         return (percents - self.black) / ((self.white - self.black) / 100.0)
 
     def seen(self, percents: FloatArray) -> FloatArray:
-        """Return the readings that greys of the mat give."""
+        """Return the sensor's readings, 0 to 100, for greys of the mat, 0 to 100 %."""
         return self.black + percents * ((self.white - self.black) / 100.0)
 
 
@@ -110,7 +115,7 @@ PLAIN_LIGHT = Light()
 
 
 def find_light(spec: RunSpec) -> Light:
-    """Return how the first colour sensor of a run reads the mat; without one, only the noise is known."""
+    """Return how the first colour sensor of a run reads the mat; without a sensor, only the noise is known."""
     noise = spec.world.noise.light
     for sensor in spec.robot.color_sensors:
         dark, span = find_response(sensor, spec.profile)
@@ -120,7 +125,7 @@ def find_light(spec: RunSpec) -> Light:
 
 @dataclass(frozen=True, eq=False)
 class Levels:
-    """The plateaus of the samples of one variable."""
+    """The plateaus of the samples of one variable, with their levels and greys."""
 
     start: IntArray
     """Shape (n,): first sample of each."""
@@ -142,8 +147,8 @@ def measure_levels(
     """Return the plateaus of samples, with their levels and greys.
 
     Args:
-        values: Shape (n,).
-        light: How they were read from the mat; None if they are not levels of light.
+        values: The samples, shape (n,).
+        light: How a sensor read them from the mat; None if they are not levels of light.
         search: Finds the plateaus.
     """
     finite = values[np.isfinite(values)]

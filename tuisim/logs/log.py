@@ -24,7 +24,7 @@ _NO_ROWS: IntArray = np.empty(0, np.int64)
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A variable of a run, and its rows in the table."""
+    """A variable of one run, with its rows in the table."""
 
     name: str
     """The variable; with several runs followed by ` #` and the run's number."""
@@ -37,7 +37,7 @@ class Member:
 
 
 def list_members(table: pa.Table, layout: Layout) -> list[Member]:
-    """Return the series of a table, in order of first appearance."""
+    """Return the variables of each run in a table, in order of first appearance."""
     runs, codes = _encode_column(table.column(layout.run)) if layout.run else ([0], _NO_ROWS)
     several = len(runs) > 1
     names: Sequence[Any] = [None]
@@ -46,7 +46,7 @@ def list_members(table: pa.Table, layout: Layout) -> list[Member]:
         names, name_codes = _encode_column(table.column(layout.variable))
         groups = range(len(names))
         if several:
-            # Often most pairs of variable and run do not occur: number only those that do.
+            # Only pairs of variable and run that occur are numbered, as often most do not.
             pairs = name_codes.astype(np.int64) * len(runs) + codes
             groups, codes = _encode_column(wrap_int64(pairs))
         else:
@@ -76,7 +76,7 @@ def _encode_column(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
             indices = [chunk.indices for chunk in column.chunks]
             places, codes = _encode_column(pa.chunked_array(indices, column.type.index_type))
             return [None if place is None else values[place] for place in places], codes
-        # Some writers have duplicates or nulls in the dictionary.
+        # Some writers put duplicates or nulls into the dictionary, so the column is decoded first.
         column = column.cast(column.type.value_type)
     column = column.dictionary_encode("encode")
     names = column.chunk(0).dictionary.to_pylist() if column.num_chunks else []
@@ -85,10 +85,10 @@ def _encode_column(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
 
 
 def _group_rows(codes: IntArray, count: int) -> list[IntArray]:
-    """Return the rows of each code from 0 to `count` - 1."""
+    """Return for each code from 0 to `count` - 1 the rows that have it."""
     if not count:
         return []
-    # Integers of one or two bytes are sorted in linear time.
+    # The codes are stored in one or two bytes if possible, as such integers are sorted in linear time.
     small = codes.astype(np.min_scalar_type(count))
     order = np.argsort(small, kind="stable")
     ends = np.cumsum(np.bincount(small, minlength=count))
@@ -97,7 +97,7 @@ def _group_rows(codes: IntArray, count: int) -> list[IntArray]:
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """One variable of one run, in the order of the table."""
+    """The samples of one variable of one run, in the order of the table."""
 
     name: str
     """As in `Log.names`."""
@@ -120,7 +120,7 @@ class LogCache:
     numbers: dict[str, FloatArray] = field(default_factory=dict)
     times_s: FloatArray | None = None
     whole: tuple[IntArray, FloatArray] | None = None
-    """Rows and times of a series that has all rows."""
+    """Rows and times of a series to which all rows belong."""
 
 
 def _has_rows(member: Member) -> bool:
@@ -129,7 +129,7 @@ def _has_rows(member: Member) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Log:
-    """A table with the roles of its columns, and its variables as series."""
+    """A log: a table with the roles of its columns, and its variables as series."""
 
     title: str
     table: pa.Table
@@ -149,12 +149,15 @@ class Log:
 
     @property
     def rows(self) -> int:
-        """Number of rows of the table."""
+        """The number of rows of the table."""
         return int(self.table.num_rows)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the series, in order of first appearance; with several runs followed by ` #` and its number."""
+        """Names of the series in order of first appearance.
+
+        With several runs, each name is followed by ` #` and the run's number.
+        """
         return (*self._find_members(), *self.derived)
 
     @property
@@ -169,14 +172,14 @@ class Log:
         if cache.members is None:
             members: dict[str, Member] = {}
             for member in list_members(self.table, self.layout):
-                # A member without name or run has no rows, and may share the name of one that has rows.
+                # A member without rows must not replace one of the same name that has rows.
                 if member.name not in members or not _has_rows(members[member.name]):
                     members[member.name] = member
             cache.members = members
         return cache.members
 
     def series(self, name: str) -> Series:
-        """Return a series. Its arrays must not be modified: they may be shared.
+        """Return the series of a name. Its arrays must not be modified, as they may be shared.
 
         Raises:
             LogError: there is no such series.
@@ -203,7 +206,10 @@ class Log:
 
     @property
     def times_s(self) -> FloatArray:
-        """The time of each row, shape (n,): row numbers from 0 without a time column. Must not be modified."""
+        """The time of each row in seconds, shape (n,).
+
+        Without a time column, they are row numbers from 0. The array must not be modified.
+        """
         return self._read_times(None)
 
     def _read_times(self, rows: IntArray | None) -> FloatArray:
@@ -230,7 +236,7 @@ class Log:
         return self._cache.numbers[column]
 
     def pick_numbers(self, column: str, rows: IntArray) -> FloatArray:
-        """Return the numbers of a column in some rows, as `numbers`, but without caching the whole column."""
+        """Return the numbers of a column in some rows, as `numbers` does, but without caching the whole column."""
         return convert_to_floats(
             self.table.column(column).take(wrap_int64(np.ascontiguousarray(rows, np.int64)))
         )
@@ -250,7 +256,7 @@ class Log:
         """Return the same log with additional derived series.
 
         Args:
-            column: Name of the new column of the table, which is added unless a series has several samples in one row.
+            column: Name of the new column of the table; it is not added if a series has several samples in one row.
             series: One series, or one per run.
         """
         bare = self.drop_derived(column)

@@ -15,17 +15,17 @@ MAX_DRAWN = 1e300
 
 
 def find_scale(low: float, high: float) -> float:
-    """Return the power of two by which numbers are divided before they are summed: 1 unless they are huge or tiny.
+    """Return the power of two by which to divide numbers before they are summed: 1 unless they are huge or tiny.
 
     Args:
-        low, high: The least and the greatest of them, finite.
+        low, high: The least and the greatest of the numbers, finite.
     """
     exponent = math.frexp(max(-low, high))[1]
     return math.ldexp(1.0, exponent - min(max(exponent, -_MAX_EXPONENT), _MAX_EXPONENT))
 
 
 def limit_drawn(numbers: FloatArray) -> FloatArray:
-    """Return numbers as charts draw them: the finite ones are within `MAX_DRAWN`."""
+    """Return numbers in which finite ones are limited to ±`MAX_DRAWN`, for charts."""
     if not len(numbers) or (numbers.min() >= -MAX_DRAWN and numbers.max() <= MAX_DRAWN):
         return numbers
     return np.where(np.isfinite(numbers), numbers.clip(-MAX_DRAWN, MAX_DRAWN), numbers)

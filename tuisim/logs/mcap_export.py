@@ -61,7 +61,7 @@ def load_writer() -> ModuleType:
     """Return the module of the library mcap that writes files.
 
     Raises:
-        ConfigError: it is not installed.
+        ConfigError: the library is not installed.
     """
     try:
         import mcap.writer
@@ -77,12 +77,14 @@ def export_mcap(
     """Write variables of a log as an MCAP file, which replaces an existing one. Missing values have no message.
 
     Args:
+        log: The log.
         names: The variables; x, y and heading are written as poses if `has_pose`.
-        tell: Is given the fraction that has been written.
+        path: The file.
+        tell: Receives the fraction that has been written.
         has_pose: Whether to write the pose, if the log has one.
 
     Returns:
-        Number of infinite values, which JSON does not have and which are left out.
+        Number of infinite values, which are left out since JSON does not have them.
 
     Raises:
         ConfigError: the library is not installed.
@@ -111,7 +113,7 @@ def export_mcap(
 def _write_messages(
     writer: Any, channels: Sequence[_Channel], tell: Callable[[float], None]
 ) -> None:
-    """Write the messages of all channels in the order of their times."""
+    """Write the messages of all channels in order of time; `tell` receives the fraction that has been written."""
     streams = []
     for channel in channels:
         schema = json.dumps(channel.schema).encode()
@@ -140,7 +142,7 @@ def _build_value_channel(log: Log, name: str) -> _Channel:
 
 
 def _build_pose_channels(log: Log) -> Iterator[_Channel]:
-    """Yield the poses of each run."""
+    """Yield a channel with the poses of each run."""
     runs = log.numbers(log.layout.run) if log.layout.run else np.ones(log.rows)
     numbers = np.array([log.numbers(name) for name in POSE])
     known = np.isfinite([runs, *numbers]).all(axis=0)

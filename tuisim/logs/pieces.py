@@ -50,7 +50,7 @@ def count_samples(pieces: Pieces) -> IntArray:
 
 
 def group_by_length(values: FloatArray, pieces: Pieces) -> Iterator[tuple[IntArray, FloatArray]]:
-    """Yield the pieces of each length, not too many at once: their indices, and their samples, shape (m, length)."""
+    """Yield the pieces of a log grouped by length, in limited groups: their indices, and samples, shape (m, length)."""
     lengths = count_samples(pieces)
     order = np.argsort(lengths, kind="stable")
     for alike in np.split(order, np.flatnonzero(np.diff(lengths[order])) + 1) if len(order) else ():
@@ -63,18 +63,32 @@ def group_by_length(values: FloatArray, pieces: Pieces) -> Iterator[tuple[IntArr
 
 
 def join_across_strays(values: FloatArray, pieces: Pieces, min_step: float, sigma: float) -> Pieces:
-    """Join pieces that only a few strays separate."""
+    """Return pieces of a log in which those that are separated only by a few strays are joined.
+
+    Args:
+        values: The log.
+        pieces: The pieces.
+        min_step: The smallest step between levels.
+        sigma: Standard deviation of the noise.
+    """
     after = np.searchsorted(pieces[:, 1], pieces[:, 0] + STRAY_SAMPLES, side="right")
     indices = np.arange(1, len(pieces))
     indices = indices[(indices < after[indices]) & (after[indices] < len(pieces))]
-    # At least two on either side: an edge is no stray.
+    # At least two samples are needed on either side, as an edge is no stray.
     return _join_seams(
         values, pieces, np.stack((indices, after[indices]), axis=1), MIN_SAMPLES, min_step, sigma
     )
 
 
 def join_drifting(values: FloatArray, pieces: Pieces, min_step: float, sigma: float) -> Pieces:
-    """Join neighbours that drift into each other, with at most a stray between them."""
+    """Return pieces of a log in which neighbours of one drift, with at most a stray between them, are joined.
+
+    Args:
+        values: The log.
+        pieces: The pieces.
+        min_step: The smallest step between levels.
+        sigma: Standard deviation of the noise.
+    """
     indices = 1 + np.flatnonzero(pieces[1:, 0] - pieces[:-1, 1] <= STRAY_SAMPLES)
     return _join_seams(
         values, pieces, np.stack((indices, indices), axis=1), STRAY_SAMPLES + 1, min_step, sigma
@@ -89,12 +103,13 @@ def _join_seams(
     min_step: float,
     sigma: float,
 ) -> Pieces:
-    """Join the pieces on both sides of a seam if the log goes on across it, from the first seam to the last.
+    """Return pieces of a log; those on both sides of a seam are joined if the right one continues the left one.
 
     Args:
         values: The log.
         pieces: Its pieces.
-        seams: Shape (n, 2): index of the piece after the left side, and of the right side, which is it or a later one.
+        seams: Shape (n, 2): for each seam the index of the piece after the left one, and of the right one, which is the
+            same or, if strays are between, a later one.
         min_samples: Fewest samples on either side.
         min_step: The smallest step between levels.
         sigma: Standard deviation of the noise.
@@ -119,7 +134,10 @@ def _join_seams(
 
 
 def _find_firsts(count: int, seams: IntArray) -> IntArray:
-    """Return for each piece the index of the first one that it is joined to; seams inside earlier ones are left out."""
+    """Return for each piece the index of the first piece that it is joined to.
+
+    Seams inside earlier seams are ignored.
+    """
     taken = []
     reached = -1
     for piece, after in seams.tolist():
@@ -142,7 +160,7 @@ def _find_continued(
     min_step: float,
     sigma: float,
 ) -> BoolArray:
-    """Return which pieces continue those on their left: a common drift explains the step between them."""
+    """Return for each piece on the right whether it continues the piece on its left: one drift explains the step."""
     goes_on = np.minimum(count_samples(left), count_samples(right)) >= min_samples
     before, after = left[goes_on], right[goes_on]
     before[:, 0] = np.maximum(before[:, 0], before[:, 1] - NEAR_SAMPLES)
@@ -155,7 +173,7 @@ def _find_continued(
 
 
 class _Lines(NamedTuple):
-    """Means and sums for a straight line through the samples of each piece, without strays; each of shape (n,)."""
+    """Means and sums for fitting a straight line to the samples of each piece, without strays; each of shape (n,)."""
 
     samples: FloatArray
     place: FloatArray
@@ -188,16 +206,16 @@ def _fit_lines(values: FloatArray, pieces: Pieces, sigma: float) -> _Lines:
 
 
 def _sum_products(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the sum of the products in each row; faster than a product that is summed up."""
+    """Return the sum of the products of two arrays in each row, without creating an array of the products."""
     sums: FloatArray = np.einsum("ij,ij->i", left, right)
     return sums
 
 
 def _estimate_steps(before: _Lines, after: _Lines) -> tuple[FloatArray, FloatArray]:
-    """Return the steps of least squares between pieces of the same drift, and their deviations in units of the noise.
+    """Return the least-squares steps between pieces of one drift, and their standard deviations in units of the noise.
 
-    The slope is that of both pieces together, each about its own means (analysis of covariance); the step is what it
-    leaves between the means.
+    The slope is that of both pieces together, each about its own means (analysis of covariance); the step is the
+    remaining difference of the means.
 
     Args:
         before: The pieces before the steps.
@@ -205,7 +223,7 @@ def _estimate_steps(before: _Lines, after: _Lines) -> tuple[FloatArray, FloatArr
     """
     apart = after.place - before.place
     width = before.width + after.width
-    # One sample on each side has no slope.
+    # Pieces of one sample have no slope; the width 1 avoids a division by 0.
     width[width == 0.0] = 1.0
     step = after.level - before.level - apart * (before.rise + after.rise) / width
     spread = np.sqrt(1.0 / before.samples + 1.0 / after.samples + apart * apart / width)
@@ -213,7 +231,12 @@ def _estimate_steps(before: _Lines, after: _Lines) -> tuple[FloatArray, FloatArr
 
 
 def find_strays(part: FloatArray, sigma: float) -> BoolArray:
-    """Return which samples of levels are strays, shape (m, length) as the samples."""
+    """Return for each sample whether it is a stray of its level, shape (m, length).
+
+    Args:
+        part: The samples of m levels, shape (m, length).
+        sigma: Standard deviation of the noise.
+    """
     length = part.shape[1]
     half = length // 2
     rest = part

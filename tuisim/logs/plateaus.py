@@ -90,7 +90,7 @@ _BLOCK = 400_000
 
 
 class Plateau(NamedTuple):
-    """A span of a log with one level. Positions count samples; `stop` is the one after the last."""
+    """A span of a log with one level, from the sample `start` to before the sample `stop`."""
 
     start: int
     stop: int
@@ -105,7 +105,7 @@ class Plateau(NamedTuple):
 
     @property
     def samples(self) -> int:
-        """Number of samples."""
+        """The number of samples."""
         return self.stop - self.start
 
 
@@ -114,9 +114,9 @@ Search = Callable[[FloatArray], list[Plateau]]
 
 
 def measure_noise(values: FloatArray) -> float:
-    """Return the standard deviation of the noise of finite values, shape (n,), from the differences of neighbours.
+    """Return the standard deviation of the noise in finite values, shape (n,), from the differences of neighbours.
 
-    It is 0 for clean steps.
+    The result is 0 for clean steps.
     """
     if len(values) < 3:
         return 0.0
@@ -126,7 +126,9 @@ def measure_noise(values: FloatArray) -> float:
 
 
 def _find_steps(differences: FloatArray) -> BoolArray:
-    """Return which differences between neighbours are steps, if the log has only short levels; otherwise none.
+    """Return for each difference between neighbours whether it is a step, if the log has only short levels.
+
+    Otherwise all are False.
 
     If more than a fifth of the differences are far larger than the ones before and after them, most levels have two or
     three samples, without edges or strays between them. In noise, large differences follow each other.
@@ -140,9 +142,12 @@ def _find_steps(differences: FloatArray) -> BoolArray:
 
 @np.errstate(over="ignore", invalid="ignore")
 def find_plateaus(values: FloatArray) -> list[Plateau]:
-    """Return the plateaus of a log of samples at a fixed period, shape (n,), in order; the samples between are edges.
+    """Return the plateaus of a log in order; the samples between plateaus are edges.
 
     Samples that are not finite belong to no plateau.
+
+    Args:
+        values: Samples at a fixed period, shape (n,).
     """
     is_finite = np.isfinite(values)
     clean = np.asarray(values, np.float64)[is_finite]
@@ -150,13 +155,13 @@ def find_plateaus(values: FloatArray) -> list[Plateau]:
         return []
     noise = measure_noise(clean)
     low, high = _find_extremes(clean)
-    # Without noise, the smallest step sets the price of a cut.
+    # Without noise, the price of a cut follows from the smallest step.
     min_step = max((high - low) * _STEP_OF_RANGE, _DUST * max(abs(low), abs(high)), 1e-12)
     sigma = max(noise, min_step / CERTAINTY)
     ground = Ground(
         high - low, min(sigma, max(measure_noise_of_slopes(clean), min_step / CERTAINTY)), sigma
     )
-    # Squares of huge values would leave no digits for the others.
+    # Huge values are limited, as their squares would leave no digits for other values.
     far = _GIANT * max(ground.range, sigma)
     cut = _cut(np.clip(clean, low - far, high + far), sigma)
     short_levels = _find_steps(np.abs(np.diff(clean))).any()
@@ -166,7 +171,7 @@ def find_plateaus(values: FloatArray) -> list[Plateau]:
     if not short_levels:
         plateaus = plateaus[~_find_ramps(clean, plateaus, sigma)]
         plateaus = plateaus[~_find_edges(plateaus)]
-        # With noise, two samples of about the same value are no level, except at the ends of a log.
+        # With noise, a level needs one sample more than `MIN_SAMPLES`, except at the ends of a log.
         at_an_end = (plateaus["start"] == 0) | (plateaus["stop"] == len(clean))
         plateaus = plateaus[
             at_an_end | (count_samples(read_spans(plateaus)) >= MIN_SAMPLES + (noise > 0.0))
@@ -184,8 +189,16 @@ def find_plateaus(values: FloatArray) -> list[Plateau]:
 def _join_pieces(
     values: FloatArray, pieces: Pieces, min_step: float, sigma: float, *, has_strays: bool
 ) -> Pieces:
-    """Return pieces, joined where the log goes on from one to the next; across strays, too, if it has some."""
-    # Twice: a stray may be hidden between short pieces of a drift.
+    """Return pieces of a log, joined where one continues another.
+
+    Args:
+        values: The log.
+        pieces: Its pieces.
+        min_step: The smallest step between levels.
+        sigma: Standard deviation of the noise.
+        has_strays: Whether to join also across strays.
+    """
+    # Strays are joined twice, as one may be hidden between short pieces of a drift.
     for _ in range(2):
         count = len(pieces)
         if has_strays:
@@ -199,9 +212,9 @@ def _join_pieces(
 def _settle(
     values: FloatArray, plateaus: PlateauArray, parts: PlateauArray, ground: Ground, min_step: float
 ) -> PlateauArray:
-    """Return plateaus, extended to their ends and joined, together with `parts`: slopes' parts that stand still."""
+    """Return plateaus, extended to their ends and joined, together with `parts`, the level parts of slopes."""
     if len(plateaus):
-        # Two plateaus that have grown may be separated by no more than a stray.
+        # After they were extended, two plateaus may be separated only by a stray, so they are joined again.
         grown = _extend_pieces(values, read_spans(plateaus), ground.sigma)
         spans = join_drifting(values, grown, min_step, ground.sigma)
         plateaus = drop_moving(
@@ -211,7 +224,7 @@ def _settle(
 
 
 def _find_extremes(values: FloatArray) -> tuple[float, float]:
-    """Return the lowest and the highest level; strays do not count."""
+    """Return the lowest and the highest level of a log, ignoring strays."""
     if len(values) > STRAY_SAMPLES:
         windows = sliding_window_view(values, STRAY_SAMPLES + 1).T
         low, high = float(windows.max(axis=0).min()), float(windows.min(axis=0).max())
@@ -221,11 +234,11 @@ def _find_extremes(values: FloatArray) -> tuple[float, float]:
 
 
 def _cut(values: FloatArray, sigma: float) -> Pieces:
-    """Cut the log into pieces of about one level each."""
+    """Return the pieces of a log, each of about one level."""
     pieces = []
     for first in range(0, len(values), _BLOCK):
         block = values[first : first + _BLOCK]
-        # Centred, since sums of squares of large values have no digits left for small steps.
+        # The values are centred, as sums of squares of large values have too few digits for small steps.
         block = (block - block.mean()) / sigma
         pieces.append(first + _partition(block, _choose_places(block)))
     return np.concatenate(pieces)
@@ -264,7 +277,12 @@ def _choose_places(scaled: FloatArray) -> IntArray:
 
 
 def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
-    """Return the cheapest partition of values in units of the noise, with cuts at some of the places."""
+    """Return the cheapest partition of a log, with cuts at some of the given positions.
+
+    Args:
+        scaled: The log in units of the noise.
+        places: The positions of possible cuts.
+    """
     # The modified criterion of Zhang and Siegmund (2007) takes 3 ln n for a change of the mean; Schwarz's takes 2 ln n.
     # Of 300 logs of 300 samples of noise alone, ln n cuts 80 %, 2 ln n 4 %, and this none.
     price = float(3.0 * np.log(max(len(scaled), 8)) + 2.0)
@@ -320,7 +338,7 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
 def _measure_again(
     values: FloatArray, pieces: Pieces, plateaus: PlateauArray, sigma: float
 ) -> PlateauArray:
-    """Return pieces as plateaus; those that are in `plateaus` are copied from there, the others measured."""
+    """Return pieces as plateaus; those that `plateaus` has already are copied, the others are measured."""
     known = np.minimum(np.searchsorted(plateaus["start"], pieces[:, 0]), len(plateaus) - 1)
     measured = plateaus[known]
     changed = (read_spans(measured) != pieces).any(axis=1)
@@ -329,7 +347,7 @@ def _measure_again(
 
 
 def _find_edges(plateaus: PlateauArray) -> BoolArray:
-    """Return which plateaus are short and only the edge between their neighbours."""
+    """Return for each plateau whether it is short and only an edge between its neighbours."""
     edges = np.zeros(len(plateaus), bool)
     lengths = count_samples(read_spans(plateaus))
     level = plateaus["level"]
@@ -341,7 +359,7 @@ def _find_edges(plateaus: PlateauArray) -> BoolArray:
 
 
 def _find_ramps(values: FloatArray, plateaus: PlateauArray, sigma: float) -> BoolArray:
-    """Return which plateaus are short and rise or fall from each sample to the next."""
+    """Return for each plateau whether it is short and rises or falls from each sample to the next."""
     ramps = count_samples(read_spans(plateaus)) <= _EDGE_SAMPLES + 1
     short = np.flatnonzero(ramps)
     for some, part in group_by_length(values, read_spans(plateaus[short])):
@@ -353,7 +371,7 @@ def _find_ramps(values: FloatArray, plateaus: PlateauArray, sigma: float) -> Boo
 
 
 def _add_ends(values: FloatArray, plateaus: PlateauArray, min_step: float) -> PlateauArray:
-    """Add the first and the last sample as levels of their own if they are a step away from the nearest plateau.
+    """Return plateaus, with the first and the last sample as further ones if they are a step away from the nearest.
 
     A program that logs until it meets a value ends its log at the first sample of that level.
     """
@@ -376,15 +394,15 @@ def _add_ends(values: FloatArray, plateaus: PlateauArray, min_step: float) -> Pl
 
 
 def _extend_pieces(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
-    """Extend pieces by samples of the same level beyond a stray at their ends."""
+    """Return pieces extended by samples of the same level beyond a stray at their ends."""
     near = FAR * sigma / 2.0
-    # From the end of the log, stops are starts.
+    # Read from the end of the log, the ends of pieces are starts.
     mirrored = len(values) - pieces[::-1, ::-1]
     stops = (
         len(values)
         - _extend_starts(values[::-1], mirrored, np.append(0, mirrored[:-1, 1]), near)[::-1]
     )
-    # Before a short piece, a sample of its level is as likely one of the piece before.
+    # A short piece is not extended backwards, as a sample there may as well belong to the piece before.
     limits = np.where(
         2 * count_samples(pieces) <= NEAR_SAMPLES, pieces[:, 0], np.append(0, stops[:-1])
     )
@@ -392,7 +410,14 @@ def _extend_pieces(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
 
 
 def _extend_starts(values: FloatArray, pieces: Pieces, limits: IntArray, near: float) -> IntArray:
-    """Return where pieces start, extended to no earlier than where the ones before them stop: `limits`."""
+    """Return the starts of pieces, extended at most to the ends of the pieces before them, `limits`.
+
+    Args:
+        values: The log.
+        pieces: Its pieces.
+        limits: Where the pieces before them end.
+        near: By how much a sample may differ from the level of a piece.
+    """
     starts: IntArray
     starts, stops = pieces.T.copy()
     for ahead in starts - 1 - np.arange(STRAY_SAMPLES + 1)[:, None]:
@@ -405,7 +430,7 @@ def _extend_starts(values: FloatArray, pieces: Pieces, limits: IntArray, near: f
 
 
 def _measure_levels(values: FloatArray, starts: IntArray, stops: IntArray) -> FloatArray:
-    """Return the medians of spans."""
+    """Return the median of each span of a log."""
     levels = np.empty(len(starts))
     for some, part in group_by_length(values, np.stack((starts, stops), axis=1)):
         levels[some] = compute_medians(part)
@@ -417,9 +442,9 @@ _LOOK_S = 0.1
 
 
 def find_plateaus_in_subprocess(values: FloatArray, stopped: Callable[[], bool]) -> list[Plateau]:
-    """Return the plateaus of a log, as `find_plateaus` does, from a process of its own.
+    """Return the plateaus of a log, as `find_plateaus` does, computed in another process.
 
-    A search in a thread would hold up every key for a second.
+    A search in a thread would block the keys for a second.
 
     Args:
         values: As for `find_plateaus`.

@@ -19,7 +19,7 @@ Offers = list[tuple[str, Any]]
 
 
 class Preview:
-    """The first rows of a file.
+    """The first rows of a log file, for the dialog in which the user chooses how to read it.
 
     Args:
         path: The file.
@@ -37,7 +37,7 @@ class Preview:
         """The first lines of a text, each with its number."""
 
     def read(self, choices: ReadChoices) -> None:
-        """Read the rows in another way.
+        """Read the rows again with other choices.
 
         Raises:
             LogError: nothing can be read with these choices.
@@ -46,7 +46,7 @@ class Preview:
 
     @property
     def has_number_time(self) -> bool:
-        """Whether the times are numbers."""
+        """Whether the time column has numbers."""
         time = self.log.layout.time
         return bool(time) and self.is_numeric(time)
 
@@ -55,7 +55,7 @@ class Preview:
         return is_numeric(self.log.table.schema.field(column).type)
 
     def list_offers(self, name: str) -> Offers:
-        """Return what may be chosen, by the name of the choice in `ReadChoices`."""
+        """Return the labels and values to offer for a choice in `ReadChoices`, given by its name."""
         match name:
             case "header":
                 return [(f"{row}: {text[:_MAX_LINE]}", row) for row, text in self.lines]
@@ -69,7 +69,7 @@ class Preview:
                 return [(_EXAMPLES.get(word, word), word) for word in WORDS[name]]
 
     def find_word(self, name: str) -> str:
-        """Return the value that was found in the file for a choice, as a label; empty if none was found."""
+        """Return the label of the value that the file suggests for a choice; empty if none was found."""
         layout = self.log.layout
         form = self.log.form
         match name:
@@ -84,7 +84,7 @@ class Preview:
                 return _EXAMPLES.get(word, word)
 
     def describe_role(self, column: str) -> str:
-        """Return the role that a column was taken to have, such as `time`; empty for a column of values."""
+        """Return the role of a column, such as `time`; empty for a column of values."""
         layout = self.log.layout
         if column == layout.time:
             return "time"

@@ -54,7 +54,7 @@ Values = Sequence[tuple[str, float | str]]
 
 
 class ProgramLine(NamedTuple):
-    """The time, and the samples or numbers, in a line that a program printed."""
+    """A line that a program printed: its time, and its samples or numbers."""
 
     time: float | str | None
     """Seconds behind a sample, or the time at the beginning of the line; None without a time."""
@@ -64,7 +64,7 @@ class ProgramLine(NamedTuple):
 
 
 def parse_line(line: str) -> ProgramLine | None:
-    """Parse a line that a program printed; return None if it has neither samples nor a time with numbers."""
+    """Return the contents of a line that a program printed; None if it has neither samples nor a time with numbers."""
     if len(line) > _MAX_CHARACTERS:
         return None
     if (sample := parse_sample(line)) is not None:
@@ -74,22 +74,22 @@ def parse_line(line: str) -> ProgramLine | None:
     time, rest, certain = _split_time(line.strip())
     if samples := _ITEM.findall(_strip_prefixes(rest, _ITEMS)):
         return ProgramLine(time, samples)
-    # Of two numbers, the first need not be a time.
+    # Without a certain time, the first number of a line may be a value, so the line is left out.
     numbers = _strip_prefixes(rest, _VALUES) if certain else ""
     return ProgramLine(time, (), numbers) if numbers else None
 
 
 def _split_time(line: str) -> tuple[str | None, str, bool]:
-    """Return the time with which a line begins, None without one; the rest; and whether it is certainly a time."""
+    """Return the time at the start of a line, None without one; the rest; and whether it is certainly a time."""
     match = _STAMPED.fullmatch(line)
     if match is None:
         return None, line, False
-    # If only blanks separate two numbers, they can be cells of a row, and the first need not be a time.
+    # If only blanks separate two numbers, they may be cells of a row, so the first is not certainly a time.
     return match["stamp"], match["rest"], bool(match["open"] or match["between"].strip())
 
 
 def _strip_prefixes(text: str, pattern: re.Pattern[str]) -> str:
-    """Return a text without prefixes such as a logger's; empty if the rest does not match a pattern."""
+    """Return a text without prefixes such as those of a logger; empty if the rest does not match a pattern."""
     while pattern.fullmatch(text) is None:
         prefix = _PREFIX.match(text)
         if prefix is None:
@@ -99,7 +99,7 @@ def _strip_prefixes(text: str, pattern: re.Pattern[str]) -> str:
 
 
 def _is_row(line: str) -> bool:
-    """Return whether a line is like a row of a table: separators, or several numbers between blanks."""
+    """Return whether a line looks like a row of a table: it has separators, or several numbers between blanks."""
     kinds = parse_kinds(split_cells(line, BLANKS))
     numbers = sum(kind in "nt" for kind in kinds)
     return not _SEPARATORS.isdisjoint(line) or numbers > 1 or (numbers == 1 and len(kinds) == 1)
@@ -108,10 +108,13 @@ def _is_row(line: str) -> bool:
 def choose_reader(
     lines: Sequence[str], is_table: bool, notes: Notes, choices: ReadChoices
 ) -> CsvReader | ObjectReader | None:
-    """Return a reader for a file with these first lines; None if a program has not printed them.
+    """Return a reader for a file of lines that a program printed; None if its first lines are not such lines.
 
     Args:
-        is_table: Whether the file has the name of a table: then only lines with times are taken for a program's.
+        lines: The first lines.
+        is_table: Whether the file has the name of a table; then only lines with times count as printed by a program.
+        notes: Receives warnings.
+        choices: The user's choices for reading the file.
     """
     by_line = [parse_line(line) for line in lines]
     parsed = [line for line in by_line if line is not None]
@@ -129,7 +132,7 @@ def choose_reader(
 
 
 def _list_samples(row: int, line: str) -> list[Row]:
-    """Return the samples in a line; their time is None where none was printed."""
+    """Return the samples in a line as rows; their time is None if the line has none."""
     parsed = parse_line(line)
     if parsed is None:
         return []
@@ -140,20 +143,20 @@ def _list_samples(row: int, line: str) -> list[Row]:
 
 
 def has_tuples(lines: Sequence[str]) -> bool:
-    """Return whether most of the lines are tuples or lists as Python prints them."""
+    """Return whether most of the lines are tuples or lists in Python's form."""
     if len(lines) < 2 or lines[0].strip() == "[" or lines[0].lstrip().startswith(("[[", "[{")):
         return False
     return 2 * sum(_TUPLE.fullmatch(line) is not None for line in lines) > len(lines)
 
 
 def strip_brackets(line: str) -> str:
-    """Return a tuple or list without its brackets; other lines as they are."""
+    """Return a line that is a tuple or list without its brackets; other lines unchanged."""
     match = _TUPLE.fullmatch(line)
     return line if match is None else match["tuple"] or match["list"] or ""
 
 
 def _split_stamped(line: str) -> str:
-    """Return a time and the numbers behind it, or their names, with tabs between them; other lines as they are."""
+    """Return a line with tabs between its time and the numbers, or between their names; other lines unchanged."""
     parsed = parse_line(line)
     if parsed is not None and parsed.rest:
         return "\t".join((str(parsed.time), *_SEPARATOR.split(parsed.rest)))

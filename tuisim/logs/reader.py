@@ -69,12 +69,12 @@ _SHOWN_LINES = 100
 """Lines from which the user chooses the heading."""
 _TABLES = (".csv", ".tsv")
 _JUDGED_LINES = 30
-"""Lines from which the kind of a text is told."""
+"""Lines from which the kind of a text is found."""
 
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """How far a log has been read, and what of it is there."""
+    """A log that is being read: the part that has been read, and the log so far."""
 
     part: float
     """Fraction of the file that has been read, 0 to 1; NaN if the size is unknown."""
@@ -88,6 +88,7 @@ def open_log(source: str | Path, choices: ReadChoices = NO_CHOICES) -> Log:
 
     Args:
         source: Path of a CSV, Parquet, JSONL, Arrow or text file; `-` is the standard input.
+        choices: The user's choices for reading the file.
 
     Raises:
         LogError: it cannot be read, has no row, or there is no such column.
@@ -109,7 +110,10 @@ def read_beginning(path: str, choices: ReadChoices) -> Log:
 
 
 def read_pieces(source: str | Path, choices: ReadChoices = NO_CHOICES) -> Iterator[Loaded]:
-    """Read a log; yield the log so far, soon after the start and then repeatedly. Arguments are as for `open_log`."""
+    """Read a log step by step.
+
+    Yield the log so far, soon after the start and then repeatedly. The arguments are those of `open_log`.
+    """
     title = _name_source(source)
     notes = Notes()
     parts: list[pa.Table] = []
@@ -122,7 +126,7 @@ def read_pieces(source: str | Path, choices: ReadChoices = NO_CHOICES) -> Iterat
             yield Loaded(part, None)
             continue
         yield Loaded(part, _build_log(title, parts, notes, choices))
-        # Showing the log so far takes only a fraction of the whole time.
+        # Building the log so far must take only a fraction of the whole time, hence the pause.
         took = monotonic() - now
         show_at = now + took + max(_SHOW_EVERY_S, _SHOW_SELDOM * took)
     if not sum(part.num_rows for part in parts):
@@ -153,7 +157,7 @@ def _build_log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: Rea
     if has_guessed_order(table, layout):
         notes.say(f"the dates in {layout.time!r} are read as day, month, year")
     metadata = arrow.read_metadata(parts[0].schema) or read_companion(Path(title))
-    # Of the rows so far, so that they are collected anew each time.
+    # These notes are about the rows so far, so they are collected again each time.
     later = Notes()
     seconds = None
     if not metadata:
@@ -179,7 +183,14 @@ def _build_log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: Rea
 
 
 def _tell_odd_columns(table: pa.Table, layout: Layout, unread: str, notes: Notes) -> None:
-    """Note which columns are text, and how many values are infinite."""
+    """Add notes on columns that are text, and on infinite values.
+
+    Args:
+        table: The table.
+        layout: The roles of its columns.
+        unread: The column with the name of a time that could not be read; empty for none.
+        notes: Receives the notes.
+    """
     used = (layout.time, layout.variable, layout.run, unread, *TIMEDELTA)
     texts = [
         repr(field.name) for field in table.schema if is_text(field.type) and field.name not in used
@@ -208,12 +219,12 @@ def read_companion(path: Path) -> Mapping[str, Any]:
 
 
 def join_tables(parts: Sequence[pa.Table]) -> pa.Table:
-    """Return the rows of several tables; columns that a table lacks are empty there."""
+    """Return the rows of several tables as one; a column that a table lacks is empty in its rows."""
     return pa.concat_tables(parts, promote_options="permissive").unify_dictionaries()
 
 
 def _fill_types(table: pa.Table) -> pa.Table:
-    """Return a table with numbers as the type of columns without any cell."""
+    """Return a table in which columns without any cell have a numeric type."""
     kinds = [
         field.with_type(pa.float64()) if field.type == pa.null() else field
         for field in table.schema
@@ -224,7 +235,7 @@ def _fill_types(table: pa.Table) -> pa.Table:
 def read_parts(
     source: str | Path, notes: Notes, choices: ReadChoices = NO_CHOICES
 ) -> Iterator[tuple[float, pa.Table | None]]:
-    """Yield the fraction of a file that has been read, with the rows that are new; None if there are none.
+    """Yield the fraction of a log file that has been read, with the new rows; None if there are none.
 
     Raises:
         LogError: it cannot be read.
@@ -241,7 +252,7 @@ def read_parts(
 
 @contextmanager
 def _name_in_errors(title: str) -> Iterator[None]:
-    """Raise each error as a LogError that names the file."""
+    """In a `with` block, raise each error as a LogError that names the file."""
     try:
         yield
     except LogError as error:
@@ -263,7 +274,7 @@ def _read_file(
         raise LogError("is a folder, not a log")
     mode = path.stat().st_mode
     if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
-        # A device need not have an end.
+        # A device is refused, as it may have no end.
         raise LogError("is a device, not a log")
     regular = stat.S_ISREG(mode)
     with path.open("rb", buffering=0 if not regular else -1) as handle:
@@ -286,12 +297,14 @@ def _read_file(
 def read_text_parts(
     handle: Readable, size: int, suffix: str, notes: Notes, choices: ReadChoices = NO_CHOICES
 ) -> Iterator[tuple[float, pa.Table | None]]:
-    """Yield the fraction of a text that has been read, with the rows that are new; None if there are none.
+    """Yield the fraction of a text that has been read, with the new rows; None if there are none.
 
     Args:
-        handle: The bytes.
-        size: Their number, 0 if unknown.
+        handle: The stream of its bytes.
+        size: The number of bytes; 0 if unknown.
         suffix: Suffix of the file name in lower case, such as `.csv`.
+        notes: Receives warnings.
+        choices: The user's choices for reading the file.
     """
     data = handle.read(FIRST_BYTES) or b""
     _refuse_binary(data)
@@ -317,7 +330,7 @@ def read_text_parts(
 
 
 def _refuse_binary(data: bytes) -> None:
-    """Raise a LogError if the first bytes of a text are those of another format."""
+    """Raise LogError if the first bytes of a file are those of a binary format."""
     if data.startswith((*arrow.FORMATS, *MAGICS)):
         raise LogError(
             "only text can be read from a pipe or inside a compressed file",
@@ -341,7 +354,7 @@ def _choose_reader(
 
 
 def build_log(runs: Sequence[StoredRun]) -> Log:
-    """Return the samples of one or more runs; a run without any gives an empty log.
+    """Return the samples of one or more runs as a log, which is empty if the runs have no samples.
 
     Raises:
         LogError: a recording is damaged.
@@ -350,7 +363,7 @@ def build_log(runs: Sequence[StoredRun]) -> Log:
 
 
 def build_telemetry_log(run: StoredRun) -> Log:
-    """Return the telemetry of a run.
+    """Return the telemetry of a run as a log.
 
     Raises:
         LogError: the recording is damaged, or the mat no longer exists.

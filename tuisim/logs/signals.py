@@ -35,7 +35,7 @@ def sort_known(time_s: FloatArray, values: FloatArray) -> IntArray | slice:
     finite = np.isfinite(values)
     falls = bool((time_s[1:] < time_s[:-1]).any())
     if not falls:
-        # Avoids a copy for most logs.
+        # A slice avoids a copy for most logs.
         return slice(None) if finite.all() else np.flatnonzero(finite)
     known = np.flatnonzero(finite)
     return known[np.argsort(time_s[known], kind="stable")]
@@ -44,7 +44,7 @@ def sort_known(time_s: FloatArray, values: FloatArray) -> IntArray | slice:
 def compute_derivative(time_s: FloatArray, values: FloatArray) -> FloatArray:
     """Return the derivative at each sample, in units per second, shape (n,); NaN if all times are equal.
 
-    Second-order differences for uneven spacing (`numpy.gradient`), one-sided at both ends.
+    It uses second-order differences for uneven spacing (`numpy.gradient`), one-sided at both ends.
 
     Args:
         time_s: Shape (n,), in any order.
@@ -52,7 +52,7 @@ def compute_derivative(time_s: FloatArray, values: FloatArray) -> FloatArray:
     """
     slopes = np.full(len(values), np.nan)
     known = sort_known(time_s, values)
-    # Of several samples at the same time, the first represents all.
+    # If several samples have the same time, the first one represents all.
     moments, first, which = np.unique(time_s[known], return_index=True, return_inverse=True)
     if len(moments) > 1:
         with np.errstate(all="ignore"):
@@ -63,11 +63,12 @@ def compute_derivative(time_s: FloatArray, values: FloatArray) -> FloatArray:
 def compute_integral(
     time_s: FloatArray, values: FloatArray, between: Between = Between.LINEAR
 ) -> FloatArray:
-    """Return the integral from the first sample to each, in units times seconds, shape (n,).
+    """Return the integral from the first sample to each sample, in units times seconds, shape (n,).
 
     Args:
         time_s: Shape (n,), in any order.
         values: Shape (n,); values that are not finite are skipped, with NaN in the result.
+        between: The interpolation between samples.
     """
     sums = np.full(len(values), np.nan)
     known = sort_known(time_s, values)
@@ -82,7 +83,7 @@ def compute_integral(
 
 
 def compute_moving_average(values: FloatArray, width: int) -> FloatArray:
-    """Return the centred rolling mean of `width` samples, of fewer at both ends, shape (n,).
+    """Return the centred rolling mean of `width` samples, shape (n,); at both ends it is that of fewer samples.
 
     Values that are not finite are ignored.
 
@@ -100,7 +101,7 @@ def compute_moving_average(values: FloatArray, width: int) -> FloatArray:
     import pandas as pd
 
     known = pd.Series(np.where(np.isfinite(values), values, np.nan), dtype=np.float64)
-    # Wider windows give the same result.
+    # The width is limited, as wider windows give the same result.
     width = min(width, 2 * len(values) + 1)
     means: FloatArray = known.rolling(width, min_periods=1, center=True).mean().to_numpy()
     return means
@@ -109,7 +110,7 @@ def compute_moving_average(values: FloatArray, width: int) -> FloatArray:
 def resample(
     time_s: FloatArray, values: FloatArray, period_s: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Resample a signal at a fixed period, from the first sample to the last.
+    """Return a signal resampled at a fixed period, from the first sample to the last.
 
     Args:
         time_s: Shape (n,), in any order.
@@ -136,7 +137,7 @@ def build_even_moments(start_s: float, stop_s: float, period_s: float) -> FloatA
     """
     if not 0.0 < period_s < math.inf:
         raise LogError(f"the period must be above 0 s, got {period_s:g}")
-    # A small margin, so that rounding does not drop the last time.
+    # The small margin prevents that rounding drops the last time.
     count = (stop_s - start_s) / period_s * (1.0 + 1e-12) + 1e-9 + 1
     if count > MAX_RESAMPLED:
         raise LogError(
@@ -175,7 +176,7 @@ def sample_signal(
         return np.full(len(moments_s), np.nan)
     if between == Between.LINEAR:
         return np.interp(moments_s, time_s, values, left=np.nan)
-    # Of several samples at the same time the last one counts. A small margin for rounding of the times.
+    # If several samples have the same time, the last one counts. The margin allows for rounding of the times.
     indices = np.searchsorted(time_s, moments_s + 1e-9, side="right") - 1
     sampled = values[np.maximum(indices, 0)].astype(np.float64)
     sampled[indices < 0] = np.nan
@@ -187,7 +188,7 @@ QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """Summary statistics; NaN if there are no finite values."""
+    """Summary statistics of a column; NaN if it has no finite values."""
 
     count: int
     """Number of finite values."""
@@ -217,7 +218,7 @@ def compute_summary(values: FloatArray, quantiles: Sequence[float] = QUANTILES) 
     low, high = float(finite.min()), float(finite.max())
     scale = find_scale(low, high)
     scaled = finite if scale == 1.0 else finite / scale
-    # Rounding may lead out of the range of the values.
+    # The limits undo rounding out of the values' range.
     mean = min(max(float(scaled.mean(dtype=np.float64)) * scale, low), high)
     std = 0.0 if low == high else float(scaled.std(ddof=1, dtype=np.float64)) * scale
     quantile_values = tuple((np.quantile(scaled, quantiles) * scale).tolist()) if quantiles else ()

@@ -67,34 +67,34 @@ FIELDS = np.dtype(
 
 
 def measure_noise_of_slopes(values: FloatArray) -> float:
-    """Return the noise as `measure_noise`, but from second differences, which are 0 on a slope."""
+    """Return the noise as `measure_noise` does, but from second differences, which are 0 on slopes."""
     bends = np.abs(np.diff(values, 2))
     return estimate_noise(bends, 6.0) if len(bends) else 0.0
 
 
 def estimate_noise(differences: FloatArray, variance: float) -> float:
-    """Return the standard deviation of the noise that makes absolute differences, shape (n,).
+    """Return the standard deviation of the noise that causes absolute differences, shape (n,).
 
     The median of absolute differences, times 1.4826, is the standard deviation of normal noise, even if up to
     half of them are steps (Rousseeuw and Croux 1993).
 
     Args:
-        differences: How far samples differ from what their neighbours let expect; at least one.
-        variance: How many times the variance of the noise they have: 2 for first differences, 6 for second ones.
+        differences: By how much samples differ from what their neighbours predict; at least one.
+        variance: Their variance divided by that of the noise: 2 for first differences, 6 for second ones.
     """
     by_median = 1.4826 * float(np.median(differences)) / np.sqrt(variance)
-    # Where values jump between two neighbours of a coarse scale, the median difference is 0.
+    # If values jump between two steps of a coarse scale, the median difference may be 0: the calm ones are used, too.
     calm = np.sort(differences)[: max(1, int(0.8 * len(differences)))]
     return max(float(by_median), float(np.sqrt(np.mean(calm**2) / variance)))
 
 
 def read_spans(plateaus: PlateauArray) -> Pieces:
-    """Return where plateaus start and stop, shape (n, 2)."""
+    """Return the starts and ends of plateaus, shape (n, 2)."""
     return np.stack((plateaus["start"], plateaus["stop"]), axis=1)
 
 
 def measure(values: FloatArray, pieces: Pieces, sigma: float) -> PlateauArray:
-    """Return the pieces as plateaus, with level, spread, drift and strays."""
+    """Return pieces of a log as plateaus, with level, spread, drift and strays."""
     plateaus = np.zeros(len(pieces), FIELDS)
     plateaus["start"], plateaus["stop"] = pieces.T
     for some, part in group_by_length(values, pieces):
@@ -108,12 +108,12 @@ def measure(values: FloatArray, pieces: Pieces, sigma: float) -> PlateauArray:
 
 
 def _measure_levels(plateaus: PlateauArray, part: FloatArray, keep: BoolArray) -> PlateauArray:
-    """Return plateaus of one length with their level, spread and drift.
+    """Return plateaus of equal length with their level, spread and drift.
 
     Args:
         plateaus: The plateaus.
         part: Their samples, shape (m, length).
-        keep: Which samples are no strays: the same number of each plateau.
+        keep: Whether each sample is no stray; the same number in each row.
     """
     count, length = part.shape
     samples = part[keep].reshape(count, -1)
@@ -131,14 +131,14 @@ def _measure_levels(plateaus: PlateauArray, part: FloatArray, keep: BoolArray) -
 
 
 def go_one_way(part: FloatArray) -> BoolArray:
-    """Return which rows rise, or fall, from each sample to the next."""
+    """Return for each row whether it rises, or falls, from each sample to the next."""
     steps = np.diff(part, axis=1)
     one_way: BoolArray = np.logical_or((steps > 0.0).all(axis=1), (steps < 0.0).all(axis=1))
     return one_way
 
 
 class Ground(NamedTuple):
-    """Range and noise of a log, by which its pieces are judged."""
+    """Range and noise of a log, with which its pieces are compared."""
 
     range: float
     """From the lowest level to the highest."""
@@ -149,7 +149,7 @@ class Ground(NamedTuple):
 
 
 def drop_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> PlateauArray:
-    """Return the pieces that have a level: without those that rise, fall or bend, or are a few samples far apart."""
+    """Return the pieces that have a level, without those that rise, fall or bend, or are a few samples far apart."""
     return plateaus[~_find_moving(values, plateaus, ground)]
 
 
@@ -181,7 +181,10 @@ def _find_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> 
 
 
 def _find_wandering(part: FloatArray, spread: FloatArray, sigma: float) -> BoolArray:
-    """Return which rows, shape (m, length), move: their neighbours differ less than noise of their spread would."""
+    """Return for each row of samples, shape (m, length), whether it moves.
+
+    It does if neighbours differ less than noise with the row's spread would make them.
+    """
     is_short = part.shape[1] < _SHORT_SAMPLES
     max_fraction = _SHORT_WANDERS if is_short else _WANDERS
     wanders: BoolArray = _compare_neighbours(part, sigma) < max_fraction * spread**2
@@ -189,7 +192,7 @@ def _find_wandering(part: FloatArray, spread: FloatArray, sigma: float) -> BoolA
 
 
 def _find_swinging(part: FloatArray) -> BoolArray:
-    """Return which rows, shape (m, length), mostly go on in one direction, as a saw-tooth or a wave does."""
+    """Return for each row, shape (m, length), whether it mostly keeps its direction, as a saw-tooth or a wave does."""
     if part.shape[1] < _SWING_SAMPLES:
         return np.zeros(len(part), bool)
     steps = np.diff(part, axis=1)
@@ -198,7 +201,7 @@ def _find_swinging(part: FloatArray) -> BoolArray:
 
 
 def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
-    """Return the variance of each row, shape (m, length), from the differences of neighbours, without strays."""
+    """Return the variance of each row, shape (m, length), estimated from differences of neighbours, without strays."""
     keep = ~find_strays(part, sigma)
     pairs = keep[:, 1:] & keep[:, :-1]
     squares = (np.diff(part, axis=1) ** 2 * pairs).sum(axis=1)
@@ -209,7 +212,7 @@ def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
 def split_still(
     values: FloatArray, plateaus: PlateauArray, cut: Pieces, ground: Ground
 ) -> tuple[PlateauArray, PlateauArray]:
-    """Return the plateaus that have a level, and of the others the parts that stand still.
+    """Return the plateaus that have a level, and the parts of the other plateaus that have one.
 
     Args:
         values: The log.
@@ -224,7 +227,7 @@ def split_still(
 def _find_still_parts(
     values: FloatArray, moving: PlateauArray, cut: Pieces, ground: Ground
 ) -> PlateauArray:
-    """Return the parts that stand still in pieces that have no level, such as the top between two slopes."""
+    """Return the parts with a level in pieces without one, such as the top between two slopes."""
     if not len(moving):
         return moving
     owners = np.maximum(np.searchsorted(moving["start"], cut[:, 0], side="right") - 1, 0)
@@ -245,7 +248,7 @@ def _find_still_parts(
 
 
 def _trim(values: FloatArray, parts: Pieces, far: float) -> Pieces:
-    """Return parts without the samples at their ends that are far from their medians."""
+    """Return parts of a log without the samples at their ends that differ from their medians by more than `far`."""
     trimmed = parts.copy()
     for index, (start, stop) in enumerate(parts.tolist()):
         part = values[start:stop]
@@ -256,7 +259,7 @@ def _trim(values: FloatArray, parts: Pieces, far: float) -> Pieces:
 
 
 def add_apart(plateaus: PlateauArray, parts: PlateauArray) -> PlateauArray:
-    """Return plateaus and the parts that overlap none of them, in order."""
+    """Return plateaus, and those parts that overlap none of them, in order."""
     after = np.searchsorted(plateaus["start"], parts["start"], side="right")
     stops = np.append(0, plateaus["stop"])
     starts = np.append(plateaus["start"], np.iinfo(np.int64).max)

@@ -30,7 +30,7 @@ FAST_ROWS = 200_000
 
 @dataclass(slots=True)
 class TableTask:
-    """A piece of background work in progress."""
+    """A background task of the table, such as a search, with its progress."""
 
     word: str
     part: float = 0.0
@@ -50,6 +50,10 @@ _STRETCH = 100_000
 def parse_conditions(text: str, columns: list[str]) -> list[ValueCondition]:
     """Return the conditions in a text such as `variable == Colour and value > 50`.
 
+    Args:
+        text: The text.
+        columns: The columns that it may name.
+
     Raises:
         LogError: one is not a condition, or there is no such column.
     """
@@ -66,7 +70,7 @@ def parse_conditions(text: str, columns: list[str]) -> list[ValueCondition]:
 
 @dataclass(frozen=True, slots=True)
 class TableView:
-    """Which rows of a log a table shows, in which order."""
+    """The rows of a log that a table shows, and their order."""
 
     conditions: tuple[ValueCondition, ...] = ()
     fulfilled: IntArray | None = None
@@ -78,7 +82,7 @@ class TableView:
 
 
 class Rows:
-    """The rows and columns that the table shows."""
+    """The rows and columns of a log that the table shows."""
 
     def __init__(self, log: Log) -> None:
         self._log = log
@@ -95,7 +99,7 @@ class Rows:
 
     @property
     def chosen(self) -> str:
-        """Name of the chosen column."""
+        """The name of the selected column."""
         return self.columns[self.column]
 
     def row(self, place: int) -> int:
@@ -103,7 +107,10 @@ class Rows:
         return place if self.view.order is None else int(self.view.order[place])
 
     def place(self, row: int) -> int:
-        """Return the position of a row of the log in the table; for a hidden row that of the next, or 0 if sorted."""
+        """Return the position of a row of the log in the table.
+
+        For a hidden row, it is the position of the next one, or 0 in a sorted table.
+        """
         if self.view.order is None or not len(self.view.order):
             return row
         if self.view.sorted_by:
@@ -116,7 +123,7 @@ class Rows:
         return format_cell(self._log.table.column(column)[row])
 
     def shown(self, first: int = 0, last: int | None = None) -> LogTable:
-        """Return the rows and columns shown as a table; of the rows those from `first` to before `last`."""
+        """Return the shown rows and columns as a table; of the rows those from position `first` to before `last`."""
         table = self._log.table.select(self.columns)
         order = self.view.order
         return table[first:last] if order is None else table.take(order[first:last])
@@ -124,7 +131,7 @@ class Rows:
     # Which rows, in which order
 
     def build_filtered_view(self, conditions: tuple[ValueCondition, ...]) -> TableView:
-        """Return the rows that meet all conditions, in the current order. Slow for a long log.
+        """Return a view of the rows that meet all conditions, in the current order. Slow for a long log.
 
         Raises:
             LogError: a value does not fit its column.
@@ -137,7 +144,10 @@ class Rows:
         return self._arrange(conditions, fulfilled, self.view.sorted_by, self.view.descending)
 
     def build_sorted_view(self, column: str, descending: bool) -> TableView:
-        """Return the same rows, sorted by a column; without a column in the order of the log. Slow for a long log."""
+        """Return a view of the same rows, sorted by a column.
+
+        Without a column, they are in the order of the log. Slow for a long log.
+        """
         return self._arrange(self.view.conditions, self.view.fulfilled, column, descending)
 
     def _arrange(
@@ -157,7 +167,7 @@ class Rows:
     # Which columns
 
     def choose(self, step: int) -> None:
-        """Select another column."""
+        """Select another column, `step` columns to the right."""
         self.column = min(max(self.column + step, 0), len(self.columns) - 1)
 
     def hide(self) -> None:
@@ -185,7 +195,10 @@ class Rows:
         self.columns.insert(self.column, name)
 
     def set_log(self, log: Log) -> None:
-        """Switch to the same log with other columns: new ones are shown; conditions on removed ones are dropped."""
+        """Switch to the same log with other columns: new columns are shown.
+
+        Conditions on removed columns are dropped.
+        """
         before = self._log.table.column_names
         names = log.table.column_names
         chosen = self.chosen
@@ -221,9 +234,10 @@ class Rows:
     ) -> int | None:
         """Return the next position whose row contains a text in a shown column, wrapping around; None if none does.
 
-        The case of letters does not count. Slow for a long log without a match.
+        Case is ignored. Slow for a long log without a match.
 
         Args:
+            text: The text.
             from_place: Position to begin at; searched last.
             step: 1 for forwards, -1 for backwards.
             task: Receives the progress; can stop the search.
@@ -249,7 +263,7 @@ class Rows:
 
 
 def _split_places(from_place: int, count: int, step: int) -> Iterator[tuple[int, int]]:
-    """Yield all positions in ranges, first and one after the last, beginning next to a position and wrapping around."""
+    """Yield ranges (first, one after the last) of all positions, from the one next to a position, wrapping around."""
     middle = from_place + 1 if step > 0 else from_place
     onwards = [(first, min(first + _STRETCH, count)) for first in range(middle, count, _STRETCH)]
     before = [(first, min(first + _STRETCH, middle)) for first in range(0, middle, _STRETCH)]

@@ -48,10 +48,10 @@ _MIN_ROWS = 2
 
 
 class CsvReader:
-    """Reads blocks of one file; names and types of the columns are fixed by the first block.
+    """Reads a text table block by block; the first block fixes names and types of the columns.
 
     Args:
-        rewrite: Returns the cells of a line as text with separators; a line that it does not know as it is.
+        rewrite: Returns a line with separators between its cells; a line of unknown form is unchanged.
     """
 
     def __init__(
@@ -62,7 +62,7 @@ class CsvReader:
         self._rewrite = rewrite
         self._heading = Heading()
         self._tables_left = choices.table - 1
-        """Tables that are still to be passed by."""
+        """The number of tables that are still to be skipped."""
         self._is_over = False
         """Whether the table has ended, so that the rest of the file is another one's."""
         self._has_gaps = False
@@ -74,7 +74,7 @@ class CsvReader:
         return "\t" if self._heading.separator == BLANKS else self._heading.separator
 
     def read(self, block: Block) -> pa.Table | None:
-        """Return the rows of a block; None if it has none of the table."""
+        """Return the rows of a block as a table; None if it has none."""
         if self._rewrite:
             lines = map(self._rewrite, block.text.split("\n"))
             block = Block(block.first_row, "\n".join(lines))
@@ -84,7 +84,7 @@ class CsvReader:
                 if not self._heading.names:
                     return None
             block = Block(block.first_row, self._clean(block.text))
-            # The usual case is fast: every cell is of the known type of its column.
+            # In the usual, fast case every cell has the known type of its column.
             kinds = self._columns.list_plain()
             columns = self._parse_block(block.text, kinds) if kinds else None
             if columns is None or any(map(_has_infinite, columns)):
@@ -101,10 +101,10 @@ class CsvReader:
         return None
 
     def finish(self) -> None:
-        """Raise if the file has fewer tables than the user has asked for.
+        """Check at the end of the file that the table that the user chose exists.
 
         Raises:
-            LogError: the table that was asked for does not exist.
+            LogError: the file has fewer tables.
         """
         if self._tables_left:
             count = self._choices.table - self._tables_left
@@ -125,7 +125,7 @@ class CsvReader:
     # The heading
 
     def _begin(self, block: Block) -> Block:
-        # There may be many comments above a table: read all of them, and some lines of the table.
+        # All comments above the table, which may be many, and some of its lines are read.
         comments = sum(1 for _ in takewhile(lambda line: line[1].startswith("#"), block.lines()))
         lines = list(islice(block.lines(), comments + SNIFFED_LINES))
         if not lines:
@@ -142,7 +142,7 @@ class CsvReader:
         return Block(rows_follow, block.text.split("\n", rows_follow - block.first_row)[-1])
 
     def _clean(self, text: str) -> str:
-        """Return rows without comments, and with tabs instead of separating blanks."""
+        """Return lines without comments; if blanks separate the cells, with tabs instead."""
         if self._heading.has_comments:
             text = _COMMENTS.sub("", text)
         if self._heading.separator == BLANKS:
@@ -152,7 +152,7 @@ class CsvReader:
     # Where the table ends
 
     def _cut_table(self, block: Block) -> tuple[Block, Block | None]:
-        """Return the rows of this table, and the rest from another table's heading on, None without one.
+        """Return the rows of this table, and the rest from another table's heading on; the rest is None without one.
 
         A repeated heading does not end the table.
         """
@@ -178,7 +178,7 @@ class CsvReader:
         return Block(block.first_row, "\n".join(lines)), None
 
     def _find_names(self, lines: Sequence[str]) -> list[str]:
-        """Return the cells of the first line if it is the heading of a table whose rows follow; else none."""
+        """Return the cells of the first line if it is the heading of a table whose rows follow; else an empty list."""
         if not _MAY_BE_NAMES.match(lines[0]):
             return []
         names = [cell.strip() for cell in split_cells(lines[0], self._separator)]
@@ -196,7 +196,7 @@ class CsvReader:
     # Cells
 
     def _parse_block(self, text: str, kinds: Mapping[str, pa.DataType]) -> list[pa.Array] | None:
-        """Parse rows with pyarrow; None if a row has another number of cells, or a cell another type."""
+        """Return rows parsed by pyarrow; None if a row has another number of cells, or a cell another type."""
         if text.isspace() or not text:
             return [pa.nulls(0, pa.string()) for _ in self._heading.names]
         types = {name: kinds.get(name, pa.string()) for name in self._heading.names}
@@ -213,7 +213,10 @@ class CsvReader:
         return [c.chunk(0) if c.num_chunks == 1 else c.combine_chunks() for c in table.columns]
 
     def _parse_lines(self, block: Block) -> tuple[list[pa.Array], list[int]]:
-        """Parse line by line; short rows are filled, long ones cut, and both are noted."""
+        """Return rows parsed line by line, and their rows in the file.
+
+        Short rows are filled, long ones cut, both with a note.
+        """
         width = len(self._heading.names)
         rows = []
         numbers = []
@@ -251,13 +254,13 @@ def _has_infinite(cells: pa.Array) -> bool:
 
 
 def _list_rows(block: Block) -> list[int]:
-    """Return the rows that pyarrow has read: it counts a line of blanks, too."""
+    """Return the row in the file of each line that pyarrow has read: also a line of blanks, but not an empty one."""
     lines = enumerate(block.text.split("\n"), block.first_row)
     return [row for row, line in lines if line]
 
 
 def _count_words(texts: Sequence[pa.Array], typed: Sequence[pa.ChunkedArray]) -> int:
-    """Return how many rows at the end have words where the numbers should be: they are sentences below the table."""
+    """Return how many rows at the end have words in place of numbers: they are sentences below the table."""
     numbers = [
         cells for cells, column in zip(texts, typed, strict=True) if is_floating(column.type)
     ]
@@ -273,7 +276,14 @@ def _count_words(texts: Sequence[pa.Array], typed: Sequence[pa.ChunkedArray]) ->
 def _parse_csv(
     text: str, kinds: Mapping[str, pa.DataType], parse: pa_csv.ParseOptions, **convert: Any
 ) -> pa.Table:
-    """Parse rows without a header; the columns are the keys of `kinds`. Raises ArrowInvalid if a cell does not fit."""
+    """Return rows without a heading as a table; raise ArrowInvalid if a cell does not fit.
+
+    Args:
+        text: The rows.
+        kinds: The columns with their types.
+        parse: Options for parsing.
+        **convert: Options for converting cells.
+    """
     data = text.encode()
     return pa_csv.read_csv(
         pa.BufferReader(data),
@@ -284,7 +294,7 @@ def _parse_csv(
 
 
 def read_exported_csv(text: str) -> pa.Table:
-    """Return the table in a CSV export, each column with the type that all its cells have.
+    """Return the table in a CSV file that tuisim exported, each column with a type that fits all its cells.
 
     Raises:
         ValueError: its rows do not fit its header.
@@ -305,7 +315,10 @@ def read_exported_csv(text: str) -> pa.Table:
 
 
 def _convert_texts(texts: pa.ChunkedArray) -> pa.ChunkedArray:
-    """Return texts as whole numbers, numbers or truth values if all of them are; empty ones are missing numbers."""
+    """Return texts as whole numbers, numbers or truth values if all of them are such.
+
+    It is empty ones are missing numbers.
+    """
     cells = pc.if_else(pc.equal(texts, ""), pa.scalar(None, pa.string()), texts)
     for kind in (pa.int64(), pa.float64()) if len(texts) else (pa.float64(),):
         try:

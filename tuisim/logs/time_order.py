@@ -38,7 +38,10 @@ _MIN_STEPS = {1e-9: 1e7, 1e-6: 1e4, 1e-3: 5.0}
 
 
 def join_times(table: pa.Table) -> pa.Table:
-    """Return a table whose time is in one column; two are joined: seconds and their parts, or date and time of day."""
+    """Return a table with its time in one column, joined if it was in two.
+
+    Two columns can be seconds and their fractions, or date and time of day.
+    """
     names = {}
     for name in table.column_names:
         if match := _UNIT_NAME.fullmatch(name):
@@ -80,7 +83,10 @@ def _join_parts(table: pa.Table, seconds: str, parts: str, unit_s: float) -> pa.
 
 
 def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
-    """Return the unit in s of a time column that names none, from whole steps too large for seconds; else None."""
+    """Return the unit in s of a time column that names no unit, if its whole steps are too large for seconds.
+
+    Otherwise the result is None.
+    """
     if layout.time in (ROW, *COUNTS) or layout.since_first or "line" in table.column_names:
         return None
     if parse_time_name(layout.time).unit_s is not None or not is_numeric(
@@ -98,9 +104,15 @@ def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
 def order_times(
     table: pa.Table, layout: Layout, notes: Notes
 ) -> tuple[pa.Table, Layout, FloatArray | None]:
-    """Return a table, with a column of runs if its time begins again, its layout, and its times in seconds, if any.
+    """Return a table, its layout, and its times in seconds, None without times.
+
+    If the time begins again, another run begins there.
+
+    The runs are then in a further column of the table.
 
     Args:
+        table: The table.
+        layout: The roles of its columns.
         notes: Receives the rows where time goes back.
     """
     if layout.time in (ROW, "row"):
@@ -134,7 +146,8 @@ def _find_restarts(seconds: FloatArray, back: IntArray) -> IntArray:
     """Return the rows at which the time begins again.
 
     Args:
-        back: The rows at which it is less than before.
+        seconds: The time of each row.
+        back: The rows at which it is less than in the row before.
     """
     start = 0
     restarts = []
@@ -150,6 +163,8 @@ def _is_one_clock(table: pa.Table, layout: Layout, back: IntArray) -> bool:
     """Return whether the rows were written in order of time, not one variable after another.
 
     Args:
+        table: The table.
+        layout: The roles of its columns.
         back: The rows at which time is less than in the row before. If no variable is on both sides of such a row,
             another variable begins there.
     """

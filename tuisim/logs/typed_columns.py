@@ -36,7 +36,7 @@ class _Column:
 
 
 class TypedColumns:
-    """Types and number forms of the columns of one file, which are those of their first cells.
+    """The types and number forms of the columns of one file, which their first cells decide.
 
     Args:
         decimal: The decimal sign; empty to find it.
@@ -49,13 +49,13 @@ class TypedColumns:
         """By name; missing while all cells of a column were empty."""
 
     def list_plain(self) -> dict[str, pa.DataType]:
-        """Return the columns that pyarrow can parse, with their types; the others are read as texts."""
+        """Return the columns that pyarrow can parse itself, with their types; the others are read as texts."""
         forms = (PLAIN, DECIMAL_COMMA) if self.has_decimal_commas else (PLAIN,)
         return {name: column.kind for name, column in self._columns.items() if column.form in forms}
 
     @property
     def has_decimal_commas(self) -> bool:
-        """Whether the numbers of a column have a comma as decimal sign."""
+        """Whether the numbers of any column have a comma as decimal sign."""
         return any(column.form is DECIMAL_COMMA for column in self._columns.values())
 
     def convert(
@@ -64,12 +64,12 @@ class TypedColumns:
         list_rows: Callable[[], Sequence[int]],
         separator: str,
     ) -> pa.Table:
-        """Return a table of texts, some columns of which may have their type already, with the types of its columns.
+        """Return a table of texts with its columns converted to their types; columns that have their type are kept.
 
         Args:
             columns: The columns by name.
             list_rows: Returns the row of each cell in the file; called if one of them is not a number.
-            separator: What separates the cells in a line.
+            separator: The separator of cells in a line.
         """
         texts = {
             name: cells
@@ -82,10 +82,10 @@ class TypedColumns:
         )
 
     def _find_columns(self, texts: Mapping[str, pa.Array], separator: str) -> None:
-        """Find type and number format of columns that have cells for the first time."""
+        """Set the types and number forms of columns that have their first cells."""
         forms = {name: find_form(cells, separator, self._decimal) for name, cells in texts.items()}
         if DECIMAL_COMMA in forms.values():
-            # Where one column has decimal commas, points are between thousands.
+            # If one column has decimal commas, points in the others separate thousands.
             forms = {
                 name: find_form(texts[name], separator, ",") or form for name, form in forms.items()
             }
@@ -122,7 +122,7 @@ class TypedColumns:
 
 
 def _choose_text_kind(cells: pa.Array) -> pa.DataType:
-    """Return the type for a text column: `CODED` if its first cells often repeat, else a string."""
+    """Return the type for a text column: `CODED` if its first cells often repeat, else that of strings."""
     count = len(cells)
     often = count > _MIN_CELLS and _MIN_REPEATED * pc.count_distinct(cells).as_py() <= count
     return CODED if often else pa.string()

@@ -12,7 +12,7 @@ WHOLE = ("run", "line")
 
 
 class Unit(NamedTuple):
-    """A unit of measurement."""
+    """A unit of measurement in a column's name."""
 
     sign: str
     """The symbol after a number."""
@@ -64,7 +64,7 @@ _OTHER = re.compile(
 
 
 def can_be_light(name: str) -> bool:
-    """Return whether a variable may be the reading of a colour sensor, by its name."""
+    """Return whether the name of a variable allows it to be the reading of a colour sensor."""
     name = name.partition(" #")[0]
     return bool(_LIGHT.search(name)) or not (
         _OTHER.search(name) or parse_unit(name).sign not in ("", "%")
@@ -83,5 +83,5 @@ def begins_at_zero(name: str, low: float, high: float) -> bool:
 
 
 def parse_unit(name: str) -> Unit:
-    """Return the unit from a name's suffix; both texts are empty if there is none."""
+    """Return the unit in the suffix of a column's name; both of its texts are empty if there is none."""
     return next((unit for end, unit in UNITS.items() if name.endswith(end)), _NONE)

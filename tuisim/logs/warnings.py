@@ -10,19 +10,19 @@ from tuisim.logs.choices import NO_CHOICES
 ROWS_NAMED = 3
 """Rows that a warning names; more are only counted."""
 MAX_WARNINGS = 8
-"""Warnings about a whole file that are told; more are only counted."""
+"""Warnings about a whole file that are listed; more are only counted."""
 MAX_CHARACTERS = 200
 """Length of a warning; a longer one, which quotes something of the file, is cut."""
 
 
 def list_rows(rows: Sequence[int]) -> str:
-    """Return rows of a file in words: the first few by number."""
+    """Return rows of a file in words: the numbers of the first few, then `…` if there are more."""
     more = ", …" if len(rows) > ROWS_NAMED else ""
     return f"{'row' if len(rows) == 1 else 'rows'} {', '.join(map(str, rows[:ROWS_NAMED]))}{more}"
 
 
 class Notes:
-    """Collects warnings about skipped or guessed data."""
+    """Collects warnings about data of a file that were skipped or guessed."""
 
     def __init__(self) -> None:
         self.form = NO_CHOICES
@@ -34,11 +34,11 @@ class Notes:
         self._general: dict[str, None] = {}
 
     def say(self, text: str) -> None:
-        """Add a warning about the whole file, once."""
+        """Add a warning about the whole file, unless it was added before."""
         self._general[text] = None
 
     def add(self, singular: str, plural: str, rows: Sequence[int]) -> None:
-        """Add a warning about some rows; none without rows.
+        """Add a warning about some rows that could not be read; nothing is added without rows.
 
         Args:
             singular: The problem, such as `cell is not a number`.
@@ -49,21 +49,21 @@ class Notes:
             text = (singular, plural)
             self._counts[text] = self._counts.get(text, 0) + len(rows)
             named = self._rows.setdefault(text, [])
-            # One more than are named, so that the others are hinted at.
+            # One row more than are named is kept, which shows that there are others.
             named += rows[: ROWS_NAMED + 1 - len(named)]
 
     def say_rows(self, text: str, rows: Sequence[int]) -> None:
-        """Add a warning about rows that were read all the same; none without rows."""
+        """Add a warning about rows that were read nevertheless; nothing is added without rows."""
         if rows:
             self.say(f"{text} ({list_rows(rows)})")
 
     @property
     def left_out(self) -> int:
-        """Number of rows or cells that could not be read."""
+        """The number of rows or cells that could not be read."""
         return sum(self._counts.values())
 
     def texts(self) -> tuple[str, ...]:
-        """Return the warnings, one sentence each."""
+        """Return the warnings as sentences."""
         texts = [
             f"{counted(count, *text)} ({list_rows(self._rows[text])})"
             for text, count in self._counts.items()
