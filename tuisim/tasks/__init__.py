@@ -1,4 +1,4 @@
-"""Tasks: what a program is to do, whether its runs did it, why not, and lessons and marks made of that."""
+"""Tasks of programs: their goals, the judgement of runs, reasons for failures, lessons and marks."""
 
 __all__ = [
     "execute",

@@ -31,7 +31,7 @@ from tuisim.tasks.task import OUTPUT_CHARACTERS, Keep, Result, Task, VariableSta
 
 MATS_KEPT = 20
 MAX_OUTPUT_BYTES = 16 << 20
-"""A failed run that printed more is not kept: its end says what happened, and nobody reads so much."""
+"""A failed run with more output, in bytes, is not kept: its end says what happened."""
 
 
 def execute(task: Task, folder: Path) -> Result:
@@ -43,7 +43,7 @@ def execute(task: Task, folder: Path) -> Result:
     """
     try:
         return _run_task(task, folder)
-    except Exception as error:  # Also a bug of tuisim: one run must not end the others.
+    except Exception as error:  # This includes faults of tuisim, which must not end other runs.
         return build_unjudged(task, describe_fault(error))
 
 
@@ -64,7 +64,7 @@ def _run_task(task: Task, folder: Path) -> Result:
         try:
             ended = _run_to_end(handle, task.real_time_limit_s)
             run = handle.stored()
-            # The run has ended: reading each of these once is enough.
+            # The run has ended, so each of these is read only once.
             for view in (run.telemetry, run.output):
                 view.read_new()
                 view.holds = True
@@ -91,7 +91,7 @@ def _run_task(task: Task, folder: Path) -> Result:
 def _run_to_end(handle: RunHandle, limit_s: float) -> Ended:
     ended = handle.wait(limit_s or None)
     while ended is None and (left_s := limit_s - handle.time_used_s) > 0:
-        # On a busy machine the child had to wait for a processor.
+        # On a busy machine the child waits for a processor: only the time that it used counts.
         ended = handle.wait(left_s)
     if ended is None:
         handle.stop()
@@ -123,7 +123,7 @@ def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, En
     """
     if not task.is_replayed or ended.end in (End.FALSIFIED, End.DISK_FULL):
         return run, ended
-    # Imported on demand: most batches need it not.
+    # Imported on demand, as most batches do not need it.
     from tuisim.engine.runs.replay import replay_run
 
     run, parted = replay_run(run, task.options.actions, task.real_time_limit_s or math.inf)
@@ -232,7 +232,7 @@ def _compute_variable(values: Sequence[float]) -> VariableStatistics:
     high = max(values)
     scale = find_scale(low, high)
     scaled = [value / scale for value in values]
-    # Exact sums: the result does not depend on the order of equal values. Rounding may lead out of their range.
+    # `fsum` is exact, so the order of values does not matter. The limits undo rounding out of the values' range.
     mean = min(max(math.fsum(scaled) / count, min(scaled)), max(scaled))
     std = math.sqrt(math.fsum((value - mean) ** 2 for value in scaled) / max(count - 1, 1))
     return VariableStatistics(values[-1], count, mean * scale, std * scale, low, high)
@@ -251,7 +251,7 @@ def _read_beginning(rows: Iterable[OutputRow]) -> str:
 def has_machine_cause(error: BaseException) -> bool:
     """Return whether the direct cause of an error is an `OSError` of this machine, such as a full disk.
 
-    See `of_the_machine`.
+    See `base.regular_file.of_the_machine`.
     """
     cause = error.__cause__
     return isinstance(cause, OSError) and of_the_machine(cause)

@@ -27,7 +27,7 @@ from tuisim.tasks.task import Result, Task
 CHUNK = 4
 """Tasks that a worker gets at once: to hand them over one by one costs as much as a short run."""
 CHUNKS_AHEAD = 2
-"""Chunks for each worker that are handed over before their turn."""
+"""Chunks for each worker that are submitted in advance."""
 MAX_TRIES = 3
 """A task whose workers have ended this often gets a result without a run."""
 
@@ -143,7 +143,7 @@ class _Pool:
         for task in unfinished:
             self._tries[task.index] = self._tries.get(task.index, 0) + 1
             if self._tries[task.index] < MAX_TRIES:
-                # One by one: which of them has ended the worker is not known.
+                # Each task runs alone, since it is not known which of them has ended the worker.
                 self._submit([task])
             else:
                 why = f"the process that ran it has ended {MAX_TRIES} times"
@@ -178,7 +178,7 @@ def _is_done(future: Future[list[Result]]) -> bool:
 
 
 def _prepare_worker() -> None:
-    # Ctrl+C reaches every process of the terminal: the parent ends this one itself.
+    # Ctrl+C reaches every process of the terminal; here it is ignored, and the parent ends this process.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     start_warm_process()

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 BRICK_TEXTS: Mapping[str, Stream] = {"sound": Stream.SPEECH, "display": Stream.CONSOLE}
-"""What can match a regular expression, at the moment it is played or written, with its rows."""
+"""The texts of the brick that conditions can match, by name, each with the kinds of its rows."""
 _LEDS: Mapping[str, str] = {f"led_{name.replace(' ', '_')}": name for name in LED_NAMES}
 _BUTTONS: Mapping[str, str] = {f"button_{name}": name for name in BUTTONS}
 _DARK = "display_px"
@@ -29,7 +29,7 @@ BRICK_COLUMNS = (*_LEDS, *_BUTTONS, _DARK)
 """Brightness of the LEDs from 0 to 255, 1 for a pressed button, and the dark pixels of the display's picture."""
 BRICK_STREAMS = (Stream.LED, Stream.DISPLAY, *BRICK_TEXTS.values())
 _GREEN = 255
-"""Until the program sets a LED, all are green."""
+"""The brightness of green until the program sets the LEDs, which are all green at first."""
 
 
 def resolve_column(condition: ValueCondition, run: RunSpec) -> ValueCondition:

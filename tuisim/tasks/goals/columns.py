@@ -60,7 +60,7 @@ def _refuse(text: str, comparison: ValueCondition, error: ConfigError | ValueErr
 def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> str:
     """Return how near a column came to the number that it is compared with, to end a sentence.
 
-    It is empty without a number.
+    The result is empty without a number.
     """
     import numpy as np
 
@@ -83,7 +83,7 @@ def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan)
             named = resolve_column(check, evidence.spec)
             true = evidence.held(named)
             if named.source is ValueSource.SAMPLE:
-                # Between two samples there is nothing to look at.
+                # A condition on samples is judged only at ticks with samples.
                 true, seen = _check_samples(named, evidence)
                 counts &= seen[span.ticks]
             parts.append((true[span.ticks], f"{named} was not so"))
@@ -160,7 +160,10 @@ def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceS
 def _find_moments(
     named: ValueCondition, evidence: Evidence, span: EvidenceSpan
 ) -> list[EvidencePoint]:
-    """Return each moment in a span at which a comparison became true; for lines and samples, each one that meets it."""
+    """Return the moments in a span at which a comparison became true.
+
+    For printed lines and samples, these are the moments of all that meet the comparison.
+    """
     import numpy as np
 
     if named.source is not ValueSource.COLUMN:

@@ -76,7 +76,7 @@ class KeepCondition(Condition):
     SHORT: ClassVar[str] = "comparisons"
 
     comparisons: tuple[str, ...] = ()
-    """Such as `ultrasonic_mm > 80`; of samples each is looked at."""
+    """Such as `ultrasonic_mm > 80`; a comparison with samples must be true of each sample."""
     gap_mm: tuple[Gap, Gap] | None = None
     """The least and the largest distance of the robot's body from the nearest obstacle or wall."""
     share: Share = 1.0

@@ -55,7 +55,7 @@ LIMITS: Mapping[ConditionKind, tuple[str, ...]] = {
 }
 """The limits that a condition of a kind can have."""
 WINDOWED = (ConditionKind.REACHED, ConditionKind.HELD)
-"""The kinds of conditions that can count for a while only, see `Goal.within_s`."""
+"""The kinds of conditions that can be limited to a duration, see `Goal.within_s`."""
 
 
 def check_count(entries: tuple[object, ...], key: str) -> None:
@@ -78,7 +78,7 @@ class Condition:
 
     KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = ""
-    """The key that is meant if a file gives a value instead of a table; its value may be one text instead of a list."""
+    """The key of a value that a file gives in place of a table; a single text may replace a list."""
 
 
 def require_regex(pattern: str, key: str) -> None:

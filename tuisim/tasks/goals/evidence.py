@@ -1,4 +1,4 @@
-"""What a recording tells about a run, as arrays and rows, computed when a condition first asks for it."""
+"""Data of a recording for judging goals, as arrays and rows, computed when a condition first needs them."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Finding:
     """When a condition was met or, if it must stay true, was first violated; or why it was not met."""
 
     moment: EvidencePoint | None = None
-    """None: not up to now."""
+    """When it happened; None if it has not happened so far."""
     reason: str = ""
     """Why it is not reached, or how it was violated, in one sentence; empty where nothing needs to be said."""
     line: int | None = None
@@ -58,13 +58,13 @@ def format_distance(distance_mm: float) -> str:
 def share_words(share: float) -> str:
     """Return a share from 0 to 1 for a sentence, such as `45 %`.
 
-    Rounded down, so that it names none that was not reached.
+    It is rounded down, so that the text names no share that was not reached.
     """
     return f"{int(share * 1000) / 10:g} %"
 
 
 MAX_ROWS = 200_000
-"""Later rows of output are not judged: a program that floods could fill the memory."""
+"""The most rows of output that are judged, so that a program that floods cannot fill the memory."""
 
 JudgedRun: TypeAlias = "StoredRun | RunHandle"
 """A run to judge: a stored one, or one that may still be running."""
@@ -81,7 +81,7 @@ class EvidencePoint(NamedTuple):
 
 
 START = EvidencePoint(-1, -1)
-"""Before everything that can happen."""
+"""The moment before the first tick and row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,11 +125,11 @@ class Evidence:
         else:
             self.end = run.ended
             self.ended = run.ended is not None
-            # These are only the answers given beforehand; the rows have those that the user typed.
+            # These answers were given before the run; those that the user typed are in the rows.
             self.answers = run.answers
         self.records: Array = run.telemetry.array()
         self.memo: dict[str, Any] = {}
-        """What conditions have computed from it, and may need again."""
+        """A cache of what conditions have computed from the recording."""
 
     @cached_property
     def falsified(self) -> str:
@@ -162,7 +162,7 @@ class Evidence:
         """The readings of sensors and motors that the program took.
 
         Raises:
-            LogError: the record of them is missing or damaged.
+            LogError: the file of the readings is missing or damaged.
         """
         return read_readings(self._run.folder, is_over=self.ended)
 
@@ -289,7 +289,7 @@ class Evidence:
     def find_moment(self, time_s: float) -> EvidencePoint | None:
         """Return the moment after all ticks and rows up to a time.
 
-        It is None if the recording does not go beyond that time.
+        The result is None if the recording does not go beyond that time.
         """
         if time_s >= self.end_s:
             return None
@@ -309,7 +309,7 @@ class Evidence:
     def span(self, start: EvidencePoint, stop: EvidencePoint | None) -> EvidenceSpan:
         """Return the part of the run between two moments, without both.
 
-        If `stop` is None, up to the end of the recording.
+        If `stop` is None, the part goes to the end of the recording.
         """
         end = self.last if stop is None else stop
         return EvidenceSpan(

@@ -148,7 +148,7 @@ def add_line_to_errors(path: Path, text: str | None = None) -> Iterator[None]:
 
 
 def list_example_names() -> list[str]:
-    """Return the names of the examples: `log_greys` stands for `log_greys_goals.toml`.
+    """Return the names of the example tasks: `log_greys` for the file `log_greys_goals.toml`.
 
     Raises:
         ConfigError: there is no folder of programs.
@@ -186,7 +186,7 @@ def _find_file(path: Path) -> Path:
 def _build_goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
     """Return the task in a parsed goals file, with the goals of the world file that it names.
 
-    It is None if neither has goals.
+    The result is None if neither has goals.
     """
     location = Location(str(path))
     base = load_task(path.parent / user_path(data["world"]))[1] if "world" in data else None
@@ -217,7 +217,7 @@ def _build_goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | No
         (*known, *others),
         world.inputs,
     )
-    # Without a world, programs choose the robot.
+    # Without a world, each program chooses its robot, whose columns are not known here.
     if has_world_values(world.settings):
         runs = build_runs(task.worlds)
         check_columns(own, runs, location.at("goal"))
@@ -446,7 +446,7 @@ def _find_circle(
 
 
 _STATEMENT = re.compile(r"[ \t]*(?:[\w\"'-].*=|\[.*\][ \t]*(?:#.*)?$)")
-"""What a line looks like that begins a statement; some others look like it, too."""
+"""Matches every line that begins a TOML statement, and some other lines."""
 _STEP = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
 
 
@@ -463,7 +463,7 @@ def find_key_line(text: str, key: str) -> int:
     while path and not _has(_parse_lines(lines), path):
         path.pop()
 
-    # Cut only where statements begin: otherwise a value on thousands of lines would be parsed thousands of times.
+    # The text is cut only where statements begin, so that a long value is not parsed once for each of its lines.
     starts = [index for index, line in enumerate(lines) if _STATEMENT.match(line)]
     ends = [*starts, len(lines)]
 
@@ -503,7 +503,7 @@ def build_runs(worlds: Sequence[TrialWorld]) -> list[RunSpec]:
         chosen_robot if isinstance(chosen_robot, RobotChoice) else choose_robot(chosen_robot)
         for chosen_robot in chosen
     ]
-    # Whoever runs a program may choose another profile: this one has the most columns.
+    # A run may have another profile; this one has the most columns.
     return [RunSpec(robot.spec, WorldSpec(), PROFILES["ev3"]) for robot in robots]
 
 

@@ -128,7 +128,7 @@ def _find_calls(
 
 
 def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return whether the program's text has each of a condition's calls, or which call is missing."""
+    """Return whether the program's text has each of a condition's calls, or else which call is missing."""
     calls = _find_calls(condition, evidence)
     if isinstance(calls, Finding):
         return calls
@@ -139,7 +139,7 @@ def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -
 
 
 def find_avoided(condition: AvoidCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return whether the program's text has none of a condition's calls, or where it has one."""
+    """Return whether the program's text has none of a condition's calls, or else where it has one."""
     calls = _find_calls(condition, evidence)
     if isinstance(calls, Finding):
         return calls
@@ -220,7 +220,7 @@ def judge(
     """
     import numpy as np
 
-    # Records of a damaged file may hold any numbers.
+    # Records of a damaged file may contain any numbers.
     with np.errstate(all="ignore"):
         judged = _Judge(goals, Evidence(run, field))
         return tuple(judged.build_judgement(goal) for goal in goals)
@@ -241,7 +241,7 @@ class _Judge:
         return Judgement(goal, changes, outcome.reason, self._find_line(outcome), happened)
 
     def _change(self, moment: EvidencePoint, state: GoalState) -> Change:
-        # A moment after the last tick has no record of its own.
+        # A moment after the last tick has no record, so the last one is used.
         tick = max(0, min(moment.tick, self._evidence.last.tick))
         return Change(tick, self._evidence.time_s(moment), state, *self._evidence.place_mm(tick))
 
@@ -268,7 +268,7 @@ class _Judge:
 
     def _judge(self, goal: Goal) -> _Outcome:
         if self._evidence.falsified:
-            # The recording may show what has not happened.
+            # The recording is falsified, so it proves nothing.
             return _Outcome(
                 GoalState.MISSED, reason=f"It does not count: {self._evidence.falsified}."
             )

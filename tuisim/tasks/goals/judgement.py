@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from tuisim.tasks.goals.spec import Goal
 
 GOAL = "goal_"
-"""Before the name of a goal in the name of its column in a table."""
+"""The prefix of a goal's name in the name of its column in a table."""
 
 
 class GoalState(StrEnum):
@@ -23,7 +23,7 @@ class GoalState(StrEnum):
     MET = "met"
     MISSED = "missed"
     UNKNOWN = "unknown"
-    """It cannot be judged; the program is not to blame."""
+    """The goal cannot be judged, for a reason that is not the program's fault."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,7 @@ def sum_points(met: Iterable[float]) -> float:
     Args:
         met: The points of the goals that are met.
     """
-    # In this order: `max(0.0, nan)` would be 0.
+    # The order matters: `max(nan, 0.0)` is NaN, but `max(0.0, nan)` is 0.
     return max(math.fsum(met), 0.0)
 
 

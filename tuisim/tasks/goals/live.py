@@ -53,7 +53,7 @@ class LiveGoals:
     """
 
     def __init__(self, goals: Sequence[Goal], run: SteppedRun, mat: Field) -> None:
-        # `judge` asks a run only for what a SteppedRun has, too.
+        # `judge` uses only those attributes of a run that a SteppedRun has, too.
         self._judge = partial(judge, goals, cast("RunHandle", run), mat)
         self._run = run
         self._open = {each.goal.name for each in self._judge() if not each.is_good}

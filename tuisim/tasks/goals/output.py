@@ -35,9 +35,9 @@ from tuisim.tasks.goals.spec import (
 _MAX_SHOWN = 60
 _STILL_MM_S = 10.0
 _STOP_TICKS = 20
-"""A robot that becomes so slow within so many ticks has stopped: the motors' commands return a little earlier."""
+"""Ticks within which a robot must become slow to count as standing: motor commands return a little earlier."""
 _MAX_TRIED = 1000
-"""Of so many lines that say what is asked for, one must have been printed where and how it must be."""
+"""The most matching lines that are tried for one pattern: one of them must have the right place and readings."""
 
 
 def _describe_pattern(pattern: str) -> str:
@@ -48,7 +48,7 @@ def _describe_pattern(pattern: str) -> str:
     words = re.sub(r"\(\?i\)|\\b|[\^$]", "", pattern)
     if words == re.escape(words).replace("\\ ", " "):
         return f"matches {_quote(words)}"
-    # A lookaround often says what a line must not have: the goal's own words tell the student.
+    # A lookaround often says what a line must not contain, which the pattern itself would not explain to a student.
     return (
         "says what the goal needs"
         if re.search(r"\(\?<?[=!]", pattern)
@@ -76,7 +76,7 @@ def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSp
     next_place = 0
     last = -1
     line = None
-    # Tick of the line before, since which a reading must have been taken.
+    # The tick of the line before: a reading must have been taken since then.
     since = -1
     for count, pattern in enumerate(condition.lines):
         search = evidence.search(pattern)
@@ -90,7 +90,7 @@ def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSp
                 break
             fault = fault if fault.reason else Finding(None, problem, row.line)
         else:
-            # The program's line that printed what the reason quotes.
+            # The finding names the program's line that printed the quoted text.
             about = rows[-1][1].line if rows and line is None else line
             if fault.reason:
                 return fault
@@ -170,7 +170,7 @@ def _explain_fault(
         return ""
     noun = NOUNS[condition.reading]
     ticks = read_ticks(condition.reading, evidence)
-    # A reading in the tick of the line before counts: it may have decided both lines.
+    # A reading in the tick of the line before is accepted, as both lines may depend on it.
     if not ((ticks >= since) & (ticks <= row.tick)).any():
         ago = "since the line before it" if since >= 0 else "before that"
         return f"{when}, but the program did not read the {noun} {ago}."
@@ -195,7 +195,7 @@ def _describe_wrong_place(
 ) -> str:
     """Return where the robot was at a tick and where it must be, to end a sentence.
 
-    It is empty if it was in the right place.
+    The result is empty if it was in the right place.
     """
     place = select_place(condition, count)
     x_mm, y_mm = evidence.place_mm(tick)
@@ -308,7 +308,7 @@ def _explain_unmeasured(
             return f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
     reading = condition.reading
     place = select_place(condition, count)
-    # The count of a motor is judged by where it is printed, not where it was read.
+    # The count of a motor must be printed in the right place; where it was read does not matter.
     if reading in (None, Reading.MOTOR):
         fault = _describe_wrong_place(condition, count, sample.tick, evidence)
         if fault or reading is None:
@@ -359,7 +359,7 @@ def _find_missing_level(
 
 
 def _is_near(sample: Sample, level: float, condition: LogCondition) -> bool:
-    # Rounding of the difference must not matter.
+    # The margin allows for rounding of the difference.
     return abs(sample.value - level) <= condition.within + 1e-9 * max(1.0, abs(level))
 
 
@@ -400,7 +400,7 @@ def _explain_missing_level(
 def _explain_form_fault(name: str, evidence: Evidence) -> str:
     """Return why a printed line with the name and a number is not a sample, to follow a sentence.
 
-    It is empty without such a line.
+    The result is empty without such a line.
     """
     like = re.compile(rf"(?:.*\W)?{re.escape(name)}\s*(?:[:=]\s*)?[+-]?\.?\d").match
     row = next(

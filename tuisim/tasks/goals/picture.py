@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 _DARK = 128
-"""Pixels of an image that are darker on average belong to the picture."""
+"""Pixels of an image whose mean channel is below this value belong to the picture."""
 _MAX_POINTS_TOGETHER = 4096
 """Cells of a drawing that are compared in one step, which limits the memory."""
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 CONTACT_MM = 0.01
-"""A gap below this is contact: a robot that is stopped by an obstacle stands less than this before it."""
+"""A smaller gap in mm counts as contact: a robot that an obstacle stops is nearer to it than this."""
 
 _WALLS = ("the left wall", "the right wall", "the lower wall", "the upper wall")
 
@@ -43,7 +43,7 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
     records = evidence.records[span.ticks]
     first = span.first_tick
     if condition.at_end and span.over and not len(records):
-        # The goal before it was met in the last tick: the robot is now where it is at the end.
+        # If the goal before was met only in the last tick, the span is empty, and the last record shows the end.
         records = evidence.records[-1:]
     if not len(records):
         return Finding(None, "The robot was not simulated at that time.")
@@ -69,14 +69,14 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
         return Finding(EvidencePoint(first + int(enough[0])))
     longest = int(np.argmax(stayed_s))
     text = f"The robot stayed there for at most {stayed_s[longest]:.2f} s, {condition.for_s:g} s are needed."
-    # The line that moved the robot away, else the one that brought it there.
+    # The finding names the line that moved the robot away, else the one that brought it there.
     return Finding(None, text, find_motion_line(records, longest + 1))
 
 
 def _find_arrivals(there: Array) -> Array:
     """Return for each tick at the place the index of the tick at which the robot arrived.
 
-    It is 0 if it was there from the start.
+    The index is 0 if the robot was there from the start.
 
     The values at other ticks have no meaning.
 
@@ -175,7 +175,7 @@ def _measure_way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
     away_mm = np.hypot(x, y)
     dx, dy = np.diff(x), np.diff(y)
     squared = dx * dx + dy * dy
-    # A robot that was moved by hand does not pass what is between.
+    # A robot that was moved by hand does not pass the places between.
     driven = (np.diff(records["actions"].astype("i4")) == 0) & (squared > 0)
     part = np.clip(-(x[:-1] * dx + y[:-1] * dy) / np.where(driven, squared, 1.0), 0.0, 1.0)
     between = np.hypot(x[:-1] + part * dx, y[:-1] + part * dy)
@@ -231,7 +231,7 @@ def _find_first_wrong(
     tick = span.first_tick + int(wrong.argmax())
     x_mm, y_mm = evidence.place_mm(tick)
     what = f"{text} at {evidence.time_words(tick)}" if tick else at_start
-    # At the start no line of the program is to blame.
+    # At the start no line of the program has moved the robot.
     return Finding(
         EvidencePoint(tick),
         f"The robot {what}, at x {x_mm:.0f} mm, y {y_mm:.0f} mm.",

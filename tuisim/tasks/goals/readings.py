@@ -40,9 +40,9 @@ _MODES: Mapping[Reading, tuple[str, ...]] = {
 }
 _ABOVE = 0.5
 _BELOW = 1.0
-"""How far a printed level may be off the reading: programs round it, or cut off what is behind the point."""
+"""By how much a printed level may be below the reading, as programs round it or cut off decimals."""
 _NOISE_SHARE = 0.1
-"""The same for each percent of the light's noise."""
+"""The additional tolerance for each percent of the light noise."""
 
 
 def describe_ranges(place: Mapping[str, Range]) -> str:
@@ -146,7 +146,7 @@ def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) 
 
 
 def find_off_line(condition: FollowCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return whether, by the end of a span, the robot was on a line for too small a share of the time."""
+    """Return at the end of a span whether the robot was on a line for too small a share of the time."""
     import numpy as np
 
     named = {sensor.name: sensor for sensor in evidence.spec.robot.color_sensors}
@@ -185,7 +185,7 @@ def find_off_line(condition: FollowCondition, evidence: Evidence, span: Evidence
 def _compute_light_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:
     """Return the light in percent of the mat's pixel under a point of the robot, at every tick.
 
-    Off the mat, of the floor.
+    Off the mat, it is the light of the floor.
     """
     import numpy as np
 

@@ -43,7 +43,7 @@ MAX_GOALS = 200
 
 
 class BodyPart(StrEnum):
-    """Which part of the robot must be in or out of an area."""
+    """The part of the robot that must be inside or outside an area."""
 
     CENTRE = "centre"
     """The midpoint between the robot's wheels."""
@@ -61,7 +61,7 @@ class Reading(StrEnum):
 
 
 Range = tuple[X, X]
-"""From where to where along x, or along y."""
+"""The lower and upper limit along x, or along y, in mm."""
 
 
 def _check_ranges(condition: PrintCondition | LogCondition | ReadCondition, count: int) -> None:
@@ -96,7 +96,7 @@ class ReachCondition(Condition):
     """The robot comes to a place, a heading, or both."""
 
     x_mm: X | None = None
-    """None: any."""
+    """None for any x."""
     y_mm: Y | None = None
     heading_deg: Heading | None = None
     """Counter-clockwise from +x; full turns do not matter."""
@@ -162,7 +162,7 @@ class OutsideCondition(AreaCondition):
     """The robot stays out of an area."""
 
     def __post_init__(self) -> None:
-        # `super()` without arguments does not find the class that `slots=True` makes.
+        # `super()` without arguments fails here: `slots=True` replaces the class by a new one.
         AreaCondition.__post_init__(self)
         left, lower, right, upper = self.box_mm
         covers = left <= 0 and lower <= 0 and right >= FIELD_WIDTH_MM and upper >= FIELD_HEIGHT_MM
@@ -174,7 +174,7 @@ class OutsideCondition(AreaCondition):
 class TouchNothingCondition(Condition):
     """The robot touches no obstacle and no wall.
 
-    One that it touches at the start only counts after it has moved away.
+    One that it touches at the start only counts after the robot has moved away.
     """
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
@@ -272,7 +272,7 @@ class PrintCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class LogCondition(Condition):
-    """The samples of a variable have certain levels."""
+    """The program logs samples of a variable with certain levels."""
 
     name: str
     levels: tuple[Number, ...]
@@ -463,15 +463,15 @@ class Goal:
     hint: str = ""
     """Shown if the goal is missed."""
     hidden: bool = False
-    """Whether no student is told of it."""
+    """Whether the goal is hidden from students."""
     before: str | float | None = None
     """A goal or a time: the condition must be reached before."""
     after: str | float | None = None
-    """A goal or a time: only what happens later counts."""
+    """A goal or a time: only what happens after it is judged."""
     until: str | float | None = None
-    """A goal, which must be met then, or a time: the condition must be held up to it."""
+    """A goal, which must be met, or a time: the condition must stay true until then."""
     within_s: float | None = None
-    """How long it counts from its beginning: it must be reached within that time, or held for that time."""
+    """A duration from the beginning of the goal: the condition must become true in it, or stay true for it."""
 
     @property
     def needs(self) -> tuple[str, ...]:

@@ -50,11 +50,11 @@ class TrialWorld:
     inputs: tuple[str, ...] = ()
     """The answers to `input()` in this world, if its goals have no dialogue."""
     hidden: bool = False
-    """Whether no student is told what is there, and what happened there."""
+    """Whether the world, and what happens in it, are hidden from students."""
 
     @property
     def answers(self) -> tuple[str, ...]:
-        """The answers to `input()`: those of the dialogues in `own_goals`, in their order, else `inputs`."""
+        """The answers to `input()`: those of the dialogues in `own_goals`, in order, else `inputs`."""
         dialogues = (
             part
             for goal in self.own_goals
@@ -128,7 +128,7 @@ def parse_other_worlds(
                 {key: table[key] for key in _WORLD_KEYS if key in table}, path, changes=True
             )
         except ConfigError as error:
-            # The error names the key inside this table, or it is about another file.
+            # An error in this file lacks the place of the table; one in another file is complete.
             if error.file != place.file:
                 raise
             raise files.with_location(error, place.file, f"{place.key}.{error.key}") from None

@@ -153,7 +153,7 @@ def find_shipped_paths() -> dict[str, Path]:
 def find_lesson_paths(folder: Path | str | None = None) -> dict[str, Path]:
     """Return the files of all lessons by name: tuisim's own, then those of a folder.
 
-    One of the same name replaces tuisim's.
+    A lesson in the folder replaces one of tuisim's of the same name.
 
     Args:
         folder: The folder; None for that in the environment variable `TUISIM_LESSONS`, if it is set.
@@ -199,7 +199,7 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
     if os.sep in word or word.lower().endswith((SUFFIX, *FILE_SUFFIXES)):
         return user_path(word)
     paths = find_lesson_paths(folder)
-    # By its text: a number of thousands of digits is no number for Python.
+    # Numbers are compared as texts, since Python refuses to convert thousands of digits.
     numbered = {str(number): path for number, path in enumerate(paths.values(), start=1)}
     if word not in paths and word.lstrip("0") in numbered:
         return numbered[word.lstrip("0")]

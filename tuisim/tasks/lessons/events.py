@@ -279,7 +279,11 @@ def note_fault(check: NoteCheck, event: Noted) -> str:
 
 
 def parse_event(check: Check, text: str) -> Event:
-    """Return the event that a text in a lesson's file stands for: an answer, a breakpoint, an expression, a file name.
+    """Return the event for a text in a lesson's file, which is an answer, a breakpoint, an expression or a file name.
+
+    Args:
+        check: The check of the step.
+        text: The text.
 
     Raises:
         ValueError: the check is about runs, or needs a number and the text is none.

@@ -146,7 +146,7 @@ def _split_front_matter(lines: Sequence[str], path: Path) -> tuple[str, int]:
 def _merge_told_lesson(data: Any, path: Path) -> Any:
     """Return the parsed TOML of a lesson.
 
-    If the lesson is a version of another one for another library, merged with that.
+    If the lesson is a version of another one for another library, its TOML is merged with that lesson's.
     """
     if TELLS not in data:
         return data

@@ -29,7 +29,7 @@ class WholeTable(TableElement):
     """A Markdown table whose columns are at least as wide as their longest word.
 
     If the width is too small for that, each row becomes a list: its first cell, then the other cells with their
-        headings.
+    headings.
     """
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
@@ -62,7 +62,7 @@ def _measure_column(
 def _compute_widths(columns: Sequence[Measurement], room: int) -> list[int] | None:
     """Return the widths of a table's columns in terminal cells.
 
-    It is None if their longest words do not fit beside each other.
+    The result is None if their longest words do not fit beside each other.
 
     Args:
         columns: For each column the widths of its longest word and longest text.
@@ -124,7 +124,7 @@ _THEME = Theme(
     }
 )
 PLAIN = Style(color=palette.INK)
-"""The style of a text that is nothing special."""
+"""The style of plain text."""
 
 
 class _Markdown(Markdown):
@@ -156,7 +156,7 @@ def render_markdown(text: str, width: int) -> list[Line]:
 
 
 def _run(text: str, style: Style | None) -> Run:
-    # Without background colours, which differ from those of the panel.
+    # Background colours are dropped, as they differ from that of the panel.
     decoration = (
         (style or Style()) + Style(bgcolor="default")
         if style and style.bgcolor

@@ -18,7 +18,7 @@ from tuisim.base.regular_file import read_regular
 from tuisim.tasks.lessons.spec import Lesson
 
 FOLDER = "lessons"
-"""In the user's data folder: the progress, and the programs that the student has written."""
+"""The folder in the user's data folder for the progress and the student's programs."""
 _FILE = "progress.json"
 _MAX_BYTES = 4_000_000
 

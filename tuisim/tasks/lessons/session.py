@@ -61,11 +61,11 @@ from tuisim.tasks.lessons.spec import (
 from tuisim.tasks.lessons.story import build_story
 
 WorldJudgements: TypeAlias = list[tuple[TrialWorld, tuple[Judgement, ...]]]
-"""How a program does in other worlds."""
+"""Other worlds, each with the judgements of a program in it."""
 NOTES_PERIOD_S = 0.5
-"""Least time between two looks at the notes of a run."""
+"""The least time between two readings of the notes of a run."""
 _PAUSE_S = 10.0
-"""The same after notes that could not be read."""
+"""The least time to the next reading after notes that could not be read."""
 
 
 class Change(StrEnum):
@@ -73,11 +73,11 @@ class Change(StrEnum):
 
     NONE = "none"
     SHOW = "show"
-    """What is known of the step must be shown anew."""
+    """The display of the step must be updated."""
     TRY = "try"
-    """So it is, and `Attempt.trial` is to run in the background, and go to `take_trial`."""
+    """Also, `Attempt.trial` must be run in the background, and its result passed to `take_trial`."""
     GO_ON = "go on"
-    """The step is over: `begin_step` follows."""
+    """The step is over: call `begin_step`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,14 +274,14 @@ class LessonSession:
         if form := describe_form(check, text):
             raise TuisimError(f"{text}: type {form}")
         self.attempt.seen |= sight.panels
-        # A run may have printed millions of lines, which most questions are not about.
+        # The output, which may be millions of lines, is read only for questions about it.
         printed: tuple[str, ...] = ()
         if sight.recording is not None and check.printed:
             output = load_run(sight.recording.folder).output
             printed = tuple(row.text for row in output.read_all_rows())
         seen = frozenset(self.attempt.seen)
         typed = Typed(text, x_mm, seen, printed, sight.recording is not None)
-        # An answer from another place is not counted as wrong: the question is not about that place.
+        # An answer given too early or at another place is not counted as a wrong one.
         if first := explain_unready(check, typed):
             raise TuisimError(first)
         if self._take(typed):
@@ -356,7 +356,7 @@ class LessonSession:
         attempt.elsewhere = None if is_from_start else run.spec
         if self._take(JudgedRun(run.run_id, run.spec.seed, _list_met(judgements), is_from_start)):
             return Change.GO_ON
-        # A run that has ended without passing is a try.
+        # A run that has ended without passing the step counts as a try.
         states = {each.state for each in judgements if each.goal.name in check.goals}
         is_missed = GoalState.MISSED in states and GoalState.OPEN not in states
         if sight.is_over and is_missed and attempt.run_counted != run.run_id:
@@ -393,7 +393,7 @@ class LessonSession:
             ]
             if missed and not remark:
                 remark = f"Also tried {other.where}, it does not work{_tell_start(other)}: {_explain_miss(missed[0])}"
-        # If the student has begun another run meanwhile, this one counts, but the remark must be on the other.
+        # If the student has begun another run meanwhile, the remark on this one is no longer shown.
         if self.attempt.trial is trial:
             self.attempt.remark = remark
         return Change.SHOW

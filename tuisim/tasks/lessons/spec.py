@@ -57,7 +57,7 @@ class RunCheck:
     SHORT: ClassVar[str] = "goals"
     """The key that is meant if a file gives a value instead of a table."""
     EXCLUDES: ClassVar[Mapping[Way, str]] = {}
-    """The wrong ways that no such check admits, each with the reason."""
+    """The wrong ways that are impossible with such a check, each with the reason."""
 
     goals: tuple[str, ...]
     """Names of goals in the lesson, all to be met by one run."""
@@ -291,7 +291,7 @@ class WrongProgram:
     line: int
     """Where it begins in the lesson's file."""
     way: Way | None = None
-    """The wrong way that it goes; None for another fault."""
+    """The kind of its fault; None for another fault."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -317,7 +317,7 @@ class LessonStep:
     """Answers that must not pass such a check."""
     wrong_programs: tuple[WrongProgram, ...] = ()
     excludes: Mapping[Way, str] = field(default_factory=dict)
-    """The wrong ways that it does not admit, each with the reason."""
+    """The wrong ways that are impossible in this step, each with the reason."""
 
     def find_missing_ways(self) -> tuple[Way, ...]:
         """Return the wrong ways that the step neither tries with a wrong program nor excludes with a reason."""
@@ -328,7 +328,7 @@ class LessonStep:
         }
         match self.check:
             case QuestionCheck(choices=choices, at_x_mm=place, seen=seen, run=run):
-                # Trials by `is_met` take what must happen before an answer as done: they cannot try it.
+                # The check of a lesson does not try what must happen before an answer, so the question's keys decide.
                 tried = {
                     Way.LITERAL: self.wrong or choices,
                     Way.PLACE: place,
@@ -364,7 +364,7 @@ class Lesson:
 
     @property
     def task(self) -> GoalsFile:
-        """The lesson's goals in its world, as a task."""
+        """The lesson's world and goals, as a task."""
         return GoalsFile(self.path, self.title, self.goals, self.settings)
 
     @property

@@ -25,7 +25,7 @@ def build_story(judgements: Iterable[Judgement]) -> str:
     parts = dict.fromkeys(
         part for each in sorted(judgements, key=_time_s) for part in _list_parts(each)
     )
-    # Of several goals about one variable, the one that was met last.
+    # Of several goals about one variable, the last one replaces the others.
     facts = {part.partition(" at ")[0]: part for part in parts}
     return f"Your run: {'; '.join(facts.values())}." if facts else ""
 

@@ -40,7 +40,7 @@ class Trial:
     """Whether it must pass."""
     seed: int
     way: Way | None = None
-    """The wrong way that it goes, if it is said."""
+    """The kind of its fault, if the lesson's file gives it."""
 
 
 def list_trials(lesson: Lesson) -> list[Trial]:
@@ -117,7 +117,7 @@ def run_model(lesson: Lesson, step: LessonStep | None) -> Recording:
         try:
             handle.wait()
             run = handle.stored()
-            # All is read now, because the run's folder is removed.
+            # The whole recording is read now, since the run's folder is removed afterwards.
             for view in (run.telemetry, run.output):
                 view.read_new()
                 view.holds = True
@@ -144,7 +144,7 @@ def find_faults(lesson: Lesson) -> list[str]:
 
 
 def _list_worlds(trial: Trial) -> list[tuple[_Key, TrialWorld | None]]:
-    """Return the worlds in which a trial runs, each with the key of its result; None stands for the lesson's world."""
+    """Return the worlds in which a trial runs, each with the key of its result; the lesson's own world is None."""
     check = trial.step.check
     assert isinstance(check, RunCheck)
     others = [

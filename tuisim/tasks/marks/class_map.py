@@ -14,7 +14,7 @@ from tuisim.pictures.scene.view import Viewport
 
 _DOT_PX = 5.0
 _GRID_MM = 4.0
-"""Places nearer than this share a dot."""
+"""Places that are nearer to each other share a dot."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,7 +54,7 @@ def list_tokens(text: str) -> Iterator[Token]:
             if token.type in _SKIPPED:
                 continue
             if token.type == tokenize.ERRORTOKEN and token.string in "'\"":
-                # A text that does not end: each quote in it would be looked at to the end of the line.
+                # A string without an end stops the search, as each further quote would be searched to the end.
                 return
             kind = _ONE_TOKEN.get(token.type, token.string)
             if token.type == tokenize.NAME and not keyword.iskeyword(kind):
@@ -70,9 +70,9 @@ TOKENS = 10
 WINDOW = 6
 """Of so many passages in a row, one is a fingerprint: a common passage of `TOKENS + WINDOW - 1` tokens is found."""
 MIN_TOKENS = 40
-"""Shorter programs are not compared: there are few ways to write them."""
+"""Shorter programs are not compared, as they can be alike by chance."""
 MAX_TOKENS = 50_000
-"""So many of a student's are compared: more are data, or would take the memory of this machine."""
+"""The most tokens of a student that are compared, which limits the memory; longer texts are mostly data."""
 COMMON_SHARE = 0.25
 MIN_COMMON = 5
 """A passage in more than this share of the programs, and in more than so many, is common to the class."""

@@ -56,7 +56,7 @@ def build_entries(
                     problem=_describe_error(error, student),
                     is_unread=has_machine_cause(error),
                 )
-            except Exception as error:  # Whatever it is, the others go on.
+            except Exception as error:  # Any error concerns this student only.
                 student = replace(
                     student, source=None, problem=describe_fault(error), is_unread=True
                 )
@@ -108,7 +108,7 @@ def _check_background(spec: RunSpec) -> None:
     """
     image = background(spec.world.background).image
     if not image.is_relative_to(backgrounds_folder()):
-        # An image that cannot be read in a run would look like a fault of this machine.
+        # The image is read here, as an error in a run would look like a fault of this machine.
         read_pixels(image, spec.world.background_fit)
 
 

@@ -57,7 +57,7 @@ def build_feedback(sheet: Sheet, row: SheetRow, source: str = "") -> str:
     """
     try:
         return _build_feedback(sheet, row, source)
-    except Exception as error:  # Whatever it is, the others go on.
+    except Exception as error:  # Any error concerns this student only; the others get feedback.
         return f"{describe_fault(error)}\n"
 
 

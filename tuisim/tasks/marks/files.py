@@ -20,9 +20,9 @@ from tuisim.engine.runs.child.isolation import MOST_FILES
 LEFT_OUT = shutil.ignore_patterns(
     *("__pycache__", "__MACOSX", "._*", ".DS_Store", ".git", ".venv", "venv", "node_modules")
 )
-"""Names in a hand-in that the student has not made."""
+"""Names in a hand-in that do not come from the student, such as `__MACOSX`."""
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-"""Errors about the copy, not about the file."""
+"""Codes of errors that concern the copy, not the student's file."""
 _PIECE = 1 << 20
 _LOOSE_BYTES = 64 << 20
 _MAX_RATIO = 100
@@ -95,7 +95,7 @@ def _find_data(file: BinaryIO, place: int, size: int) -> tuple[int, int]:
         start = os.lseek(file.fileno(), place, os.SEEK_DATA)
         return start, min(os.lseek(file.fileno(), start, os.SEEK_HOLE), size)
     except OSError as error:
-        # Not every file system knows holes.
+        # ENXIO means that no data follow; other errors, that the file system does not support holes.
         return (size, size) if error.errno == errno.ENXIO else (place, size)
 
 

@@ -133,7 +133,7 @@ def write_gradebook(
         ExportError: it cannot be written.
     """
     item = sheet.title or ITEM
-    # Students see these columns: hidden goals, and those that take points off, are only in the total.
+    # Students see these columns, so hidden goals and those that take points off are only in the total.
     indices = [
         index
         for index, column in enumerate(sheet.columns)

@@ -16,7 +16,7 @@ _MOODLE = re.compile(
     r"(?P<name>.+)_(?P<id>\d+)_assignsubmission_(?P<kind>[a-z]+)(?:_(?P<file>.*))?", re.DOTALL
 )
 _MOODLE_NUMBER = re.compile(r"_\d+_assignsubmission_")
-"""What only one place of a name can be: with two, a student could have written the first or the second of them."""
+"""Matches Moodle's number, which is used only if it matches once, as students choose parts of the name."""
 _CANVAS = re.compile(
     r"(?P<name>[^_]+)(?:_LATE)?_(?P<id>\d+)_(?P<attempt>\d+)_(?P<file>.+)", re.DOTALL
 )
@@ -33,7 +33,7 @@ class GradebookKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class HandIn:
-    """What one student has handed in."""
+    """The files and folders that one student has handed in."""
 
     paths: Mapping[str, Path]
     """Files by their own names, and folders by the kind of their submission."""

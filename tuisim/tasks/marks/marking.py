@@ -235,7 +235,7 @@ class Marking:
         """Read the students' programs, and check the world in which each runs.
 
         Raises:
-            ConfigError: the world of the goals, or a setting, is wrong, or none of the programs can run by its profile.
+            ConfigError: the task's world, or a setting, is wrong, or the profile fits none of the programs.
         """
         self._entries, self.students = build_entries(
             self.students, self._request.task, self._request.settings

@@ -38,7 +38,7 @@ _GIVEN_UP = frozenset(
         End.DISK_FULL,
     }
 )
-"""Ends that cost as much with every further seed."""
+"""Ends after which further seeds are not run, as each would take as long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,10 +197,10 @@ def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
         seed: The seed.
         parts: The outcomes in each world, that of the first world first.
     """
-    # Put the worlds that a student may know of before the hidden ones.
+    # Outcomes in visible worlds come first, so that their reasons are shown to the student.
     parts = sorted(parts, key=lambda part: part.hidden)
     goals: dict[str, GoalOutcome] = {}
-    # Of a run of which nothing is recorded, no goal is known to be met.
+    # A run without a recording has no outcomes of goals, so it is not known which goals are met in all worlds.
     is_known = all(part.goals for part in parts)
     for part in parts:
         for goal in part.goals if is_known else ():
@@ -244,7 +244,7 @@ def make_portable(text: str, folder: Path | str) -> str:
             sys.prefix,
             sys.base_prefix,
         } - {"/"}
-        # Inner folders first.
+        # Inner folders come first, as the first alternative that matches is taken.
         places = "|".join(map(re.escape, (str(folder), *sorted(modules, reverse=True))))
         text = re.sub(rf"(?<![\w/.~-])(?:{places})/", "", text)
     return _ADDRESS.sub("0x…", text)
@@ -264,7 +264,7 @@ def _describe_failure(result: Result) -> str:
     if result.end == End.STOPPED:
         return "stopped, because it took too long"
     if result.end == End.STALLED:
-        # The summary depends on who noticed it first, the program's process or its host.
+        # The summary is fixed here, since it depends on which process noticed it first, the program's or its host.
         return "stuck: no simulated time passed"
     lines = source_lines(result.error.rstrip("\n"))
     return (

@@ -103,7 +103,7 @@ def write_reports(
                 path = written[recorded]
             except ExportError:
                 raise
-            except Exception as error:  # Whatever it is, the others go on.
+            except Exception as error:  # Any error concerns this report only.
                 path = ""
                 fault = describe_fault(error)
             yield Report(
@@ -156,7 +156,7 @@ def _make_portable(run: StoredRun) -> StoredRun:
 
 
 def _compute_digest(run: StoredRun) -> str:
-    """Return a hash of what a run recorded, hexadecimal."""
+    """Return a hash of a run's recording, hexadecimal."""
     digest = hashlib.sha256(run.telemetry.array().tobytes())
     folder = run.program.working_directory.encode("utf-8", "surrogateescape")
     for stream, row in run.output.read_raw_rows():
@@ -234,13 +234,13 @@ def _judge_goals(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dic
     """Return when and where a run met or missed goals, by name, without goals that only the program's text decides."""
     if outcome.end == End.FALSIFIED:
         return {}
-    # Judging is slow to import, and most runs have been judged.
+    # Imported on demand: judging is slow to import, and most runs are judged already.
     from tuisim.tasks.goals.judge import judge
 
     try:
         judgements = judge(goals, run)
     except LogError:
-        # The recording is damaged: the outcome has what is known of the run.
+        # If the recording is damaged, the report has only the outcome.
         return {}
     return {
         judgement.goal.name: judgement.event

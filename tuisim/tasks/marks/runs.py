@@ -80,10 +80,14 @@ def run_entries(
 ) -> Generator[tuple[str, Outcome]]:
     """Run every student's program with every seed; yield names of students and outcomes as they become known.
 
-    A program that hangs, floods or dies with the first seed is not run with the others in that world; if this happens
-        in
-    the first world, it is not run in the other worlds either. Outcomes that the journal has are not run again. Closing
-    the iterator stops the programs that run. An unexpected error with one student gives an outcome that does not count.
+    A program that hangs, floods or dies with the first seed is not run with the others in that world; in the first
+    world, it is then not run in the other worlds either. Outcomes in the journal are not computed again. Closing the
+    iterator stops the running programs. An unexpected error with one student gives an outcome that does not count.
+
+    Args:
+        entries: The students.
+        plan: How the programs are run.
+        journal: The outcomes so far, to which new ones are added.
 
     Raises:
         LogError: the journal cannot be read or written.
@@ -92,7 +96,7 @@ def run_entries(
     for entry in entries:
         try:
             turns[entry.student.name] = _list_turns(entry, plan)
-        except Exception as error:  # Whatever it is, the others go on.
+        except Exception as error:  # Any error concerns this run only; the others go on.
             yield entry.student.name, Outcome(plan.seeds[0], "", describe_fault(error))
     given_up: set[tuple[str, str]] = set()
     first, *others = (world.where for world in plan.worlds)
@@ -168,7 +172,7 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
     if not unknown:
         return
     with create_temporary_home("tuisim-mark-") as home:
-        # A program sees the resolved path: `make_portable` must know that one.
+        # The program sees the resolved path, which `make_portable` must find in its texts.
         workspace = home.resolve()
         uncopied: list[tuple[str, Outcome]] = []
         for result in run_many(_build_tasks(unknown, plan, workspace, uncopied), plan.jobs):
@@ -176,11 +180,11 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
             place = workspace / str(result.index)
             try:
                 outcome = build_outcome(result, turn.seed, place, turn.world)
-                # In a list of runs, all programs of a class may have the same name.
+                # A tag names the student, as all programs of a class may have the same name.
                 if outcome.run_id:
                     words = turn.entry.student.name.split()
                     RunStore().tag(outcome.run_id, [STUDENT_TAG + "_".join(words)])
-            except Exception as error:  # Whatever it is, the others go on.
+            except Exception as error:  # Any error concerns this run only; the others go on.
                 outcome = _build_unjudged(turn, error)
             remove_tree(place)
             if outcome.counts:
@@ -204,7 +208,7 @@ def _build_tasks(
         student = turn.entry.student
         try:
             folder = copy_files(student, workspace / str(index))
-        except Exception as error:  # Whatever it is, the others go on.
+        except Exception as error:  # Any error concerns this run only; the others go on.
             uncopied.append((student.name, _build_unjudged(turn, error)))
             continue
         program = build_program(

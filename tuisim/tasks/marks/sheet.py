@@ -211,7 +211,7 @@ def build_row(
     if not student.source or not ordered:
         return _build_empty_row(student, columns, outcomes)
     totals = [_compute_points(columns, outcome) for outcome in ordered]
-    # In a task without points, every goal counts.
+    # In a task without points, all goals are counted.
     counted_goals = [column for column in columns if column.points] or columns
     incomplete = [outcome for outcome in ordered if _has_missed(outcome, counted_goals)]
     failed = incomplete[0] if incomplete else None
@@ -292,7 +292,7 @@ def _build_cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
     points = math.nan if is_unknown else round_points(column.points * met / len(goals))
     for outcome, goal in goals:
         if goal is None:
-            # Of a run of which nothing is recorded, it is known only that it failed.
+            # A run without a recording has no goals, only a failure.
             return Cell(points, met, outcome.failure, 0, outcome.seed, outcome.hidden)
         if not goal.is_good:
             return Cell(points, met, goal.reason, goal.line, outcome.seed, goal.hidden)
@@ -310,19 +310,19 @@ def _find_reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
     names = {column.name: column.say for column in columns}
     missed = [goal for goal in outcome.goals if not goal.is_good and goal.name in names]
     if outcome.failure:
-        # A program that was stopped has no line of an error; what it did not get done has one.
+        # A program that was stopped has no line of an error; the first missed goal with a line gives one.
         return outcome.failure, outcome.line or next((goal.line for goal in missed if goal.line), 0)
     return (missed[0].reason or names[missed[0].name], missed[0].line) if missed else ("", 0)
 
 
 def round_points(value: float) -> float:
     """Return points or a share, rounded as they are shown and stored."""
-    # Adding 0 makes -0 a 0.
+    # Adding 0 turns -0 into 0.
     return round(value, DIGITS) + 0.0
 
 
 def _cut_middle(name: str, max_length: int) -> str:
-    # Similar names differ at one of their ends: both are kept.
+    # Both ends of the name are kept, as similar names usually differ at one of them.
     end = max_length // 3
     return name if len(name) <= max_length else f"{name[: max_length - end - 1]}…{name[-end:]}"
 

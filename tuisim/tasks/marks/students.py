@@ -29,7 +29,7 @@ _NO_PROGRAM = {
 """What students hand in instead of a program, by the end of its name, and what to do."""
 ZIP_SUFFIX = ".zip"
 _PACKAGE = "__init__.py"
-"""What makes a folder a package is no program."""
+"""The file that makes a folder a package, which is not a main program."""
 _LINK = "it is a link; hand in the files themselves"
 _MAX_LEVELS = 50
 
@@ -232,7 +232,7 @@ def _build_student(hand_in: HandIn, search: _Search) -> Student:
     try:
         path = gather_files(hand_in, search.build_place(hand_in.name)) if hand_in.name else path
         student = _read_student(path, search)
-    except Exception as error:  # Whatever it is, the others go on.
+    except Exception as error:  # Any error concerns this student only; the others are read.
         student = Student(name, path, problem=describe_fault(error), is_unread=True)
     return replace(student, name=_quote_name(hand_in.name) or student.name, ids=hand_in.ids)
 
@@ -289,7 +289,7 @@ def _enter_folder(path: Path, search: _Search) -> Path:
 def _explain_no_program(name: str) -> str:
     """Return what a student must do with a file whose suffix shows that it was meant as a program.
 
-    It is empty for other files.
+    The result is empty for other files.
     """
     return next((why for ending, why in _NO_PROGRAM.items() if name.lower().endswith(ending)), "")
 
@@ -329,10 +329,12 @@ def _explain_refusal(folder: Path, name: str, search: _Search) -> str:
 
 
 def find_outside_option(student: Student) -> str:
-    """Return the option of the student's magic line that names a file outside the folder; empty if there is none.
+    """Return the option of the student's magic line that names a file outside the student's folder.
 
-    That file would be read with the rights of whoever marks. If the hand-in is a single file, folders and programs
-    beside it are other students', and are outside, too.
+    It is empty if there is none.
+
+    That file would be read with the rights of the tutor. If the hand-in is a single file, other files in its folder are
+    outside, too, as they are other students'.
     """
     assert student.source is not None
     is_file = not student.path.is_dir()

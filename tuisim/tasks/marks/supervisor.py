@@ -28,7 +28,7 @@ def list_processes() -> dict[int, tuple[int, str]]:
         if name.isdigit():
             try:
                 with open(f"/proc/{name}/stat", "rb") as file:
-                    # The name, in parentheses, may contain anything.
+                    # The process name in parentheses may contain any characters, so the last parenthesis ends it.
                     state, parent = file.read().rpartition(b")")[2].split()[:2]
             except (OSError, ValueError):
                 continue
@@ -102,7 +102,7 @@ def keep_running() -> Iterator[None]:
     if not os.path.isdir("/proc/self"):
         yield
         return
-    # Not at the top: the supervisor itself does not need it.
+    # Imported on demand: the supervisor process itself does not need it.
     import subprocess
 
     command = [sys.executable, "-I", "-S", __file__, str(os.getpid())]

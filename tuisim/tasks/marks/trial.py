@@ -42,7 +42,7 @@ from tuisim.tasks.marks.students import Student, find_students
 from tuisim.tasks.task import Keep
 
 ASK = ""
-"""Stands for a question, which is answered."""
+"""A line that means a question, which the program must ask."""
 _MAX_REPEATED = 200
 _LETTERS = "a1 .:-AZ_"
 """Characters that stand for a class of them, the first that fits."""
@@ -54,7 +54,7 @@ def answer_lines(goals: Sequence[Goal]) -> list[str]:
     ordered: dict[str, Goal] = {}
 
     def add(goal: Goal) -> None:
-        # This ends: goals do not refer to each other in a circle.
+        # The recursion ends, since goals do not refer to each other in a circle.
         if goal.name not in ordered:
             if isinstance(goal.after, str):
                 add(by_name[goal.after])

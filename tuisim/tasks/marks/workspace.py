@@ -64,7 +64,7 @@ def compute_digest(student: Student) -> str:
         relative = os.path.relpath(path, student.path.parent)
         digest.update(os.fsencode(relative) + b"\0")
         try:
-            # Read only the path of the target: the target itself may not be the student's file.
+            # A link is hashed by its target's path, since the target itself may not be the student's file.
             if path.is_symlink():
                 digest.update(hashlib.sha256(os.fsencode(os.readlink(path))).digest())
             else:
@@ -101,5 +101,5 @@ def _list_files(path: Path) -> Iterator[Path]:
     for folder, folders, names in os.walk(path):
         left_out = LEFT_OUT(folder, folders)
         folders[:] = sorted(name for name in folders if name not in left_out)
-        # A named pipe or a device would block.
+        # Only regular files are read: a named pipe or a device would block.
         yield from (file for name in sorted(names) if os.path.isfile(file := Path(folder, name)))

@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from tuisim.engine.runs.run_folder import StoredRun
 
 _MIN_READINGS = 20
-"""A program that reads less often does not look for anything."""
+"""The least number of light readings of a program that looks for something."""
 _LOST_LINE = "LineFollowErrorLostLine"
 """What `follow_line` of ev3dev2 raises."""
 _MAX_LINES = 64
-"""A program that reads on more lines is not asked about each."""
+"""The most reading lines of a program that are analysed."""
 
 
 def describe_blank_mat(run: StoredRun) -> str:
     """Return that the mat is plain white and how to get a line, if a finished program steered by light there.
 
-    Else empty.
+    Otherwise the text is empty.
     """
     world = run.spec.world
     is_blank = world.background == EMPTY_MAT and not world.pen_marks

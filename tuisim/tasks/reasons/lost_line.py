@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
 
 MIN_READINGS = 3
-"""A program that reads a sensor less often does not look for anything."""
+"""The least number of readings of a sensor by a program that looks for something."""
 _MIN_CONTRAST_PC = 40.0
 """Less difference between the darkest and the brightest reading is no line on its ground."""
 _DARKER_PC = 5.0
@@ -44,7 +44,7 @@ _MIN_RETURNS = 3
 """So many returns to the line are several."""
 _MIN_GAP_S = 1.5
 _LONGER = 3.0
-"""A loss lasts so long, and is so many times longer than any time beside the line before."""
+"""The least factor between the duration of a loss and the longest time beside the line before it."""
 _SOON_S = 0.4
 _MIN_TURN_DPS = 5.0
 """A robot steers if its rate of turn changes by so much within this time."""
@@ -92,7 +92,7 @@ def find_lost_lines(
         left, end = way.find_gap(number)
         is_looking = np.searchsorted(read, end) - np.searchsorted(read, left) >= MIN_READINGS
         if is_looking and way.was_followed(number):
-            # The sensors come first among the points.
+            # `zip` takes only the sensors, which come first among the points.
             dark = {eye.name: true for eye, true in zip(eyes, seen.is_dark, strict=False)}
             yield _name_loss(dark, watched, left, hz, seen.is_black)
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _MIN_READINGS = 20
 """A program that reads less often while the robot drives does not look for anything."""
 _MIN_WAY_MM = 200.0
-"""On a shorter way it may not have come to it yet."""
+"""The least distance that the robot must drive: before, it may not have come to another colour."""
 _SAME_LIGHT = 25
 """A sensor whose channels change by less, of 255, sees the same."""
 
@@ -47,7 +47,7 @@ def find_one_color(
 ) -> OneColor | None:
     """Return the only colour that every light sensor of the program saw while the robot drove far.
 
-    None if the sensors saw more colours, if the program read too seldom, or if the robot did not drive far.
+    The result is None if the sensors saw more colours, the program read too seldom, or the robot did not drive far.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
@@ -81,7 +81,7 @@ def find_one_color(
 def describe_colors(loop: LoopEnd, device: str, codes: Array, has_codes: bool) -> str:
     """Return the colour that a loop waited for and the colours that it read.
 
-    It is empty if it read the one that it waited for.
+    The result is empty if it read the one that it waited for.
 
     Args:
         loop: The loop.

@@ -43,9 +43,9 @@ if TYPE_CHECKING:
     from tuisim.tasks.reasons.lost_line import LostLine
 
 _EXPECTED_ENDS = frozenset({End.FINISHED, End.STOPPED, End.TIME_LIMIT})
-"""Ends that are no fault by themselves."""
+"""Ends of runs that are not reasons by themselves."""
 _TRACEBACK = "Traceback"
-"""How the error text of an exception begins."""
+"""The beginning of a traceback in error output."""
 
 
 class ReasonKind(IntEnum):
@@ -58,7 +58,7 @@ class ReasonKind(IntEnum):
     ENDED = auto()
     DIFFERS = auto()
     MISTAKEN = auto()
-    """What the program did, and may not have been meant to do."""
+    """The program did something that was probably not meant."""
 
 
 @dataclass(frozen=True, slots=True)

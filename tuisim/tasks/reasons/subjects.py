@@ -10,7 +10,7 @@ from tuisim.engine.runs.readings import MODES_BY_KIND
 
 
 class Subject(Enum):
-    """What a program can wait for."""
+    """What a program can wait for: a kind of sensor, button, connection or data."""
 
     BUTTONS = auto()
     TOUCH = auto()
@@ -44,12 +44,12 @@ HANDS: dict[Subject, tuple[str, ...]] = {
 }
 """What can be pressed by hand for a subject that is read at other places than `KEYS_BY_PORT`."""
 HAND_SUBJECTS = (Subject.BUTTONS, Subject.REMOTE)
-"""While the robot moves, a look at these is a guard, not a wait."""
+"""Reading these while the robot moves is a guard, not a wait."""
 PRESSED = (*HAND_SUBJECTS, Subject.TOUCH)
-"""While the program logs or plays, a look at these that only ends it is a guard."""
+"""Reading these only to end a program that logs or plays sounds is a guard, not a wait."""
 SEEN = (Subject.COLOR, Subject.DISTANCE, Subject.PROXIMITY)
-"""A robot that drives waits for these first."""
+"""A robot that drives most likely waits for these."""
 MEASURED = (Subject.DISTANCE, Subject.PROXIMITY, Subject.GYRO)
 """A program that only computes with these waits for nothing."""
 OUTSIDE_SUBJECTS = (Subject.CONNECTION, Subject.DATA, Subject.GAMEPAD)
-"""Each recorded look at these was in vain."""
+"""Every recorded reading of these was in vain."""

@@ -86,7 +86,7 @@ class _Series:
 
 @dataclass(frozen=True, slots=True)
 class Unmet:
-    """A loop's or move's condition that was not met or only just missed, or another fault of a line of a program."""
+    """A fault at a line of a program, such as a loop whose condition was not met or only just missed."""
 
     time_s: float
     line: int
@@ -97,7 +97,7 @@ class Unmet:
 def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     """Return what a program waited for in its last loop or move, if its run goes on, or a limit or the user ended it.
 
-    None if it waited for nothing, or if that is not known.
+    The result is None if it waited for nothing, or if that is not known.
 
     Args:
         run: The run.
@@ -110,7 +110,7 @@ def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     """Return where a finished loop just missed the light that it waited for.
 
-    It is None if no loop did, or if that is not known.
+    The result is None if no loop did, or if that is not known.
 
     No reading quite reached the light, or it was there only between two readings.
 
@@ -122,7 +122,9 @@ def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 
 
 def find_stale_angle(run: StoredRun, mat: Field | None = None) -> Unmet | None:
-    """Return a loop that ended at once because nobody had reset the gyro; None if none did, or if that is not known.
+    """Return a loop that ended at its first reading because the gyro was not reset.
+
+    It is None if there is none or it is not known.
 
     Args:
         run: The run.
@@ -134,7 +136,7 @@ def find_stale_angle(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 def find_recount(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     """Return a line of the program that counted one band of the mat twice.
 
-    It is None if there is none, or if that is not known.
+    The result is None if there is none, or if that is not known.
 
     Args:
         run: The run.
@@ -146,7 +148,7 @@ def find_recount(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     """Return why a program ended too early: before its motors could turn, or because it only defines functions.
 
-    Else None.
+    Otherwise the result is None.
 
     Args:
         run: The run.
@@ -210,7 +212,7 @@ class _Search:
     def _scales(self) -> dict[str, float]:
         """The scales of motors by port: degrees in the program per degree of the motor.
 
-        A port without an entry has 1.
+        A port without an entry has the scale 1.
         """
         # Imported on demand: few runs wait for a motor.
         from tuisim.engine.runs.command_events import CommandIndex
@@ -268,7 +270,7 @@ class _Search:
                     yield Unmet(series.ticks[0] / self._hz, loop.line, text)
 
     def find_stale_angles(self) -> Iterator[Unmet]:
-        """Yield loops that waited for an angle of the gyro at first, and ended at once when they began again."""
+        """Yield loops that first waited for an angle of the gyro and, when run again, ended at their first reading."""
         import numpy as np
 
         lines = self._records["line"]
@@ -331,7 +333,7 @@ class _Search:
     def _find_stay(self, loop: LoopEnd) -> tuple[int, int] | None:
         """Return the first tick in a loop and the one after its last.
 
-        It is None if the loop was entered never or more than once.
+        The result is None if the loop was entered never or more than once.
         """
         # Imported on demand, as numpy is.
         from tuisim.engine.runs.arrays import find_spans
@@ -344,7 +346,7 @@ class _Search:
     def _describe(self, loop: LoopEnd, stay: tuple[int, int]) -> str:
         """Return what a loop waited for, and what it read.
 
-        It is empty if the loop's condition was met, or if that is not known.
+        The result is empty if the loop's condition was met, or if that is not known.
         """
         if loop.is_silent and not loop.name:
             return "its endless loop to end, in which nothing waits, reads or breaks"
@@ -371,7 +373,7 @@ class _Search:
     def _name_nearest(self, loop: LoopEnd, series: _Series) -> str:
         """Return which value came nearest to the limit of a loop.
 
-        If it was the first value, how the values changed after it.
+        If that was the first value, return how the values changed after it.
         """
         values = series.values
         nearest = int(abs(values - loop.limit).argmin())
@@ -411,7 +413,7 @@ class _Search:
     ) -> tuple[int, str] | None:
         """Return the first tick at which the light met a loop's condition between two readings, and a description.
 
-        Else None.
+        Otherwise the result is None.
         """
         import numpy as np
 
@@ -419,7 +421,7 @@ class _Search:
         if every is None:
             return None
         meets = COMPARE[loop.operator]
-        # The last read may have ended the loop.
+        # At the first tick that meets the condition, the reading may have ended the loop.
         first = int(meets(every.values, loop.limit).argmax())
         tick = int(every.ticks[first])
         after = int(np.searchsorted(reads.ticks, tick))
@@ -442,7 +444,7 @@ class _Search:
     ) -> _Series | None:
         """Return the values that a loop read; with `is_between` the values that it would have read at every tick.
 
-        None if they are not known, or if noise or the pen's marks would make the computation slow.
+        The result is None if they are not known, or if noise or the pen's marks would make the computation slow.
         """
         import numpy as np
 
@@ -468,7 +470,7 @@ class _Search:
     def _measure_wheel(self, loop: LoopEnd, wheel: str, port: str, ticks: Array) -> _Series | None:
         """Return the position in degrees of a wheel's motor at some ticks.
 
-        It is None if the loop reads another attribute of it.
+        The result is None if the loop reads another attribute of it.
         """
         if loop.attribute not in TURN_COLUMNS:
             return None
@@ -482,7 +484,7 @@ class _Search:
     ) -> _Series | None:
         """Return what a sensor measured at some ticks.
 
-        It is None if it has no such measurement, or if computing it would be slow.
+        The result is None if it has no such measurement, or if computing it would be slow.
         """
         import numpy as np
 
@@ -490,7 +492,7 @@ class _Search:
         if spec.world.noise.light or spec.world.pen_marks:
             return None
         if loop.attribute == "reflection" and sensor.port in HUB_PORTS:
-            # On a hub it is of all colours.
+            # On a hub, the reflection is measured in all colours.
             column = "mean_pc"
         name = f"{sensor.name}_{column}"
         run = self._run
@@ -511,7 +513,7 @@ class _Search:
     def _find_wheel(self, ports: list[str]) -> str:
         """Return `left` or `right` if the only port is that of the wheel's motor.
 
-        It is empty otherwise, or if there are gears.
+        The result is empty otherwise, or if the wheels have gears.
         """
         robot = self._run.spec.robot
         wheels = {

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 _MIN_SHARE = 0.95
 """Wheels that turned less were stopped by something else."""
 _ROUND_DEG = 45.0
-"""Robots are turned by its multiples."""
+"""Turns of robots are usually multiples of this angle."""
 _NEAR_DEG = 3.0
-"""A turn that is so near to a multiple is meant."""
+"""A turn that differs by no more from a multiple is intended."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class MistakenTurn:
 def find_mistaken_turn(run: StoredRun) -> MistakenTurn | None:
     """Return the first turn on the spot in which the wheels, but not the robot, turned by the program's angle.
 
-    Else None.
+    Otherwise the result is None.
     """
     turns = [_measure_turns(run, turn) for turn in read_facts(run.program).wheel_turns]
     return min((turn for turn in turns if turn), key=lambda turn: turn.tick, default=None)
@@ -67,11 +67,11 @@ def _measure_turns(run: StoredRun, turn: WheelTurn) -> MistakenTurn | None:
     left_deg, right_deg = (float(positions[-1] - positions[0]) for positions in wheels)
     wheel_deg = abs(left_deg - right_deg) / 2
     steps_deg = (np.diff(span["heading_deg"]) + 180) % 360 - 180
-    # Two numbers may be speeds, or the steering of a curve and a speed. Each wheel may be off by its share.
+    # The numbers of a call may mean speeds or steering, so the wheels' own turns show whether it is on the spot.
     is_on_the_spot = abs(left_deg + right_deg) <= 2 * (1 - _MIN_SHARE) * wheel_deg
     if not is_on_the_spot or wheel_deg < turn.angle_deg * _MIN_SHARE:
         return None
-    # The line may have run several times in a row: scale to one turn.
+    # The line may have run several times in a row, so the robot's turn is scaled to one call.
     robot_deg = abs(float(steps_deg.sum())) / wheel_deg * turn.angle_deg
     off_deg = abs(robot_deg - round(robot_deg / _ROUND_DEG) * _ROUND_DEG)
     if robot_deg < 1 or (robot_deg > _ROUND_DEG / 2 and off_deg <= _NEAR_DEG):
@@ -109,7 +109,7 @@ def find_unwatched(
 ) -> Unwatched | None:
     """Return the first light between two readings for which the program would have acted differently.
 
-    It is None if there is none.
+    The result is None if there is none.
 
     Args:
         program: The program.

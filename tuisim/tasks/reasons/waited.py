@@ -63,13 +63,13 @@ if TYPE_CHECKING:
     Array = NDArray[Any]
 
 WINDOW_S = 5.0
-"""Lines that ran in this time before the end are what the program was busy with."""
+"""Seconds before the end in which a line must have run to be what the program waited on."""
 MAX_AWAITED = 2
-"""More things at once are no help."""
+"""The most things that are reported, as more would not help."""
 _ENDS = frozenset({End.TIME_LIMIT, End.STOPPED})
 """Ends in the middle of a wait."""
 _MIN_WAIT_S = 1.0
-"""A run that somebody stops earlier has not waited in vain."""
+"""A run that is stopped after a shorter time has not waited in vain."""
 _SAME_LIGHT = 25
 """A colour sensor whose channels change by less, of 255, sees the same."""
 _MAX_POSES = 4000
@@ -130,7 +130,7 @@ class Recorded:
 
 
 def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
-    """Return what a stored run waited for or, if it still goes on, waits for."""
+    """Return what a stored run waited for at its end or, if it is still running, waits for now."""
     recorded = Recorded(
         folder=run.folder,
         program=run.program,
@@ -295,7 +295,7 @@ class _Search:
         limit = self._find_limit(mode, questions[0])
         presses = self._find_presses(subject, port)
         if subject is Subject.BUTTONS and {*sought} - {press.name for press in presses}:
-            # A menu goes on until the right one is pressed.
+            # A menu may ignore buttons until the right one is pressed, so earlier presses were answered.
             rows = self._skip_answered(rows, presses)
         value = self._describe_constant(subject, port, rows, sought, needs_all, limit)
         if value is None:
@@ -341,7 +341,7 @@ class _Search:
     def _find_limit(self, mode: str, question: Question) -> float | None:
         """Return the distance that the program compares with, in mm or, for an infrared sensor, in %.
 
-        It is None if not known.
+        The result is None if not known.
         """
         limit = question.find_limit()
         if limit is None or mode not in MODES[Subject.DISTANCE]:
@@ -420,7 +420,7 @@ class _Search:
         run = self._run
         state = self._records[["x_mm", "y_mm", "heading_deg", "flags"]][ticks]
         poses = ticks[np.sort(np.unique(state, return_index=True)[1])]
-        # Only a colour sensor looks at the mat.
+        # No mat is needed, as only colour sensors look at it.
         measure: Callable[..., tuple[float, ...]] = build_mounted_sensor(sensor).kind.measure
         for tick in poses[:: 1 + len(poses) // _MAX_POSES].tolist():
             instant = run.telemetry.record(tick).build_instant(run.spec, run.spec.world.noise)
@@ -437,7 +437,7 @@ class _Search:
         """Return the smallest distance that was measured, such as `12 cm`; None if the awaited distance came.
 
         With a `limit`, that is a distance that is not larger; without one, distances that differ by more than
-            `tolerance`.
+        `tolerance`.
         """
         low, high = math.inf, -math.inf
         for value, *_ in self._measure(sensor, ticks):
@@ -469,7 +469,7 @@ def _list_sought(
     names = dict.fromkeys(
         name for question in questions for name in _find_sought(subject, port, mode, question)
     )
-    # Last, because these usually end a program.
+    # Backspace and the beacon come last, as they usually end a program.
     return tuple(sorted(names, key=("backspace", "remote.beacon").__contains__))
 
 

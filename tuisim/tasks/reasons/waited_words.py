@@ -60,7 +60,9 @@ class Wait:
 
 
 def find_waits(run: StoredRun, mat: Field | None = None) -> list[Wait]:
-    """Return descriptions of what a run waited for or, if it still goes on, waits for; most important first.
+    """Return descriptions of what a run waited for at its end or, if it is still running, waits for now.
+
+    The most important one is first.
 
     Args:
         run: The run.
@@ -78,7 +80,7 @@ def find_waits(run: StoredRun, mat: Field | None = None) -> list[Wait]:
             continue
         text = describe_awaited(awaited)
         what = f"{text}: {remedy}"
-        # A program that steers by what it sees waits for nothing.
+        # A program that steers by what it sees may not wait, so the text says only what it saw.
         text = f"the {text}" if awaited.subject in SEEN else f"{verb}: {text}"
         waits.append(Wait(awaited.since_s, awaited.line, text, what, awaited.subject))
     return waits or ([_describe_unmet(verb, unmet)] if unmet else [])
@@ -257,7 +259,7 @@ def _name_mat(awaited: Awaited, spec: RunSpec) -> str:
 
 
 def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
-    # A robot that drives gets near an obstacle by itself.
+    # A robot that has moved gets near an obstacle by itself, so the obstacle may be at any distance.
     limit = None if _has_moved(awaited) else awaited.limit
     pose = awaited.pose or spec.world.start
     options = ""
@@ -280,7 +282,7 @@ def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
 def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
     """Return the app's key that gives a program what it waited for, as an action id in braces.
 
-    The option if no key does.
+    If no key does, return the option.
     """
     names = awaited.sought if awaited.needs_all else awaited.sought[:1]
     brick = "hub" if awaited.port in (HUB_BUTTONS_PORT, *HUB_PORTS) else "brick"

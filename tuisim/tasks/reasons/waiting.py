@@ -37,7 +37,7 @@ class WaitWatch:
     ) -> list[str]:
         """Return a line on what the program waits for, with action ids in braces.
 
-        It is empty if nothing, or if already reported.
+        The result is empty if nothing, or if already reported.
 
         Args:
             recording: The recording in view.
@@ -63,7 +63,7 @@ class WaitWatch:
             and is_standing(recording.telemetry, recording.spec)
         ):
             awaited = find_in_recording(_build_recorded(recording, open_mat))
-            # A long run has many readings: the longer it is, the more seldom they are all read.
+            # The longer a run, the more readings it has, so they are searched less often.
             pause_ticks = round(WINDOW_S * recording.spec.profile.tick_hz)
             self._next_tick = recording.newest + max(pause_ticks, recording.newest // 2)
         self._has_told = bool(awaited)
