@@ -1,4 +1,5 @@
-"""The keys: a line of a table of keys, what runs them, and where they are shown: footer, help, command palette."""
+"""The keys of an app: the class of a table's entry, what runs it, and where it is shown: footer, help, command
+palette."""
 
 from __future__ import annotations
 
@@ -30,7 +31,7 @@ ACT = "act"
 """Key of the style metadata that names the action of a clickable word."""
 
 KeyWord = tuple[str, str]
-"""The display name of a key, and what it does."""
+"""The display name of a key, and in words what the key does."""
 
 Host = TypeVar("Host")
 Now = TypeVar("Now")
@@ -38,37 +39,37 @@ Now = TypeVar("Now")
 
 @dataclass
 class Act(Message):
-    """Posted when a word that triggers an action was clicked."""
+    """Posted when the user has clicked a word that stands for an action."""
 
     action: str
 
 
 @dataclass(frozen=True, slots=True)
 class Action(Generic[Host, Now]):
-    """A key, what it does, and its words in the footer, the help and the command palette."""
+    """A key and what it does, with its words for the footer, the help and the command palette."""
 
     id: str
     key: str
-    """In Textual's notation; several keys are separated by commas."""
+    """The key in Textual's notation; several keys are separated by commas."""
     title: str
     group: str
     do: Callable[[Host], None]
     why_not: Callable[[Now], str] = lambda _: ""
-    """Why the key is unavailable now; empty if it is available."""
+    """Returns why the key is unavailable now; empty if it is available."""
     footer: str = ""
     """Short label for the footer; empty leaves the key out of it."""
     shown_key: str = ""
     """Display name of the key, if it differs from that of `key`."""
     footer_key: str = ""
-    """Display name in the footer, if that entry represents two keys."""
+    """Display name of the keys in the footer, if its entry stands for two keys."""
     words: str = ""
-    """Further words by which the command palette finds it."""
+    """Further words by which the command palette finds the action."""
     comes_first: bool = False
     """Whether the key comes before those of the widget with the focus; `check_action` of the app leaves it to them."""
 
     @property
     def key_label(self) -> str:
-        """The display name of the key."""
+        """The name of the action's key, as it is displayed."""
         return self.shown_key or ", ".join(map(label_of_key, self.key.split(",")))
 
 
@@ -102,7 +103,7 @@ _WORDS = frozenset(
 
 
 def label_of_key(key: str) -> str:
-    """Return the display name of a key in Textual's notation."""
+    """Return the display name of a key that is given in Textual's notation."""
     modifier, _, name = key.rpartition("+")
     label = _LABELS.get(name) or (name if name in _WORDS else format_key(name))
     if len(label) in (2, 3) and label[0] == "f" and label[1:].isdigit():
@@ -115,7 +116,7 @@ def label_of_key(key: str) -> str:
 
 
 def build_bindings(actions: Iterable[Action[Any, Any]]) -> list[BindingType]:
-    """Return Textual's bindings for the keys of actions."""
+    """Return the bindings with which Textual runs actions by their keys."""
     return [
         Binding(action.key, _call(action), action.title, show=False, priority=action.comes_first)
         for action in actions
@@ -127,12 +128,12 @@ def _call(action: Action[Any, Any]) -> str:
 
 
 def fill_keys(app: App[Any], text: str) -> str:
-    """Return a text in which each id of an action in braces, such as `{run}`, is replaced by its key in an app."""
+    """Return a text in which each id of an action in braces, such as `{run}`, is replaced by the action's key."""
     return app.fill_keys(text) if isinstance(app, ActionHost) else text
 
 
 def action_link(app: App[Any], action: str, word: str) -> str:
-    """Return the markup of the key of an action and a word; a click on either runs the action."""
+    """Return markup with the key of an action and a word; a click on either runs the action."""
     key = escape_markup(fill_keys(app, f"{{{action}}}"))
     return f"[@click=app.act('{action}')]{key} {word}[/]"
 
@@ -144,7 +145,7 @@ class ActionHost(DOMNode):
     """An app or a screen that runs the action of a pressed key; the command palette lists the actions by title."""
 
     ACTIONS: Mapping[str, Action[Any, Any]] = {}
-    """The lines by id."""
+    """The actions by id."""
 
     def take_keys(self, actions: Mapping[str, Action[Any, Any]]) -> None:
         """Replace the table of actions by one with the same actions, and bind the keys that differ."""
@@ -169,7 +170,7 @@ class ActionHost(DOMNode):
         """Return the state that decides which actions are available; an action's `why_not` gets it."""
 
     def action_target(self) -> Any:
-        """Return the argument that the functions of the actions get."""
+        """Return the object that the functions of the actions get as their first argument."""
         return self
 
     def action_act(self, name: str) -> None:
@@ -189,11 +190,11 @@ class ActionHost(DOMNode):
         self.action_act(message.action)
 
     def say(self, text: str) -> None:
-        """Show a short notice, as long as it takes to read."""
+        """Show a short notice, for as long as it takes to read the notice."""
         self.app.notify(self.fill_keys(text), markup=False)
 
     def fill_keys(self, text: str) -> str:
-        """Return a text with the key of each action in place of its id in braces, such as `{run}`."""
+        """Return a text in which each id of an action in braces, such as `{run}`, is replaced by the action's key."""
         return _ID.sub(
             lambda match: (
                 self.ACTIONS[match[1]].key_label if match[1] in self.ACTIONS else match[0]
@@ -202,7 +203,7 @@ class ActionHost(DOMNode):
         )
 
     def complain(self, error: TuisimError) -> None:
-        """Show an error."""
+        """Show an error to the user."""
         self.app.notify(str(error), severity="error", timeout=8, markup=False)
 
 
@@ -229,7 +230,7 @@ CLICKED_KEYS: tuple[KeyWord, ...] = (("letters", "edit"), ("esc", "keys"), ("^p"
 
 
 def find_panel_keys(focused: DOMNode | None) -> tuple[KeyWord, ...]:
-    """Return the `FOOTER_KEYS` of the focused widget, or of the nearest one around it that has some; else none."""
+    """Return the `FOOTER_KEYS` of the focused widget, or of the nearest widget around it that has some; or none."""
     around = focused.ancestors_with_self if focused else ()
     return next((node.FOOTER_KEYS for node in around if hasattr(node, "FOOTER_KEYS")), ())
 
@@ -249,12 +250,12 @@ def find_max_entries(columns: int) -> int:
 def fit_actions(
     actions: Sequence[Action[Any, Any]], width: int, max_count: int
 ) -> list[Action[Any, Any]]:
-    """Return the actions that fit a footer: those of one group together, those for help and for leaving last.
+    """Return the actions for which a footer has room, grouped, with help and quit at the end.
 
     Args:
-        actions: The available ones, the most useful first.
-        width: Cells.
-        max_count: Entries.
+        actions: The available actions, the most useful first.
+        width: Width of the footer in cells.
+        max_count: Most entries.
     """
     always = [action for action in actions if action.id in _ALWAYS]
     left = width - sum(map(_measure_action, always))
@@ -293,7 +294,7 @@ class ActionWords(Widget):
 
 
 async def press(screen: Screen[Any], key: str) -> None:
-    """Run the action that the focused widget, or else the nearest one around it, has for a key."""
+    """Run the action that is bound to a key by the focused widget, or by the nearest widget around it."""
     for node in (screen.focused or screen).ancestors_with_self:
         if bound := find_bindings(node).key_to_bindings.get(key):
             await screen.app.run_action(bound[0].action, node)
@@ -314,7 +315,7 @@ _KEYS_OF_FIELDS = {"esc": "escape"}
 
 
 class KeyFooter(ActionWords):
-    """The bottom row of the screen: the keys that work now, and the state of the run."""
+    """The bottom row of the screen, with the keys that work now and the state of the run."""
 
     DEFAULT_CSS = "KeyFooter { dock: bottom; height: 1; }"
     COMPONENT_CLASSES: ClassVar[set[str]] = {"footer--key", "footer--status", "footer--failed"}
@@ -328,20 +329,20 @@ class KeyFooter(ActionWords):
         self._of_dialog: tuple[KeyWord, ...] = ()
 
     def show_dialog(self, keys: tuple[KeyWord, ...]) -> None:
-        """Show only the keys of the dialog above the screen; with (), show the usual keys again."""
+        """Show only the keys of the open dialog; an empty tuple shows the usual keys again."""
         if keys != self._of_dialog:
             self._of_dialog = keys
             self.refresh()
 
     def find_dialog_key(self, x: int) -> str:
-        """Return the display name of the dialog's key at a column of the row; empty if there is none."""
+        """Return the display name of the dialog's key at column `x` of the footer; empty if there is none."""
         return _find_key(x, self._of_dialog)
 
     @on(events.Click)
     async def press_key_of_field(self, event: events.Click) -> None:
-        """Press the key whose word was clicked while a text field has the focus: a phone may lack that key."""
+        """If a word for a key of the focused text field was clicked, press that key, which a phone may lack."""
         if not self._of_dialog and (label := _find_key(event.x, self._typing)):
-            # The field keeps the focus.
+            # The click must not reach the app, which would move the focus from the field to the world.
             event.stop()
             await press(self.screen, _KEYS_OF_FIELDS.get(label, label.replace("^", "ctrl+")))
 
@@ -396,7 +397,7 @@ COLUMN_CELLS = 50
 
 
 def build_key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Text:
-    """Return every key by group, in as many columns as fit; a group without a name has no heading.
+    """Return a table of keys by group, in as many columns as fit; a group without a name has no heading.
 
     The columns are laid out as text here: Textual would measure and draw a nested table several times.
     """
@@ -450,7 +451,7 @@ def _build_column(groups: list[_Group]) -> Table:
 
 
 def group_keys(actions: Iterable[Action[Any, Any]]) -> dict[str, list[KeyWord]]:
-    """Return the keys of actions by the name of their group."""
+    """Return the keys of actions, in lists by the name of the actions' group."""
     groups: dict[str, list[KeyWord]] = {}
     for action in actions:
         groups.setdefault(action.group, []).append((action.key_label, action.title))

@@ -1,4 +1,4 @@
-"""The app: wires panels, keys and one run at a time together."""
+"""The app of the lab, which connects panels, keys and one run at a time."""
 
 from __future__ import annotations
 
@@ -99,9 +99,10 @@ _WARM_UP_AFTER_S = 0.3
 """Seconds until the process that forks runs is started: until then, the first paint or frame needs the processor."""
 _STARTING_S = 0.25
 _START_GAP_S = 0.004
-"""Seconds between two polls of a starting run, for at most `_STARTING_S`, so that its first tick is drawn at once."""
+"""Seconds between two polls of a starting run, for at most `_STARTING_S`, so that its first tick is drawn without a
+delay."""
 _AWAKE_S = 1.0
-"""Seconds to keep polling at frame rate after something has happened."""
+"""Seconds for which the run is polled at the full frame rate after something has happened."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,41 +115,42 @@ class AppSettings:
     world_file: Path | None = None
     """The world file that was opened, to be watched and saved again."""
     program: Program | None = None
-    """None opens the app without a program."""
+    """The program to open; None for none."""
     goals: GoalsFile | None = None
     """The goals that runs are judged by."""
     lesson: Lesson | None = None
-    """The lesson to open; program, settings and goals are its own."""
+    """The lesson to open, of which `program`, `settings` and `goals` are; None for none."""
     lessons_folder: str | None = None
     """The folder of own lessons, if one was named."""
     welcomes: bool = False
-    """Show the welcome at the first start, or if there is recent work: the command line names nothing to open."""
+    """Whether to show the welcome, at the first start or if there is recent work: the command line names nothing to
+    open."""
     replay: StoredRun | None = None
-    """A stored run to show; spec and program are its own."""
+    """A stored run to show, of which `spec` and `program` are; None for none."""
     panels_on: frozenset[str] = field(default_factory=frozenset)
     """Ids of panels shown whatever the size of the terminal."""
     panels_off: frozenset[str] = field(default_factory=frozenset)
     """Ids of panels hidden whatever the size of the terminal."""
     autorun: bool = False
-    """Run the program as soon as the mat is ready."""
+    """Whether to run the program as soon as the mat is ready."""
     quiet: bool = False
-    """Never speak aloud."""
+    """Whether never to play sounds or speech."""
     rays: bool = False
-    """Draw the ultrasonic rays."""
+    """Whether to draw the ultrasonic rays."""
     speed: float = 1.0
-    """1.0 real time, 0 as fast as possible."""
+    """Speed of runs: 1.0 is real time, 0 as fast as possible."""
     fps: int = DEFAULT_FPS
     """Most frames a second."""
     colors: str = "auto"
-    """One of `COLOR_DEPTHS`; must be set before the terminal is opened."""
+    """Colour depth, one of `COLOR_DEPTHS`; it must be set before the terminal is opened."""
     cells: str | None = None
-    """One of `CELLS`; None for the user's earlier choice, else auto."""
+    """Set of glyphs, one of `CELLS`; None for the user's earlier choice, else the best one."""
     pixels: str = AUTO
-    """One of `PIXELS`."""
+    """Whether pictures have pixels, one of `PIXELS`."""
     from_config: tuple[str, ...] = ()
-    """What `config.toml` decides about the run, in words."""
+    """The settings of the run that come from `config.toml`, in words."""
     decided: Decided = field(default_factory=Decided)
-    """What the source of the program decides about it."""
+    """The settings of the run that the text of the program decides."""
 
 
 class LabApp(PanelMessages):
@@ -273,7 +275,7 @@ class LabApp(PanelMessages):
         return program.name if program else ""
 
     def check_files(self) -> None:
-        """Reload the files that have changed on disk, or ask about those with unsaved edits."""
+        """Reload files that have changed on disk; if one has unsaved edits in the app, ask which version to keep."""
         self.loader.check_files(self.document.check_conflict)
 
     def go_to_now(self) -> None:
@@ -316,7 +318,7 @@ class LabApp(PanelMessages):
                 self.start_run()
 
     def show_next_run(self) -> None:
-        """Update the panels after the plan of the next run has changed."""
+        """Show the changed plan of the next run in the panels."""
         self._show_program()
         self.panel_area.show_next_run(self.run_controller.next_run)
         self.handle_situation_change()
@@ -357,8 +359,8 @@ class LabApp(PanelMessages):
         """Prepare the panels for another run.
 
         Args:
-            last_words: How the run ended, if it has ended already; shown below its output.
-            error_line: The line at which it ended with an error, 0 for none.
+            last_words: How the run ended, if it has ended already; shown below the output of the run.
+            error_line: The line at which the run ended with an error, 0 for none.
         """
         self.undo = None
         self._last_words = last_words
@@ -370,7 +372,7 @@ class LabApp(PanelMessages):
         self.handle_situation_change()
 
     def _on_frame_timer(self) -> None:
-        """Process what the run has written, and draw a frame if the terminal has shown the last one."""
+        """Process what the run has sent, and draw a frame if the terminal has shown the last one."""
         try:
             news = self.run_controller.poll()
             self._process(news)
@@ -386,12 +388,12 @@ class LabApp(PanelMessages):
                 self.goals.update()
             if self.lesson.lesson is not None:
                 self.lesson.update()
-            # A frame that has to wait counts as drawn, so that the timer goes on.
+            # A frame that has to wait counts as drawn, so that the timer keeps the rate of frames.
             drew = self._is_starting() or not self.pacer.ready() or self.draw()
             if drew or news or self.debugger.busy:
                 self._wake()
         except TuisimError as error:
-            # A run that cannot be read now cannot be read at the next frame either.
+            # A run that cannot be read now cannot be read at the next frame either, so it is closed.
             self.run_controller.close()
             self.complain(error)
             self.handle_situation_change()
@@ -419,7 +421,7 @@ class LabApp(PanelMessages):
         return False
 
     def _run_seldom(self) -> None:
-        # An extra call between two frames would leave the next one no time.
+        # While frames are drawn, an extra call between two of them would leave no time for the next one.
         if not self._is_awake:
             self._on_frame_timer()
         reasons.look(self.context)
@@ -467,7 +469,7 @@ class LabApp(PanelMessages):
             self._last_words = ""
 
     def show_log_again(self) -> None:
-        """Show what the run in view has written in output and chart again, after they were cleared."""
+        """Show the output and the logged data of the run in view again, after they were cleared."""
         self.feed.begin_again()
         self.draw(force=True)
 
@@ -495,7 +497,11 @@ class LabApp(PanelMessages):
     # The picture
 
     def draw(self, force: bool = False) -> bool:
-        """Show the current moment in every panel. Return whether it differs from what they show already."""
+        """Show the instant in view in every panel. Return whether the panels have changed.
+
+        Args:
+            force: Whether to draw the panels even if nothing has changed.
+        """
         state = self.state()
         run = state.run
         now = (
@@ -566,7 +572,7 @@ class LabApp(PanelMessages):
 
     @property
     def _looks_back(self) -> bool:
-        """Whether a past instant is viewed, even one within the newest tick."""
+        """Whether a past instant is in view, even one within the newest tick."""
         return self.run_controller.timeline.at is not None or self.debugger.position is not None
 
     def action_target(self) -> ActionContext:
@@ -589,7 +595,7 @@ class LabApp(PanelMessages):
         self.key_footer.show(actions, state.status, keys, state.failed)
 
     def _field_keys(self) -> tuple[KeyWord, ...]:
-        """Return the keys of the text field or of the panel that has the focus; empty if it has none of its own."""
+        """Return the keys of the focused text field or panel, for the footer; empty if it has no keys of its own."""
         # The focus may already be gone while the app ends.
         focused = self.focused if self.screen_stack else None
         if isinstance(focused, Input):
@@ -633,7 +639,7 @@ class LabApp(PanelMessages):
         self.document.show_program()
         self.debugger.load_breaks(self.run_controller.program)
 
-    # What the user does
+    # The following methods handle what the user does.
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Return whether a key runs an action of the app.
@@ -662,7 +668,7 @@ class LabApp(PanelMessages):
 
 
 def _list_footer_state(state: AppState) -> tuple[Any, ...]:
-    """Return the part of a state that the footer shows."""
+    """Return those values of the app's state on which the footer depends."""
     run = state.run
     return (
         state.situation,

@@ -99,10 +99,10 @@ async def _run_and_wait(work: Callable[[], None]) -> None:
         problem: BaseException | None = None
         try:
             work()
-        # Raised again where the work is awaited.
+        # Every error is passed on, and raised again where the work is awaited.
         except BaseException as error:
             problem = error
-        # The app has been left, and its loop is closed.
+        # If the app was left meanwhile, its loop is closed, and nobody waits for the result.
         with suppress(RuntimeError):
             loop.call_soon_threadsafe(settle, problem)
 

@@ -45,9 +45,9 @@ class Branch:
     tick: int
     program: Program
     then: protocol.Message | None
-    """The user action at that instant, if any."""
+    """The user action at the instant of the branch; None for none."""
     goes_on: bool
-    """Whether the run continues at once; otherwise it stays paused there."""
+    """Whether the run continues when it reaches the instant; else it stays paused there."""
 
     @property
     def time_s(self) -> float:
@@ -69,7 +69,7 @@ class Branch:
 
     @property
     def tags(self) -> tuple[str, str]:
-        """The tags of the new run: from which run it branched off, and when."""
+        """The tags of the branch's run: the run from which it branched off, and the time."""
         return f"{BRANCH_TAG}{self.of.number or self.of.run_id}", f"at-{self.time_s:.2f}s"
 
     @property

@@ -33,7 +33,7 @@ class Copied:
     """A text for the clipboard, with a name for the notice about it."""
 
     name: str
-    """What it is, in words."""
+    """Name of the text in words, such as `Program`."""
     text: str
 
 
@@ -46,7 +46,7 @@ class CopiedPanel(Protocol):
 
 
 def find_copied(panel: str, widget: Widget) -> Copied:
-    """Return the text to copy from a panel: what its widget provides, or else its rows on the screen."""
+    """Return the text to copy from a panel: the one that its widget chooses, or else its rows on the screen."""
     if isinstance(widget, CopiedPanel) and (own := widget.copy_text()):
         return own
     return Copied(PANELS[panel].title, "\n".join(read_rows(widget)))
@@ -78,7 +78,7 @@ def describe_copy(panel: str, copied: Copied) -> str:
 
 
 def read_rows(widget: Widget) -> Sequence[str]:
-    """Return the rows of characters inside a widget's edges, without blanks at their ends."""
+    """Return the characters inside a widget's edges as rows, without blanks at the end of a row."""
     inside = widget.region.shrink((1, 1, 1, 1))
     strips = render_screen(widget.app)[inside.y : inside.bottom]
     rows = [strip.crop(inside.x, inside.right).text.rstrip() for strip in strips]

@@ -55,38 +55,38 @@ class DebugController:
         self.breaks: tuple[Breakpoint, ...] = ()
         self.watches: tuple[str, ...] = ()
         self.view: PauseView | None = None
-        """What is shown; None while the program runs, or before it is first paused."""
+        """The pause that is shown; None while the program runs, or before it is first paused."""
         self._program = ""
         self._text = ""
         self._paused: Paused | None = None
-        """Where the live run is paused."""
+        """The pause of the live run; None while it runs."""
         self.position: Position | None = None
-        """The past instant that is viewed, exact to the line."""
+        """The past position in view, exact to the line; None for the newest one, or if only its tick is known."""
         self._frame = 0
         self._thread = ""
         self.replay = ReplayDebugger(self._handle_arrival, self._report_missing, self._handle_now)
         self._wanted: Position | None = None
-        """The instant that the replay debugger was last sent to."""
+        """The position that was last requested from the debugger of re-runs; None for none."""
         self._is_stepping = False
-        """Whether a step of the live run is on its way."""
+        """Whether a step of the live run has been sent and has not ended yet."""
         self._steps: deque[Message | int] = deque()
-        """The steps that wait until the one on its way has arrived, in the past as well; a number is one of lines
-        back."""
+        """The steps that wait for the end of an earlier one, also in the past; a number stands for steps back by so
+        many lines."""
         self._panels_opened = False
         self._breakpoints_unsent = False
         """Whether the live run has not yet received the breakpoints, because a branch is still on the way to its
         instant."""
 
-    # Breakpoints and watches
+    # The following methods set breakpoints and watches.
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """The breakpoints as sent to the run."""
+        """The breakpoints as texts, as they are sent to the run."""
         return tuple(entry.written() for entry in self.breaks)
 
     @property
     def lines(self) -> list[str]:
-        """The lines of the edited text."""
+        """The lines of the edited program text."""
         return source_lines(self._text)
 
     def load_breaks(self, program: Program | None) -> None:
@@ -101,7 +101,7 @@ class DebugController:
         self.mark()
 
     def follow_edit(self, text: str) -> None:
-        """Keep the breakpoints on their lines after an edit of the text."""
+        """Move the breakpoints along with their lines after an edit of the text."""
         breaks = follow_edit(self.breaks, self._text, text)
         self._text = text
         if breaks != self.breaks:
@@ -126,7 +126,7 @@ class DebugController:
         self._run_controller.send(protocol.SetBreaks(tuple(texts)))
 
     def set_watches(self, watches: tuple[str, ...]) -> None:
-        """Set the watched expressions and store them."""
+        """Replace the watched expressions by others, and store them."""
         self.watches = watches
         self._keep()
         self._inspect_again()
@@ -196,7 +196,7 @@ class DebugController:
             else 0
         )
 
-    # What comes from the run
+    # The following methods handle messages of the run.
 
     def run_changed(self) -> None:
         """Reset the debugger, because another run is in view, or none any more."""
@@ -218,7 +218,7 @@ class DebugController:
         self.show()
 
     def handle_end(self) -> None:
-        """Note that the run has ended, so that it is no longer paused; a past instant stays in view."""
+        """Handle the end of the run, which is no longer paused; a past instant stays in view."""
         self._paused = None
         if not self.is_away:
             self._forget_steps()
@@ -226,7 +226,7 @@ class DebugController:
             self.show()
 
     def handle(self, event: Message) -> None:
-        """Handle a report that the run has paused, has resumed, or sends its frames and variables."""
+        """Handle a message of the run: it has paused or resumed, or sends its frames and variables."""
         if self._breakpoints_unsent:
             self._breakpoints_unsent = False
             self._send_breakpoints()
@@ -275,7 +275,7 @@ class DebugController:
         self._panels_opened = True
         for panel in ("code", "debug"):
             self._panel_area.open(panel)
-        # The code gets the arrow keys, as it is read now; a field that is typed into keeps them.
+        # The user now reads the code, so it gets the arrow keys; a field in which the user types keeps them.
         if self._panel_area.find_focused_panel() in ("", "world"):
             self._app.call_after_refresh(self._panel_area.focus_opened, "code")
 
@@ -288,7 +288,7 @@ class DebugController:
 
     @property
     def busy(self) -> bool:
-        """Whether a past instant is still being computed."""
+        """Whether the variables at a past instant are still being computed."""
         return self.replay.busy
 
     @property
@@ -298,7 +298,7 @@ class DebugController:
 
     @property
     def inspect_request(self) -> protocol.Inspect:
-        """Return the request that asks a paused program for its frames and variables."""
+        """Return the message that requests the frames and variables of a paused program."""
         return protocol.Inspect(self.watches, self._thread, self._frame)
 
     def choose_frame(self, by: int) -> None:
@@ -370,7 +370,7 @@ class DebugController:
         self.position = None
         self._steps.clear()
         if self.replay.busy:
-            # The result still being computed is no longer wanted.
+            # Nobody needs the result any more that is still being computed.
             self.replay.close()
             self._wanted = None
             self.show()
@@ -408,7 +408,7 @@ class DebugController:
             self.position = here
             timeline.go(paused.tick)
         elif timeline.at != self._wanted.tick:
-            # The user has gone to another instant since.
+            # The user has gone to another instant meanwhile, so this result is outdated.
             self._wanted = None
             return
         elif here.ordinal != protocol.BEFORE_NEXT_TICK:
@@ -453,7 +453,7 @@ class DebugController:
         self._app.draw(force=True)
 
     def show(self) -> None:
-        """Update the debug panel, and the values in the code panel."""
+        """Update the debug panel, and the values of variables in the code panel."""
         if code := self._panel_area.code:
             code.show_pause(self.view)
         if panel := self._panel_area.debug:
@@ -499,7 +499,7 @@ class DebugController:
             self._send_step(command)
         elif self._app.start_run(paused=True):
             self._is_stepping = True
-            # A program started for this pauses at its first line anyway.
+            # A program that is started for a step pauses at its first line anyway.
             if not isinstance(command, protocol.StepLine):
                 self._steps.append(command)
             self._open_panels()
@@ -527,7 +527,7 @@ class DebugController:
         self.show()
 
     def step_back(self) -> None:
-        """Go back by one executed line; while an earlier step in the past is computed, this one waits."""
+        """Go back by one executed line; if an earlier step is still being computed, wait for that first."""
         if not self.replay.busy:
             self._forget_steps()
             self._go_back(1)

@@ -38,4 +38,4 @@ PRESSED = "#ffd866"
 COLORS: Mapping[str, str] = {
     name: color for name, color in {**vars(palette), **globals()}.items() if name.isupper()
 }
-"""These colours, and those of the palette, by name."""
+"""The colours of this module and of the palette, by name."""

@@ -16,7 +16,7 @@ from tuisim.engine.runs.run_folder import StoredRun
 
 
 def is_comparable(earlier: Recording, later: Recording) -> bool:
-    """Return whether the robot of an earlier run may be drawn beside that of a later one: it drove on the same mat."""
+    """Return whether the robot of an earlier run can be drawn beside a later run: both drove on the same mat."""
     return earlier.newest > 0 and earlier.spec.world.background == later.spec.world.background
 
 

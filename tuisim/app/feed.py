@@ -59,13 +59,13 @@ class Feed:
 
     recording: Recording
     _parts: int = field(default=0, init=False)
-    """How many plugged in parts the charted columns know."""
+    """Number of plugged in parts for which the chart has columns."""
     _charted: int = field(default=0, init=False)
     _traced: int = field(default=0, init=False)
     _lifted: bool = field(default=False, init=False)
     """Whether the pen was up in the last traced record."""
     _last_xy_mm: tuple[float, float] | None = field(default=None, init=False)
-    """Where the robot was in the last traced record."""
+    """Position of the robot in the last traced record."""
 
     @property
     def is_behind(self) -> bool:
@@ -137,7 +137,7 @@ class Feed:
         records = records[kept_at]
         jumps = jumps[kept_at]
         xs, ys, lifted = place_drawn_mm(self.recording.spec.robot, records)
-        # One gap is enough for a stretch with the pen up.
+        # Of consecutive points with the pen up, only the first is kept: one gap is enough.
         is_kept = ~(lifted & np.concatenate(([self._lifted], lifted[:-1])))
         self._lifted = bool(lifted[-1])
         return _insert_gaps(xs[is_kept], ys[is_kept], jumps[is_kept])
@@ -209,7 +209,7 @@ class PanelFeed:
         self._runs = runs
         self._feed: Feed | None = None
         self._uncharted: list[OutputRow] = []
-        """What has been written since the chart was last on the screen."""
+        """Output rows since the chart was last on the screen."""
         self._charted_s = 0.0
         """When telemetry was last passed to the chart, on the monotonic clock."""
         self._shows_past = False

@@ -22,7 +22,7 @@ from tuisim.base.errors import ConfigError, TuisimError
 
 
 def format_error(error: TuisimError) -> str:
-    """Return the message of an error without its location, which the field shows."""
+    """Return the message of an error without its location, which the form's field already shows."""
     message = error.message
     if isinstance(error, ConfigError) and error.key and not error.file:
         message = message.removeprefix(f"{error.key}: ")
@@ -30,10 +30,10 @@ def format_error(error: TuisimError) -> str:
 
 
 def parse_number(text: str, error: type[ConfigError]) -> float:
-    """Parse a typed number, with a point or a comma.
+    """Return the number that a typed text stands for; the decimal sign is a point or a comma.
 
     Raises:
-        ConfigError: of the class `error`: the text is no number.
+        ConfigError: the text is no number; the error is of the class `error`.
     """
     try:
         return float(text.strip().replace(",", "."))
@@ -42,7 +42,7 @@ def parse_number(text: str, error: type[ConfigError]) -> float:
 
 
 class _Control(Widget, can_focus=True):
-    """A widget that looks different while it has the focus."""
+    """Base of widgets that look different while they have the focus."""
 
     ALLOW_SELECT = False
 
@@ -54,7 +54,7 @@ class _Control(Widget, can_focus=True):
 
 
 class Choice(_Control):
-    """One of several words, changed by ← → or a click."""
+    """A widget with one of several words; ← and → or a click change the word."""
 
     DEFAULT_CSS = "Choice { height: 1; width: 1fr; }"
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -108,7 +108,7 @@ class FormPanel(Vertical):
 
 
 class EntryPanel(FormPanel):
-    """A panel with text fields, each applied by Enter and when it loses the focus."""
+    """A panel with text fields; a field is applied by Enter, and when it loses the focus."""
 
     @on(Input.Submitted)
     def _apply_submitted(self, event: Input.Submitted) -> None:
@@ -146,9 +146,9 @@ class Row(Vertical):
 
         row: Row
         text: str
-        """What was typed."""
+        """The text that the user typed."""
         by: int = 0
-        """Steps to another choice."""
+        """Number of choices to go forward; negative goes back, 0 for a typed text."""
 
     def __init__(self, field: str, label: str, chosen: bool) -> None:
         super().__init__()
@@ -167,7 +167,7 @@ class Row(Vertical):
         yield Static(classes="message", markup=False)
 
     def show(self, text: str) -> None:
-        """Show a value, unless another one is being typed."""
+        """Show a value in the row, unless the user is typing another one."""
         if text != self._shown or not self._typing:
             self._shown = self.entry.value = text
             self.show_error("")
@@ -177,14 +177,14 @@ class Row(Vertical):
         return self.entry.has_focus and self.entry.value != self._shown
 
     def show_error(self, text: str) -> None:
-        """Show an error below the field; empty removes it."""
+        """Show an error below the field; an empty text removes the error."""
         self.set_class(bool(text), "-wrong")
         self.entry.set_class(bool(text), "wrong")
         if self.is_mounted:
             self.query_one(".message", Static).update(text)
 
     def refuse(self, error: TuisimError) -> None:
-        """Show below the field why its value was rejected."""
+        """Show below the field why the value that the user typed was rejected."""
         self.show_error(format_error(error))
 
     @on(Input.Submitted)
@@ -199,7 +199,7 @@ class Row(Vertical):
             self.show_error("")
 
     def on_descendant_focus(self) -> None:
-        # The cursor at the end of the selection would scroll the beginning of a long value out of sight.
+        # A cursor at the end of the selection would scroll the beginning of a long value out of view.
         whole = Selection(0, len(self.entry.value))
         if isinstance(self.entry, Input) and self.entry.selection == whole:
             self.entry.selection = Selection(whole.end, whole.start)
@@ -255,7 +255,7 @@ class Slider(_Control):
 
     @dataclass
     class Changed(Message):
-        """Posted when the user sets another number."""
+        """Posted when the user has set another number."""
 
         slider: Slider
         value: int
@@ -264,7 +264,7 @@ class Slider(_Control):
 
         @property
         def control(self) -> Slider:
-            """The slider, so that handlers can select it by id."""
+            """The slider that has changed, so that handlers can select it by its id."""
             return self.slider
 
     value = reactive(0)
@@ -343,7 +343,7 @@ class Slider(_Control):
             self.release_mouse()
 
     def on_mouse_release(self) -> None:
-        """Release the knob: a dialog has captured the mouse."""
+        """Release the knob, because a dialog has captured the mouse."""
         if self.dragging:
             self._let_go()
 

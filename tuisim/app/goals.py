@@ -71,7 +71,7 @@ class GoalsController:
 
     @property
     def path(self) -> Path | None:
-        """The goals file that is open; None if there is none, or the goals are those of a lesson."""
+        """The path of the open goals file; None without one, as when the goals are those of a lesson."""
         return self.file.path if self.file and is_world_name(self.file.path.name) else None
 
     @property
@@ -130,7 +130,7 @@ class GoalsController:
         panel.show_goals(GoalsView(self.file.title, self.file.goals, self._judgements, hint))
 
     def update(self) -> None:
-        """Judge the run in view again, in the background, if it has gone on or has ended; never blocks."""
+        """If the run in view has gone on or has ended, judge it again in the background; never blocks."""
         if self.file is None or not (self.judges_always or self._panel_area.is_shown("goals")):
             return
         recording = self._run_controller.timeline.recording
@@ -158,7 +158,7 @@ class GoalsController:
     ) -> None:
         self._is_judging = False
         if written != self._judged or found is None:
-            # The run or the goals are others by now, or the run was just about to end.
+            # The judgements are outdated: the run or the goals have changed, or the run was about to end.
             self._judged = None
             return
         self._judgements, took_s = found
@@ -168,7 +168,7 @@ class GoalsController:
     def _report_failure(self, written: object, error: TuisimError) -> None:
         self._is_judging = False
         if written == self._judged:
-            # While the run goes on, the error would only be repeated.
+            # The run is not judged again: while it goes on, the error would only be repeated.
             self._next_s = math.inf
             self._app.complain(error)
 
@@ -185,7 +185,7 @@ def _judge_run(
     began_s = time.monotonic()
     run = load_run(folder)
     judgements = judge(goals, run, field)
-    # The run has ended just now, and how it ended is not stored yet.
+    # The run has just ended, but how it ended is not stored yet.
     if live and run.end is None and run.state is not Unended.RUNNING:
         return None
     return judgements, time.monotonic() - began_s

@@ -1,4 +1,4 @@
-"""What the parts of the app may ask of it."""
+"""The interface of the app for its parts."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 class LabHost(ActionHost, TerminalApp):
-    """The app as its parts see it: notices, dialogs, timers, and methods that redraw the screen or start a run."""
+    """The interface of the app for its parts: notices, dialogs, timers, and methods that redraw or start a run."""
 
     undo: Callable[[], None] | None = None
     """Undoes the last change; None if there is nothing to undo."""
     has_greeted = False
-    """Whether the welcome has come, or will not come; until then, keys wait for it."""
+    """Whether the welcome was shown, or will not be; until then, keys wait."""
 
     def action_act(self, name: str) -> None:
         self.notices.release()
@@ -49,11 +49,15 @@ class LabHost(ActionHost, TerminalApp):
 
     @abstractmethod
     def draw(self, force: bool = False) -> bool:
-        """Show the instant in view in every panel. Return whether it differs from what they show already."""
+        """Show the instant in view in every panel. Return whether the panels have changed.
+
+        Args:
+            force: Whether to draw the panels even if nothing has changed.
+        """
 
     @abstractmethod
     def show_log_again(self) -> None:
-        """Show what the run in view has written in output and chart again, after they were cleared."""
+        """Show the output and the logged data of the run in view again, after they were cleared."""
 
     @abstractmethod
     def start_run(self, paused: bool = False) -> bool:
@@ -69,7 +73,7 @@ class LabHost(ActionHost, TerminalApp):
 
     @abstractmethod
     def show_next_run(self) -> None:
-        """Update the panels after the plan of the next run has changed."""
+        """Show the changed plan of the next run in the panels."""
 
     @abstractmethod
     def go_to_now(self) -> None:

@@ -41,7 +41,7 @@ def load_kept(program: str) -> StoredBreaks:
 
 
 def keep(program: str, stored: StoredBreaks) -> None:
-    """Store the breakpoints and watches of a program.
+    """Store the breakpoints and watches of a program, in place of earlier ones.
 
     Raises:
         ConfigError: they cannot be written.

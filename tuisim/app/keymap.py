@@ -99,7 +99,7 @@ def _check_clashes(
             other = owners.setdefault(key, name)
             if other == name:
                 continue
-            # Blame an entry of the user's: without any, no two actions share a key.
+            # The error names an entry of the user's, because without one no two actions share a key.
             blamed, has = (name, other) if name in config.keys else (other, name)
             title = actions[has].title
             raise location.at(blamed).wrong(

@@ -76,14 +76,14 @@ class LessonController:
 
     @property
     def step(self) -> LessonStep | None:
-        """The step to do; None if no lesson is open, or all of its steps are done or skipped."""
+        """The step that the student has to do; None if no lesson is open, or no step of it is left."""
         return self.session.step if self.session is not None else None
 
     # Opening
 
     @property
     def step_actions(self) -> tuple[str, ...]:
-        """Ids of the actions that help in the step to do, the most useful first; empty without a lesson."""
+        """Ids of the actions that help in the present step, the most useful first; empty without a lesson."""
         if self.lesson is None:
             return ()
         if (step := self.step) is None:
@@ -111,7 +111,7 @@ class LessonController:
         path = prepare_program(lesson, anew)
         self._loader.open_task(str(path), lesson.settings, lesson.task)
         self._goals.judges_always = True
-        # What the last run has shown belongs to another lesson.
+        # The last run belongs to another lesson.
         self._run_controller.close()
         self._run_controller.companion = None
         self._app.run_changed()
@@ -125,7 +125,8 @@ class LessonController:
         self._save(session)
         self._panel_area.request(self._choose_panels(session.lesson))
         if self._panel_area.world:
-            # After typing in the program before, the arrow keys would still move in it, and not the robot.
+            # The world gets the focus: after typing in the program before, the arrow keys would still move in it, and
+            # not the robot.
             self._panel_area.world.focus()
         self._begin_step(session)
         runs = self._run_controller
@@ -189,10 +190,10 @@ class LessonController:
                 else ""
             )
         except ConfigError:
-            # The menu reports it.
+            # The menu of lessons reports a lesson that cannot be read.
             return ""
 
-    # What the student does
+    # The following methods handle what the student does.
 
     def answer(self, text: str) -> None:
         """Check a typed answer to the question of the step.
@@ -209,7 +210,7 @@ class LessonController:
                 self._follow(change)
 
     def show_hint(self) -> None:
-        """Show the next hint of the step."""
+        """Show the next hint for the step of the lesson."""
         session = self.session
         step = self.step
         if session is None or step is None:
@@ -254,7 +255,7 @@ class LessonController:
             panel.action_turn(-1)
 
     def note_export(self, path: Path) -> None:
-        """Note that the student has exported the log to a file, which a step may require."""
+        """Record that the student has exported the log to a file, which a step may require."""
         if self.session is not None:
             self._follow(self.session.take_export(path.name))
 
@@ -335,7 +336,7 @@ class LessonController:
             self._app.complain(error)
 
     def _find_error(self, session: LessonSession) -> str:
-        """Return the error with which the judged run ended; empty if it ended in another way."""
+        """Return the error with which the judged run ended; empty if it ended without an error."""
         run, (recording, _) = self._run_controller.run, self._goals.judged
         if (
             not session.attempt.judgements
@@ -370,7 +371,7 @@ class LessonController:
         return self._beside
 
     def log_closed(self) -> None:
-        """Note that the log beside which the step was shown has been closed."""
+        """Handle that the log beside which the step was shown has been closed."""
         self._beside = None
 
     def view(self) -> LessonView:

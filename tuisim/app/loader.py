@@ -94,12 +94,12 @@ class Loader:
 
     @property
     def mat_is_ready(self) -> bool:
-        """Whether the mat is prepared for the robot's sensors."""
+        """Whether the mat of the next run is prepared for the robot's sensors."""
         mat = self._run_controller.mat
         return mat is not None and mat.serves(self._run_controller.next_run.spec)
 
     def prepare_mat(self) -> None:
-        """Prepare the mat in the background; the app shows it when that is done."""
+        """Prepare the mat of the next run in the background; then the app shows the mat."""
         spec = self._run_controller.next_run.spec
         self.is_preparing = True
         work = partial(prepare_mat, spec)
@@ -146,13 +146,13 @@ class Loader:
         """Set the plan of the next run, its program, and its mat, which must have been prepared for the plan."""
         self._run_controller.mat = mat
         self._good = plan, mat
-        # A program that is open already keeps the settings noted from its cell.
+        # The settings of a program that is open already were stored when the notebook cell was read.
         if program != self._run_controller.program:
             self._note_program(program, read_first_line(program))
         self._load(plan, program)
         self._app.show_mat(mat.pixels)
 
-    # What the user chooses
+    # The following methods apply what the user chooses.
 
     def try_change(self, make: Callable[[NextRun], NextRun]) -> bool:
         """Change the plan of the next run, or show the error; the robot stays where it is.
@@ -268,7 +268,7 @@ class Loader:
         self.tell(decided)
 
     def open_task(self, program_path: str, world: Mapping[str, Any], goals: GoalsFile) -> None:
-        """Open a program with goals, in a world that is given as settings. Not during a run.
+        """Open a program with goals, in a world that is given as settings by path. Not during a run.
 
         Raises:
             TuisimError: program or world are wrong; nothing has changed.
@@ -346,7 +346,7 @@ class Loader:
         )
         self._app.draw(force=True)
 
-    # Files that change on the disk
+    # The following methods handle files that change on disk.
 
     def _follow(self) -> None:
         run_controller = self._run_controller
@@ -362,11 +362,11 @@ class Loader:
         self._watch.follow(dict.fromkeys(paths))
 
     def note_saved(self, path: Path) -> None:
-        """Note that the app itself has written a file, so that it is not reloaded as changed."""
+        """Record that the app itself has written a file, so that it is not reloaded as changed."""
         self._watch.note(path)
 
     def note_saved_world(self, path: Path) -> None:
-        """Note that the app has written the world to a file, and watch that file from now on."""
+        """Record that the app has written the world to a file, and watch that file from now on."""
         try:
             self._read_world(path)
         except TuisimError as error:
@@ -439,12 +439,12 @@ class Loader:
         """Apply the edited text of the open program. Not during a run.
 
         Args:
-            text: As it would stand in the file.
+            text: The text as it would be in the file.
             path: Path of the file, empty for none.
             name: Name of the file.
 
         Raises:
-            TuisimError: its magic line is wrong.
+            TuisimError: the magic line of the text is wrong.
         """
         from tuisim.programs.program_file import build_program
 
@@ -473,10 +473,10 @@ class Loader:
             self._apply_program(source)
 
     def open_new(self, text: str, name: str) -> None:
-        """Open a new program without a file. Not during a run.
+        """Open a text as a new program without a file. Not during a run.
 
         Raises:
-            TuisimError: its magic line is wrong.
+            TuisimError: the magic line of the text is wrong.
         """
         from tuisim.programs.program_file import build_program
 
@@ -500,7 +500,7 @@ class Loader:
         self._apply_app_settings(before, magic)
 
     def _apply_app_settings(self, before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
-        """Apply the changes in a magic line that concern the app: panels, rays and speed."""
+        """Apply the differences between two magic lines that concern the app: panels, rays and speed."""
         panels = _list_panels(now)
         self._panel_area.request(
             {panel: panels.get(panel) for panel, _ in _list_panels(before).items() ^ panels.items()}
@@ -572,7 +572,7 @@ def _find_program_path(word: str) -> str:
 
 
 def _list_panels(magic: Mapping[str, Any]) -> dict[str, bool]:
-    """Return the panels that a magic line shows (True) and hides (False)."""
+    """Return the panels that a magic line shows (True) or hides (False), by id."""
     return {
         **dict.fromkeys(magic.get("panels_on", ()), True),
         **dict.fromkeys(magic.get("panels_off", ()), False),

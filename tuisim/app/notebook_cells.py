@@ -59,7 +59,7 @@ def _take_cell(
         context.app.tell_server("problem", text=BUSY)
         return
     try:
-        # JSON has no tuples.
+        # JSON has no tuples, so they arrive as lists.
         choices = {
             path: tuple(value) if isinstance(value, list) else value
             for path, value in settings.items()

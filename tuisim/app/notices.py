@@ -23,27 +23,27 @@ _EDGES = 3
 
 @dataclass(frozen=True, slots=True)
 class Notice:
-    """A message to the user."""
+    """A message to the user, with its severity and how long it is shown."""
 
     message: str
     severity: SeverityLevel
     timeout_s: float
-    """How long it is shown; longer if it takes longer to read. Infinite: until the next key does something."""
+    """How long the notice is shown; longer if it takes longer to read. Infinite: until the next key does something."""
 
     @property
     def stays(self) -> bool:
-        """Whether it is shown until the next key does something."""
+        """Whether the notice is shown until the next key does something."""
         return self.timeout_s == inf
 
 
 class NoticeRow(Static):
-    """A notice on borders of panels, so that it covers nothing else.
+    """A row with a notice, on borders of panels, so that it covers nothing else.
 
-    One of a row lies below the panels; a longer one between upper and lower panels, where two rows of borders meet
-    across the whole screen.
+    A notice of one row is below the panels; a longer one is between upper and lower panels, where two rows of borders
+    meet across the whole screen.
 
     Args:
-        notice: What it shows.
+        notice: The notice that it shows.
         ended: Called once all of it has been shown, or a click has closed it.
     """
 
@@ -75,7 +75,7 @@ class NoticeRow(Static):
 
     @property
     def is_read(self) -> bool:
-        """Whether the user has had the time to read all of it."""
+        """Whether the notice has been visible long enough to be read."""
         return time.monotonic() >= self._read_s
 
     def on_mount(self) -> None:
@@ -87,7 +87,7 @@ class NoticeRow(Static):
         self.call_after_refresh(self._leave_dialog)
 
     def place(self) -> None:
-        """Move to its borders, unless it was removed before the panels were drawn."""
+        """Move the row to the borders on which it belongs; if it was removed meanwhile, do nothing."""
         if not self.is_attached:
             return
         screen_columns = self.screen.size.width
@@ -100,21 +100,21 @@ class NoticeRow(Static):
         self.styles.margin = (lowest - 1, 0, 0, 0) if lowest else (0, 0, 1, 0)
 
     def _leave_dialog(self) -> None:
-        """Move to the lower border of a dialog whose text the row would cover."""
+        """If the row would cover the text of a dialog, move it to the lower border of the dialog."""
         for frame in self.screen.query(".dialog") if self.is_attached else ():
             if self.region.overlaps(frame.region.shrink((1, 1, 1, 1))):
                 self.styles.offset = (0, frame.region.bottom - 1 - self.region.y)
 
     def on_click(self) -> None:
-        """Close it."""
+        """Close the notice."""
         self._ended()
 
 
 class Notices:
-    """The notices of an app: the newest replaces the one that is shown, unless that is an error nobody can have read.
+    """The notices of an app. A new one replaces the visible one, unless that is an error that nobody can have read.
 
     Args:
-        app: On whose topmost screen they are shown.
+        app: The notices are shown on its topmost screen.
     """
 
     def __init__(self, app: App[Any]) -> None:
@@ -124,7 +124,7 @@ class Notices:
         self._told: list[tuple[float, Notice]] = []
 
     def add(self, notice: Notice) -> None:
-        """Show a notice as soon as its turn comes."""
+        """Show a notice, after the errors that have not been read yet."""
         now_s = time.monotonic()
         self._told = [
             (until_s, waiting_notice) for until_s, waiting_notice in self._told if until_s > now_s
@@ -138,16 +138,16 @@ class Notices:
                 if waiting_notice.severity == "error"
             )
         self._waiting.append(notice)
-        # The panels may still be moved for what it tells.
+        # What caused the notice may still move the panels: wait for the next refresh.
         self._app.call_after_refresh(self._take_turn)
 
     def list_messages(self) -> list[str]:
-        """Return the messages whose time has not passed."""
+        """Return the texts of the notices whose time is not over."""
         now_s = time.monotonic()
         return [notice.message for until_s, notice in self._told if until_s > now_s]
 
     def release(self) -> None:
-        """Remove the notices that stay until a key does something."""
+        """Remove the notices that are shown until a key does something."""
         now_s = time.monotonic()
         self._told = [
             (
@@ -165,13 +165,13 @@ class Notices:
             self._end_turn()
 
     def clear(self) -> None:
-        """Forget all notices."""
+        """Remove all notices, shown or waiting."""
         self._waiting.clear()
         self._told.clear()
         self._remove_row()
 
     def follow_panels(self) -> None:
-        """Move the notice to where the panels' borders are now."""
+        """Move the notice after the panels, and so their borders, have moved."""
         if self._row is not None:
             self._app.call_after_refresh(self._row.place)
 

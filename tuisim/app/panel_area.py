@@ -59,7 +59,7 @@ _ARRAYS_PERIOD_S = 0.25
 
 
 class _Mounted(Generic[PanelWidget]):
-    """An attribute that is a panel, or None until that is mounted."""
+    """A descriptor of `PanelArea`: reads the widget of one panel, or None while that is not mounted."""
 
     def __init__(self, panel: str) -> None:
         self._find_panel = panel
@@ -74,14 +74,14 @@ class PanelArea(Container):
     """The area of all panels.
 
     Args:
-        on: Ids of panels shown whatever the size.
-        off: Ids of panels hidden whatever the size.
+        on: Ids of panels that are shown at the start, whatever the size of the terminal.
+        off: Ids of panels that are hidden at the start, whatever the size of the terminal.
     """
 
     ALLOW_SELECT = False
 
     class Rearranged(Message):
-        """Posted when panels were shown, hidden or moved."""
+        """Posted after panels were shown, hidden or moved."""
 
     @dataclass
     class Added(Message):
@@ -94,12 +94,12 @@ class PanelArea(Container):
         self.panels: dict[str, Widget] = {}
         """The panels that have been mounted, by id."""
         self.arrangement = PanelLayout()
-        """What is on the screen."""
+        """The boxes of the panels on the screen."""
         switched = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
         self._given = {panel: switched[panel] for panel in PANELS if panel in switched}
         """Panels shown or hidden by options, which are not kept."""
         self._asked = dict(self._given)
-        """Panels that were asked for, the latest last."""
+        """Panels that were requested to be shown (True) or hidden, the latest last."""
         self._chosen: dict[str, bool] = {}
         """Panels that the user has shown or hidden by their keys, which can be kept with the preset."""
         self.preset = Preset.STANDARD
@@ -120,7 +120,7 @@ class PanelArea(Container):
         self._roomy: tuple[str, int, int] | None = None
         """The panel that needs a number of columns and rows."""
 
-    # A hidden panel is still fed; one that was never shown is None.
+    # A hidden panel still gets data; a panel that was never shown is None.
 
     world: _Mounted[World] = _Mounted("world")
     output: _Mounted[Output] = _Mounted("output")
@@ -138,23 +138,23 @@ class PanelArea(Container):
         return panel in self.panels and self.panels[panel].display
 
     def clear_log(self) -> None:
-        """Clear the logged output and traces from the panels."""
+        """Remove the output and the logged traces from the panels."""
         if self.output:
             self.output.clear()
         if self.chart:
             self.chart.clear()
 
     def on_screen(self) -> list[Panel]:
-        """Return the panels on the screen."""
+        """Return the widgets of the panels that are on the screen."""
         return [cast(Panel, widget) for widget in self.panels.values() if widget.display]
 
     @property
     def is_single(self) -> bool:
-        """Whether there is room for one panel only."""
+        """Whether the area is so small that it shows one panel at a time."""
         return is_single(self.size.width, self.size.height)
 
     def toggle(self, panel: str) -> None:
-        """Show or hide a panel; where there is room for one only, show it instead of the other one."""
+        """Show a hidden panel, or hide a shown one; an area for one panel shows this one in place of the other."""
         show = self.is_single or not self.is_shown(panel) or bool(self.alone)
         self.alone = ""
         self._roomy = None
@@ -169,15 +169,15 @@ class PanelArea(Container):
         self._chosen[panel] = show
 
     def can_take_focus(self, panel: str) -> bool:
-        """Return whether a panel that is shown beside others can get the focus, and does not have it yet.
+        """Return whether a panel is shown beside others, does not have the focus yet, and can get it.
 
-        A panel that was shown just now counts as having it.
+        A panel that was shown just now counts as having the focus.
         """
         beside = self.is_shown(panel) and not self.alone and not self.is_single
         return beside and panel != self.front and self._can_focus(panel)
 
     def open(self, panel: str) -> None:
-        """Show a panel for now, without keeping this for the next start."""
+        """Show a panel in this session; the next start does not show it because of this."""
         if self.is_single:
             self.front = panel
             self.lay_out()
@@ -185,7 +185,10 @@ class PanelArea(Container):
             self.request({panel: True})
 
     def show_next_panel(self, by: int) -> str:
-        """Return the panel `by` places after the one with the focus; where there is room for one only, show it."""
+        """Return the id of the panel `by` panels after the focused one, empty without one.
+
+        An area with room for one panel also shows that panel.
+        """
         if self.is_single:
             usual = choose_panels(self.preset, self._asked, self.size.width, self.size.height)
             panels = list(dict.fromkeys([*usual[0], *usual[1], self.front]))
@@ -206,30 +209,33 @@ class PanelArea(Container):
         )
 
     def find_focused_panel(self) -> str:
-        """Return the panel that has the focus, or an empty text."""
+        """Return the id of the panel that has the focus; empty if none has it."""
         return self.find_owner(self.screen.focused)
 
     def find_owner(self, widget: Widget | None) -> str:
-        """Return the panel that a widget is in, or an empty text."""
+        """Return the id of the panel around a widget; empty if there is none."""
         around = widget.ancestors_with_self if widget else []
         return next((name for name, panel in self.panels.items() if panel in around), "")
 
     def find_pointed_panel(self) -> str:
-        """Return the panel that was clicked last if it cannot have the focus, else the one with the focus, if any."""
+        """Return the id of the panel that was clicked last but cannot have the focus, else of the focused panel.
+
+        It is empty if there is neither.
+        """
         if self.clicked and self.is_shown(self.clicked):
             return self.clicked
         return self.find_focused_panel()
 
     def list_focused_widgets(self) -> list[DOMNode]:
-        """Return the widget with the focus and those around it, up to its panel."""
+        """Return the focused widget and the widgets around it, up to its panel; empty if none has the focus."""
         around = self.screen.focused.ancestors_with_self if self.screen.focused else []
         panel = self.panels.get(self.find_focused_panel())
         return [widget for widget in around if panel in widget.ancestors_with_self]
 
     def choose_preset(self, preset: Preset) -> Preset:
-        """Show the panels of a preset, or the standard ones if it is shown already, and return which.
+        """Show the panels of a preset, and return it; if it is shown already, return to the standard one.
 
-        Only what is shown changes, never the run.
+        This changes only what is shown, never the run.
         """
         unchanged = self.preset == preset and self._asked in ({}, self._given)
         self.preset = Preset.STANDARD if unchanged else preset
@@ -244,7 +250,7 @@ class PanelArea(Container):
         return self.preset
 
     def show_next_preset(self) -> None:
-        """Show the next preset; one that would show the same panels in the same place is left out."""
+        """Show the next preset that differs from the present one in its panels or in their arrangement."""
         before = self.arrangement.boxes
         presets = list(Preset)
         index = presets.index(self.preset)
@@ -256,14 +262,14 @@ class PanelArea(Container):
                 break
 
     def keep_panels(self) -> None:
-        """Keep the preset, and the panels shown or hidden by their keys, for the next start in this size."""
+        """Store the preset, and the panels that the user has shown or hidden, for the next start in this size."""
         save_layout(self._find_size(), KeptLayout(self.preset, self._chosen))
 
     def _find_size(self) -> TerminalSize:
         return classify_size(self.size.width, self.size.height + 1)
 
     def _load(self) -> None:
-        """Load the arrangement that was stored for this size of the terminal."""
+        """Load the arrangement that is stored for this size of the terminal."""
         self._is_loaded = True
         layout = load_layout(self._find_size())
         self.preset = layout.preset
@@ -274,7 +280,12 @@ class PanelArea(Container):
         }
 
     def request(self, panels: Mapping[str, bool | None]) -> None:
-        """Show and hide panels. Later requests get room first; None leaves a panel to the size of the terminal."""
+        """Show and hide panels, and show a notice of what does not fit or had to go.
+
+        Args:
+            panels: Panels by id: True shows one, False hides it, None leaves that to the size of the terminal. Panels
+                that were requested later fit first.
+        """
         for panel, show in panels.items():
             self._asked.pop(panel, None)
             if show is not None:
@@ -296,20 +307,20 @@ class PanelArea(Container):
             self.app.notify(f"{came} instead of {names}")
 
     def maximize(self, panel: str) -> None:
-        """Maximize one panel; an empty id restores the others."""
+        """Show one panel alone; an empty id shows the others again."""
         if panel != self.alone or self._roomy:
             self.alone = panel
             self._roomy = None
             self.lay_out()
 
     def make_room(self, panel: str, columns: int, rows: int) -> None:
-        """Give a panel so many columns and rows, taken from those beside it; the whole area if that is too little."""
+        """Enlarge a panel to this size at the cost of the panels beside it; if that is not enough, show it alone."""
         if panel != self.alone:
             self._roomy = panel, columns, rows
             self.lay_out()
 
     def _choose_panels(self) -> tuple[list[str], list[str]]:
-        """Return the ids of the panels to show, by priority, and those for what space is left."""
+        """Return the ids of the panels to show, the most important first, and of those that fill the remaining area."""
         width, height = self.size
         self.is_stacked = self.is_beside = False
         chosen, fill = choose_panels(self.preset, self._asked, width, height)
@@ -342,10 +353,11 @@ class PanelArea(Container):
         return arrange(chosen, self.size.width, self.size.height, fill, self.preset)
 
     def lay_out(self, keeps: str = "") -> None:
-        """Lay out every panel.
+        """Choose and arrange the panels for the present size.
 
         Args:
-            keeps: A panel that stays before others, such as the one that is typed in above the keyboard of a phone.
+            keeps: Id of a panel that is shown before all others, such as the one in which the user of a phone types;
+                empty for none.
         """
         if not self.size:
             return
@@ -377,37 +389,37 @@ class PanelArea(Container):
         return self.panels[panel]
 
     def show_next_run(self, plan: NextRun) -> None:
-        """Update the panels that edit the plan of the next run, on the screen or not."""
+        """Show the plan of the next run in the panels that edit it, even in hidden ones."""
         for widget in self.panels.values():
             if isinstance(widget, NextRunPanel):
                 widget.show_next_run(plan)
 
     def focus_world(self) -> None:
-        """Focus the world if it is shown; the focus of a dialog above the panels stays."""
+        """Focus the world if it is shown; a dialog above the panels keeps its focus."""
         self.screen.set_focus(self.world if self.is_shown("world") else None)
 
     def leave_code(self) -> None:
-        """Focus the world if the code has the focus, unless the user types in it."""
+        """Move the focus from the code to the world, unless the user types in the code."""
         if self.code is not None and self.code.has_focus_within and not self.code.typing:
             self.focus_world()
 
     def bring(self, panel: str) -> None:
-        """Show a panel, unless it is shown already."""
+        """Show a panel if it is hidden, as its key does."""
         if not self.is_shown(panel):
             self.toggle(panel)
 
     def release_buttons(self) -> None:
-        """Let go of the buttons of the brick."""
+        """Release all buttons in the panel of the brick."""
         if self.brick:
             self.brick.release_all()
 
     def focus_opened(self, panel: str) -> None:
-        """Focus a panel that has been opened, if it can have the focus; the world if it was closed."""
+        """Focus a panel after its key was pressed, if it is shown and can have the focus; else focus the world."""
         widget = self.panels.get(panel)
         if not self.is_shown(panel) or widget is None:
             self.focus_world()
         elif not widget.is_mounted:
-            # It is still being mounted.
+            # The panel is still being mounted: try again when that is done.
             widget.call_later(self.focus_opened, panel)
         elif hasattr(widget, "begin"):
             widget.begin()
@@ -419,7 +431,7 @@ class PanelArea(Container):
                 first.focus()
 
     def ensure(self, *panels: str) -> None:
-        """Mount the panels that need data from the start, shown or not."""
+        """Mount panels that need data from the start, without showing them."""
         for panel in panels:
             if panel not in self.panels:
                 self._find_panel(panel).display = False
@@ -431,10 +443,10 @@ class PanelArea(Container):
         self.lay_out(keeps=panel if self.is_shown(panel) else "")
 
     def on_descendant_focus(self, event: events.DescendantFocus) -> None:
-        """Mark the panel that has the focus.
+        """Mark the panel that has the focus by a class of its widget.
 
-        By a class, which changes only when the focus moves to another panel: `:focus-within` would make Textual restyle
-        every field of a form at each move from one field to the next.
+        The class changes only when the focus moves to another panel: `:focus-within` would make Textual restyle every
+        field of a form at each move from one field to the next.
         """
         self._mark(event.widget)
 
@@ -451,7 +463,7 @@ class PanelArea(Container):
             self.clicked = ""
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment in every panel on the screen; the readings follow a few times per second, all together."""
+        """Show an instant in every panel on the screen; those with readings are updated less often, all together."""
         before = self._snapshot
         self._snapshot = snapshot
         for panel, widget in self.panels.items():

@@ -43,12 +43,12 @@ _BUTTONS = re.compile(
 
 
 def has_button_calls(program: str) -> bool:
-    """Return whether the text of a program uses the brick's buttons."""
+    """Return whether the text of a program contains calls for the brick's buttons."""
     return bool(_BUTTONS.search(program))
 
 
 def _find_typing_room(area: PanelArea) -> tuple[int, int]:
-    """Return the columns and rows that the code panel needs while the user types in it."""
+    """Return the columns and rows that the code panel should have while the user types in it."""
     if area.is_shown("lesson"):
         return _LESSON_COLUMNS, ROOMY_ROWS
     is_wide = area.is_shown("world") and area.size.width >= EDITOR_COLS + DISCS_COLS
@@ -56,14 +56,14 @@ def _find_typing_room(area: PanelArea) -> tuple[int, int]:
 
 
 class PanelMessages(LabHost):
-    """Message handlers of the app for the panels; Textual finds the methods by name."""
+    """The handlers of the messages of panels, as a base class of the app; Textual finds the methods by name."""
 
     context: ActionContext
     has_hinted = False
     """Whether a notice has named the panel of the brick."""
 
     def suggest_brick(self, does: str) -> None:
-        """Say, once, which key opens the panel of the brick if it is hidden.
+        """If the panel of the brick is hidden, name its key in a notice, once in a session.
 
         Args:
             does: What the program does with the brick, such as `reads the brick's buttons`.
@@ -73,7 +73,7 @@ class PanelMessages(LabHost):
         self.has_hinted = True
 
     def on_panel_area_rearranged(self) -> None:
-        """Tell the page, whose buttons show which panels are there."""
+        """Send the shown panels to the web page, whose buttons show them."""
         self.context.app.tell_server("panels", shown=[*self.context.panels.arrangement.boxes])
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
@@ -82,7 +82,7 @@ class PanelMessages(LabHost):
         if not message.typing:
             area.maximize("")
             if code := area.code:
-                # Once the panel has its new size.
+                # The panel must have its new size before it can scroll to the cursor.
                 code.call_after_refresh(code.show_cursor)
         else:
             area.make_room("code", *_find_typing_room(area))
@@ -93,7 +93,7 @@ class PanelMessages(LabHost):
         area = self.context.panels
         owner = area.find_owner(event.widget)
         if owner != area.find_focused_panel() and self.screen is area.screen:
-            # The instant in view stays: a drag along the timeline ends with a click, too.
+            # A click does not return from the past, because a drag along the time bar ends with one, too.
             area.focus_world()
             area.clicked = owner
 
@@ -101,7 +101,7 @@ class PanelMessages(LabHost):
         self.handle_situation_change()
 
     def _end_former_text(self) -> None:
-        """End a run of the text before the edit, so that the edited text can run."""
+        """End a live run of the text as it was before an edit, so that the edited text can run."""
         controller = self.context.runs
         code = self.context.panels.code
         if (
@@ -127,7 +127,7 @@ class PanelMessages(LabHost):
             case ProgramCommand.RUN:
                 self._end_former_text()
                 self.action_act("run")
-                # Make the robot visible, or the place of the error in the text.
+                # Show the other panels again, so that the robot is visible, unless the code shows an error.
                 area = self.context.panels
                 if area.alone and not (area.code and area.code.error_line):
                     area.maximize("")
@@ -142,7 +142,7 @@ class PanelMessages(LabHost):
                 assert_never(message.command)
 
     def on_descendant_focus(self) -> None:
-        """Update the footer: other keys may be available."""
+        """Update the footer after the focus has moved, because other keys may be available."""
         self.call_later(self.handle_situation_change)
 
     def on_descendant_blur(self) -> None:
@@ -150,11 +150,11 @@ class PanelMessages(LabHost):
 
     @on(ClosesOnce.Changed)
     def show_keys_of_the_screen(self) -> None:
-        """Update the footer: when a dialog has opened or closed, another widget has the focus."""
+        """Update the footer after a dialog was opened or closed, because another widget has the focus."""
         self.handle_situation_change()
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
-        """Move the robot with the mouse; in the past, ask about a branch at the end of the drag."""
+        """Move the robot to where it is dragged; in the past, ask about a branch at the end of the drag."""
         if message.done or not self.context.debugger.is_away:
             self.context.runs.place(message.pose)
 
@@ -168,7 +168,7 @@ class PanelMessages(LabHost):
         self.context.runs.place(message.pose)
 
     def on_settings_edited(self, message: Settings.Edited) -> None:
-        """Apply a field of the settings; the field shows an error."""
+        """Apply the value of a field in the settings panel, or show the error below the field."""
         try:
             self.context.loader.set_next_run(self.context.loader.change(message.apply))
         except TuisimError as error:
@@ -183,7 +183,7 @@ class PanelMessages(LabHost):
         self.mark_box()
 
     def mark_box(self) -> None:
-        """Show in the world which obstacle is selected, and whether the mouse draws obstacles."""
+        """Mark the selected obstacle in the world panel, and set whether the mouse edits obstacles there."""
         area = self.context.panels
         on = area.is_shown("obstacles")
         if area.world:

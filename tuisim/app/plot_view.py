@@ -34,7 +34,7 @@ _STILL_S = 1.0
 
 
 class PlotStrip(JoinedStrip):
-    """A row of text and parts of a picture.
+    """A row of text and parts of a chart's picture.
 
     Args:
         parts: Text and parts of one picture, from left to right.
@@ -48,7 +48,7 @@ class PlotStrip(JoinedStrip):
         self._spare = spare
 
     def make(self) -> list[Segment]:
-        """Return its segments: with characters only."""
+        """Return the row as segments, with characters only."""
         return list(self._spare())
 
     def _part(self, start: int, end: int) -> PlotStrip:
@@ -56,10 +56,10 @@ class PlotStrip(JoinedStrip):
 
 
 class PlotView(LinesView):
-    """Shows lines of text, some of them with an image in place of a chart's canvas.
+    """A widget with lines of text and charts; a chart has pixels if the terminal can show them, else characters.
 
     Args:
-        redraw: Draws everything again: with pixels or characters, as `graphics` says then.
+        redraw: Draws all lines again, with pixels or characters as `graphics` says then.
     """
 
     def __init__(self, redraw: Callable[[], None]) -> None:
@@ -67,7 +67,7 @@ class PlotView(LinesView):
         self._draw_again = redraw
         self._sharpness = Sharpness(self, self._refine, _STILL_S)
         self._tiles: TilePicture | None = None
-        """The canvases, as large as the widget, while they are drawn with pixels."""
+        """The picture of the canvases, as large as the widget, while they are drawn with pixels; else None."""
         self._spans: dict[int, tuple[int, int]] = {}
         """First column of the image in each of its rows, and the column behind it."""
         self._spare_lines: Callable[[], Lines] = tuple
@@ -75,13 +75,13 @@ class PlotView(LinesView):
 
     @property
     def graphics(self) -> Graphics | None:
-        """How pixels are drawn now; None for characters: they have fewer bytes on a slow link, and need no colours."""
+        """How pixels are drawn now; None for characters: without colours, or on a slow link while the chart changes."""
         picture_mode = find_picture_mode(self.app)
         is_coarse = self.app.no_color or (picture_mode.is_slow() and not self._sharpness.is_still)
         return None if is_coarse else picture_mode.graphics
 
     def draw(self, paint: Paint) -> None:
-        """Show lines with charts.
+        """Show lines of text with charts.
 
         Args:
             paint: Gets whether to leave the canvases blank; returns all lines, and the charts, each with its first row.
@@ -154,7 +154,7 @@ class PlotView(LinesView):
         return theme.choose_text_rgb(rgb) if theme else rgb
 
     def set_lines(self, lines: Lines) -> None:
-        """Show lines of characters."""
+        """Show lines of characters, without pixels."""
         if self._tiles is not None:
             self._tiles = None
             self._spans = {}
@@ -167,12 +167,12 @@ class PlotView(LinesView):
         return False
 
     def redraw(self) -> None:
-        """Draw again: the app's glyphs or colours have changed."""
+        """Draw all lines again, because the app's glyphs or colours have changed."""
         super().redraw()
         self._draw_again()
 
     def render_line(self, y: int) -> Strip:
-        """Return one row."""
+        """Return row `y` of the widget."""
         strip = super().render_line(y)
         if self._tiles is None or y not in self._spans or isinstance(strip, PlotStrip):
             return strip

@@ -13,29 +13,37 @@ if TYPE_CHECKING:
 
 
 class ReasonTour:
-    """The reasons of one run, and the one in view."""
+    """The reasons why one run went wrong, and the index of the one that the user sees now."""
 
     def __init__(self) -> None:
         self.reasons: tuple[Reason, ...] = ()
         self.earlier: Recording | None = None
-        """The run before that was compared with."""
+        """The earlier run that was compared with this one; None for none."""
         self.is_searching = False
-        """Whether the key has been pressed, and its answer is still being found."""
+        """Whether the user has asked for the reasons, and they are still being searched for."""
         self._of: Recording | None = None
         self._has_ended = False
-        """Whether the run is over as far as they are known."""
+        """Whether the reasons are those of the ended run."""
         self._newest = -1
-        """The last tick up to which they are known."""
+        """The last tick of the run up to which the reasons are known."""
         self._at: int | None = None
-        """Index of the one in view; None before the first, and after the last."""
+        """Index of the reason in view; None before the first, and after the last."""
 
     def is_about(self, recording: Recording | None, has_ended: bool) -> bool:
-        """Return whether these are, or will be, the reasons of a run that goes on, or that has ended."""
+        """Return whether the reasons are those of a run, even if they are still being searched for.
+
+        Args:
+            recording: The run.
+            has_ended: Whether the run has ended; reasons found before its end are not those of the ended run.
+        """
         is_same = recording is not None and self._of is recording
         return is_same and self._has_ended is has_ended
 
     def has_gone_wrong(self, runs: RunController) -> bool:
-        """Return whether the run in view is known to have gone wrong, or repeats the one beside it."""
+        """Return whether the run in view is known to have gone wrong, or repeats the earlier run beside it.
+
+        A repetition may differ from the earlier run, which is a reason too.
+        """
         recording = runs.timeline.recording
         earlier = runs.earlier
         has_gone_wrong = recording is not None and self._of is recording and bool(self.reasons)
@@ -43,7 +51,7 @@ class ReasonTour:
         return has_gone_wrong or can_differ
 
     def begin(self, recording: Recording, has_ended: bool) -> None:
-        """Begin with a run, whose reasons are not known yet; forget those of another run, and which one is in view."""
+        """Begin with a run whose reasons are not known yet; if it is another run, drop those of the run before."""
         if self._of is not recording:
             self.reasons = ()
             self.earlier = None
@@ -55,9 +63,9 @@ class ReasonTour:
     def take(
         self, recording: Recording, reasons: tuple[Reason, ...], earlier: Recording | None
     ) -> None:
-        """Store the reasons of a run, unless the tour is about another run by now.
+        """Store the reasons of a run; do nothing if another run has begun meanwhile.
 
-        If the run has gone on since, the first one is next.
+        If the run has gone on since the reasons before, the tour begins again with the first reason.
         """
         if self._of is recording:
             if recording.newest != self._newest:
@@ -67,14 +75,14 @@ class ReasonTour:
             self.earlier = earlier
 
     def advance(self) -> Reason | None:
-        """Go to the next reason, and return it; None after the last."""
+        """Go to the next reason, and return it; None after the last one."""
         number = 0 if self._at is None else self._at + 1
         self._at = number if number < len(self.reasons) else None
         return None if self._at is None else self.reasons[self._at]
 
     @property
     def words(self) -> str:
-        """The reason in view with its number, with ids of actions in braces; after the last, that it was the last."""
+        """The present reason with its number, and ids of actions in braces; after the last one, words that say so."""
         count = len(self.reasons)
         if self._at is None:
             return "This is the end of the run again; {went-wrong} goes to the first reason"

@@ -32,7 +32,7 @@ FoundReasons = tuple[tuple["Reason", ...], "Recording | None"]
 
 
 def look(context: ActionContext) -> None:
-    """Find the reasons of the run in view in the background, once, when it has ended."""
+    """When the run in view has ended, search for its reasons in the background, once."""
     recording = context.runs.timeline.recording
     tour = context.reasons
     if recording is None or context.runs.state is not RunPhase.ENDED:
@@ -49,7 +49,7 @@ def look(context: ActionContext) -> None:
 
 
 def note(context: ActionContext, recording: Recording, reasons_so_far: FoundReasons) -> None:
-    """Store the reasons of a run, and update the footer, which names their key."""
+    """Store the reasons why a run went wrong, and update the footer, which then names their key."""
     context.reasons.take(recording, *reasons_so_far)
     context.app.handle_situation_change()
 
@@ -61,13 +61,13 @@ def find(
     then: Callable[[FoundReasons], None],
     searches: bool = False,
 ) -> None:
-    """Find the reasons of the run in view in the background.
+    """Search in the background for the reasons why the run in view went wrong.
 
     Args:
         context: The parts of the app.
         recording: The run.
         earlier: The run to compare with, if the one in view repeats it.
-        then: Called with what was found.
+        then: Called with the reasons and the run that was compared.
         searches: Whether to show errors, and to search the store for a run to compare with if `earlier` is none.
     """
     session = context.lesson.session
@@ -105,7 +105,10 @@ def _read(
     earlier: Recording | None,
     mat: Field | None,
 ) -> tuple[Reason, ...]:
-    """Return the reasons of a run, which is loaded anew: the app goes on reading its own views of the recording."""
+    """Return the reasons why a run went wrong.
+
+    The run is loaded from its folder: the app continues to read its own views of the recording.
+    """
     from tuisim.tasks.goals.judge import judge
 
     run = load_run(folder)

@@ -45,16 +45,16 @@ ROWS_A_POLL = 4000
 
 @dataclass(slots=True)
 class Pending:
-    """User actions that the newest record does not contain yet."""
+    """User actions that were sent to the run but are not in its newest record yet."""
 
     _after: tuple[int, int] = (-1, 0)
-    """Tick of the record after which they were sent, and the number of actions that it counts."""
+    """Tick of the record after which the actions were sent, and the number of actions that it counts."""
     _pose: Pose | None = None
     _noise: NoiseSpec | None = None
     _pen_down: bool | None = None
 
     def note(self, record: TickRecord, action: protocol.Message) -> None:
-        """Add an action that was sent while this was the newest record."""
+        """Add an action that was sent while `record` was the newest one."""
         if self._after != _build_key(record):
             self.forget()
             self._after = _build_key(record)
@@ -67,7 +67,7 @@ class Pending:
                 self._pen_down = down
 
     def forget(self) -> None:
-        """Drop all pending actions."""
+        """Remove all pending user actions."""
         self._after = (-1, 0)
         self._pose = None
         self._noise = None
@@ -76,7 +76,7 @@ class Pending:
     def apply_pending(
         self, record: TickRecord, instant: Instant, pen_down: bool
     ) -> tuple[Instant, bool]:
-        """Return the instant of the newest record and its pen with the pending actions applied.
+        """Return the instant of the newest record, and whether the pen is down, with the pending actions applied.
 
         The gyro keeps its angle, as it does when the robot is lifted.
         """
@@ -95,7 +95,7 @@ def _build_key(record: TickRecord) -> tuple[int, int]:
 
 
 class RunController:
-    """Starts runs and sends them commands; has the current run, or the robot before a run.
+    """Starts runs and sends them commands; it has the current run, or before the first run the placed robot.
 
     Args:
         program: The program that runs next; None for none yet.
@@ -122,7 +122,7 @@ class RunController:
         self.earlier: Recording | None = None
         """The run before, or one that was compared with the run in view: it is drawn beside it."""
         self.companion: Recording | None = None
-        """Drawn beside every run in place of the run before, such as that of a model answer."""
+        """A run that is drawn beside every run in place of the run before, such as that of a model answer."""
         self.shows_earlier = True
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that the user holds down."""
@@ -145,23 +145,23 @@ class RunController:
 
     @property
     def spec(self) -> RunSpec:
-        """The specification in view: the run's own while it is live or viewed in the past, else the next run's."""
+        """The specification in view: that of a live run or a past instant, else that of the next run."""
         recording = self.timeline.recording
         return recording.spec if recording and (self.in_run or self.in_past) else self.next_run.spec
 
     @property
     def in_run(self) -> bool:
-        """Whether a child process runs."""
+        """Whether the run is live: its child process still runs."""
         return self.run is not None and self.run.ended is None
 
     @property
     def in_past(self) -> bool:
-        """Whether an instant before the newest is viewed."""
+        """Whether an instant before the newest one is in view."""
         return self.timeline.at is not None
 
     @property
     def state(self) -> RunPhase:
-        """What the run is doing."""
+        """The state of the run, such as running, paused or ended."""
         run = self.run
         if run is None:
             return RunPhase.ENDED if self.timeline.recording else RunPhase.IDLE
@@ -177,21 +177,21 @@ class RunController:
 
     @property
     def run_id(self) -> str:
-        """Id of the current or last run, empty if there was none."""
+        """Id of the current or last run, empty if there was no run."""
         return self.timeline.recording.run_id if self.timeline.recording else ""
 
     @property
     def pose(self) -> Pose:
-        """The pose of the robot."""
+        """The pose of the robot at the instant in view."""
         return self._find_moment(self._record())[0].pose
 
     @property
     def pen_down(self) -> bool:
-        """Whether the pen is down."""
+        """Whether the pen is down at the instant in view."""
         return self._find_moment(self._record())[2]
 
     def build_snapshot(self) -> Snapshot:
-        """Return the snapshot of the instant in view."""
+        """Return the state of robot and run at the instant in view, for the panels."""
         timeline = self.timeline
         recording = self.timeline.recording
         spec = self.spec
@@ -253,18 +253,21 @@ class RunController:
 
     @property
     def _is_of_run(self) -> bool:
-        """Return whether an instant of the run is in view, and not the robot as placed after it."""
+        """Return whether an instant of the run is in view, and not the robot as it was placed after the run."""
         return self.in_run or self.in_past
 
     def _record(self) -> TickRecord | None:
-        """Return the record in view; without a past instant, the newest one if the robot is where the run left it."""
+        """Return the record of the tick in view; None if there is no run, or the robot was moved after the run."""
         recording = self.timeline.recording
         if recording is None or (self._moved and not self.in_past):
             return None
         return self.timeline.record() or recording.telemetry.last()
 
     def _find_moment(self, record: TickRecord | None) -> tuple[Instant, int, bool]:
-        """Return the instant of a record, the program's line, and whether the pen is down."""
+        """Return the instant of a record, the current line of the program (0 for none), and whether the pen is down.
+
+        For None, they are those of the robot before the next run.
+        """
         recording = self.timeline.recording
         if record is None or recording is None:
             return self._still, 0, self.next_run.spec.robot.pen.down
@@ -279,14 +282,14 @@ class RunController:
         return instant, line, down
 
     def _find_pressed(self, record: TickRecord | None) -> frozenset[str]:
-        """Return the buttons that are held down: by the user now, or in the recording at the instant in view."""
+        """Return the buttons that the user holds down, else those of a record; in the past, only the latter."""
         recording = self.timeline.recording
         if record is None or recording is None or not self._is_of_run:
             return frozenset()
         return (not self.in_past and self.pressed) or recording.pressed_at(record.tick)
 
     def _field(self, record: TickRecord | None) -> Field | None:
-        """Return the mat as the sensors saw it at a record; None until the mat is prepared for them."""
+        """Return the mat as the sensors saw it at a record; None while the mat is not prepared."""
         mat = self.find_mat(self.spec)
         recording = self.timeline.recording
         return (
@@ -296,21 +299,21 @@ class RunController:
         )
 
     def find_mat(self, spec: RunSpec) -> Field | None:
-        """Return the mat of the next run, or of the run in view, if it is prepared for a specification; else None."""
+        """Return the mat of the next run or of the run in view, whichever is prepared for a specification; or None."""
         recording = self.timeline.recording
         mats = (self.mat, self._mat_of_run)
         if recording and self.mat and self.mat.serves(recording.spec):
             self._mat_of_run = self.mat
         return next((mat.field for mat in mats if mat and mat.serves(spec)), None)
 
-    # What the user does
+    # The following methods do what the user wants.
 
     def start(self, breaks: tuple[str, ...] = (), paused: bool = False) -> None:
-        """Start the program from where the robot was last placed.
+        """Start the program at the pose at which the robot was last placed.
 
         Args:
             breaks: The breakpoints.
-            paused: Pause at the first line.
+            paused: Whether the program pauses at its first line.
 
         Raises:
             TuisimError: the run cannot be started, or the chosen profile is not for the program's library.
@@ -334,7 +337,7 @@ class RunController:
         self._show_run(start_run(program, self.next_run.spec, options))
 
     def prepare_next(self) -> None:
-        """Prepare a process for the next run, so that the robot moves sooner; a run in another world cannot use it."""
+        """Start a process for the next run in advance, so that it begins sooner; in another world it is of no use."""
         if self.run:
             self.run.prepare_next()
 
@@ -345,7 +348,9 @@ class RunController:
         )
 
     def start_branch(self, branch: Branch) -> None:
-        """Repeat a run as fast as possible up to an instant of it, and continue from there. Ends the current run.
+        """Start a branch: repeat a run as fast as possible up to an instant, and continue from there.
+
+        The current run is closed.
 
         Raises:
             TuisimError: the run cannot be started.
@@ -358,14 +363,18 @@ class RunController:
         run = start_run(branch.runs, branch.of.first_spec, options)
         RunStore().tag(run.run_id, branch.tags)
         self._show_run(run, branch.of.answers)
-        # The noise of the current run is that of the next one, as if chosen now.
+        # The next run has the noise of the branch, too, as if the user had chosen it.
         self.next_run = plans.change_noise(self.next_run, noise)
         self._branch = branch
 
     def _finish_branch(self, paused: protocol.Paused | None = None) -> Branch | None:
-        """Continue a branch that is paused at its instant, or forget one that has ended; return it, if there is one.
+        """Continue a branch that has paused at its instant, and return it; None if no branch is on its way.
 
-        A program that ends before that instant is paused at its end.
+        A program that ends before that instant pauses at its end, and continues from there. A branch that has ended is
+        dropped.
+
+        Args:
+            paused: The pause; None if the branch has ended.
         """
         branch = self._branch
         self._branch = None
@@ -373,7 +382,7 @@ class RunController:
             early = paused.tick < branch.tick
             self.send(protocol.SetSpeed(self.speed))
             if branch.of.pressed_at(branch.tick + 1) and not early:
-                # Buttons that were held then have been released since.
+                # The user no longer holds the buttons that were pressed at that tick.
                 self.send(protocol.SetButtons(()))
             if branch.then is not None and not early:
                 self.send(branch.then)
@@ -382,24 +391,24 @@ class RunController:
         return branch
 
     def replay(self, run: StoredRun) -> None:
-        """Show a stored run, as one that has ended. Not during a run."""
+        """Show a stored run as a run that has ended; only while no run is live."""
         self.close()
         self._end = run.state
         self._show_recording(Recording(run))
 
     def show_earlier(self, earlier: Recording | None) -> None:
-        """Draw an earlier run beside the one in view, if it drove on the same mat; None for none."""
+        """Draw an earlier run beside the one in view, if both drove on the same mat; None draws none."""
         later = self.timeline.recording
         self.earlier = earlier if earlier and later and is_comparable(earlier, later) else None
 
     def set_companion(self, companion: Recording | None) -> None:
-        """Draw a run beside every run from now on; None for the run before again."""
+        """Draw this run beside every later run; None draws the previous run there again."""
         self.companion = companion
         self.shows_earlier = True
         self.show_earlier(companion)
 
     def _show_run(self, run: RunHandle, answers: tuple[str, ...] = ()) -> None:
-        """Show a run that has been started, beside the one before; arguments as of `Recording`."""
+        """Show a run that was just started, beside the one before it; arguments as for `Recording`."""
         before = self.timeline.recording
         self.close()
         self.run = run
@@ -408,7 +417,7 @@ class RunController:
         self.show_earlier(self.companion or before)
 
     def _show_recording(self, recording: Recording) -> None:
-        # Everything that is drawn in a frame belongs to one instant.
+        # New data stays unread until the next poll, so that everything in a frame belongs to one instant.
         recording.hold()
         self.timeline.show_run(recording)
         self.show_earlier(self.companion)
@@ -417,41 +426,41 @@ class RunController:
         self._moved = False
 
     def stop(self) -> None:
-        """Ask the program to stop; the end arrives with a later poll."""
+        """Send the program a request to stop; a later `poll` reports its end."""
         if self.run:
             self.run.stop()
 
     def stop_now(self) -> None:
-        """Stop the program without waiting for it; its run stays the current one."""
+        """Stop the program immediately, without its cooperation; its run stays the current one."""
         if self.run:
             self.run.close()
 
     def pause(self) -> None:
-        """Pause the run, unless there is none or it is paused already."""
+        """Pause the live run; do nothing without one, or if it is paused already."""
         if self.in_run and self.state is not RunPhase.PAUSED:
             self.send(protocol.Pause())
 
     def set_speed(self, speed: float) -> None:
-        """Change the speed: 1.0 is real time, 0 as fast as possible."""
+        """Change the speed of the live run and of later ones: 1.0 is real time, 0 as fast as possible."""
         self.speed = speed
         self.send(protocol.SetSpeed(speed))
 
     def set_pen(self, down: bool) -> None:
-        """Put the pen down or up, for this run and the next."""
+        """Put the pen down or lift it, in the live run and in the next one."""
         if self.propose(protocol.SetPen(down)):
             return
         self._send_action(protocol.SetPen(down))
         self.next_run = plans.change_pen(self.next_run, down)
 
     def press(self, buttons: frozenset[str]) -> None:
-        """Hold down these of `PRESSABLE`, and no others."""
+        """Hold down these buttons and touch sensors, of `PRESSABLE`, and release all others."""
         if buttons == self.pressed:
             return
         self.pressed = buttons
         self.send(protocol.SetButtons(tuple(name for name in PRESSABLE if name in buttons)))
 
     def set_noise(self, noise: NoiseSpec) -> None:
-        """Change the noise, at once and for the next run."""
+        """Change the noise of the live run and of the next one."""
         present = self._find_moment(self._record())[0] if self.in_past else self.next_run.spec.world
         change = protocol.SetNoise(noise.light, noise.motor)
         if noise == present.noise or self.propose(change):
@@ -462,12 +471,12 @@ class RunController:
             self._send_action(change)
 
     def set_seed(self, seed: int) -> None:
-        """Choose the seed of the next run."""
+        """Set the seed of the next run."""
         self.next_run = plans.change_seed(self.next_run, seed)
         self._still = replace(self._still, seed=seed)
 
     def place(self, pose: Pose) -> None:
-        """Place the robot: during a run as a user action, else as the start of the next run."""
+        """Place the robot at a pose: in a live run as a user action, else as the start pose of the next run."""
         command = protocol.SetPose(pose.x_mm, pose.y_mm, pose.heading_deg)
         if self.propose(command):
             return
@@ -484,7 +493,7 @@ class RunController:
         self._moved = True
 
     def load(self, plan: NextRun, program: Program | None) -> None:
-        """Load another world or program; the robot goes to its start. Not during a run."""
+        """Set another world or program for the next run; the robot goes to its start. Only while no run is live."""
         self.timeline.go(None)
         self.next_run = plan
         self.program = program
@@ -492,7 +501,7 @@ class RunController:
         self._set_start(plan.spec.world.start)
 
     def change(self, plan: NextRun) -> None:
-        """Set a plan with the same start; the robot stays where it is. Not during a run.
+        """Set a plan of the next run with the same start pose; the robot stays where it is. Only while no run is live.
 
         The view returns from the past, so that the change is visible.
         """
@@ -504,7 +513,7 @@ class RunController:
         )
 
     def close(self) -> None:
-        """Release the run; a child process that still runs is killed."""
+        """Close the current run, and kill its child process if that still runs."""
         if self.run:
             if self.run.ended is None:
                 self.run.kill()
@@ -514,7 +523,7 @@ class RunController:
         self.timeline.show_run(None)
 
     def _send_action(self, action: protocol.Message) -> None:
-        """Send an action that changes the world; while paused, show it before it has taken effect."""
+        """Send a user action that changes the world; during a pause, show its effect before the run has recorded it."""
         record = self._record()
         if record is not None and self._branch is None and self._is_paused:
             self._pending.note(record, action)
@@ -525,15 +534,15 @@ class RunController:
         return self.run is not None and self.run.paused
 
     def send(self, command: protocol.Message) -> None:
-        """Send a command to the run, if there is one."""
+        """Send a command to the live run; do nothing without one."""
         # On the way to its instant, a branch must repeat the run exactly.
         if self.run is not None and (self._branch is None or isinstance(command, protocol.Answer)):
             self.run.send(command)
 
-    # What comes from the run
+    # The following methods handle messages of the run.
 
     def poll(self) -> RunUpdate:
-        """Process what has arrived; never blocks.
+        """Process what the run has sent, and return it; never blocks.
 
         Raises:
             HostError: the child sent malformed data.

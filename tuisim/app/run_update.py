@@ -23,26 +23,26 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RunUpdate:
-    """What has come from the run since the last poll."""
+    """What the run has sent since the last poll."""
 
     rows: list[OutputRow]
     ended: protocol.Ended | None = None
-    """Set once, in the poll that receives the end."""
+    """The end of the run, in the poll that receives it; else None."""
     stood: str = ""
-    """Set in the same poll: the words of `describe_contacts`; may be empty."""
+    """The words of `describe_contacts`, in the same poll; may be empty."""
     spoken: tuple[protocol.Spoke, ...] = ()
     """Texts and sounds from the program."""
     prompt: str | None = None
     """The prompt while the program waits in `input()`."""
     branched: Branch | None = None
-    """Set once, when a branch has reached its instant, or has ended before it."""
+    """The branch that has just reached its instant, or has ended before it; else None."""
     pauses: tuple[protocol.Message, ...] = ()
     """Reports that the program has paused or resumed, and its frames and variables."""
     remarks: tuple[str, ...] = ()
     """Lines for the output, such as about a loop without a wait; ids of actions are in braces."""
 
     def __bool__(self) -> bool:
-        """Return whether anything has arrived; a prompt that is still open does not count."""
+        """Return whether the run has sent anything; a prompt that still waits for its answer does not count."""
         return bool(
             self.rows or self.ended or self.spoken or self.branched or self.pauses or self.remarks
         )
@@ -51,7 +51,7 @@ class RunUpdate:
 def describe_remarks(
     event: protocol.BusyLoop | protocol.Plugged, recording: Recording
 ) -> Iterator[str]:
-    """Yield the lines for the output about an event."""
+    """Yield the lines that the app adds to the output about an event of the run."""
     if isinstance(event, protocol.BusyLoop):
         yield describe_busy_loop(event)
     elif words := describe_newest(recording.plugged, recording.spec):
@@ -59,14 +59,14 @@ def describe_remarks(
 
 
 class NearSampleWatch:
-    """Tells once for each run which printed line is nearly a sample."""
+    """Looks for a printed line that is nearly a sample, and reports one for each run."""
 
     def __init__(self) -> None:
         self._told: Recording | None = None
-        """The run of which it was told."""
+        """The last run of which a line was reported."""
 
     def look(self, recording: Recording, rows: list[OutputRow]) -> list[str]:
-        """Return the words for the output about new rows of a run; none if there is nothing to tell."""
+        """Return a line for the output about a near sample in new rows; none without one, or after the first."""
         if self._told is recording or not (words := describe_near_sample(rows)):
             return []
         self._told = recording
@@ -74,7 +74,7 @@ class NearSampleWatch:
 
 
 def describe_contacts(telemetry: TelemetryView, spec: RunSpec) -> str:
-    """Return where something solid stopped or pushed the robot of a run, or that it left the field, in words, or "".
+    """Return in words where something solid stopped or pushed the robot, or that it left the field; else "".
 
     Raises:
         LogError: the recording is damaged.

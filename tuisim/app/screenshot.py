@@ -16,7 +16,7 @@ from tuisim.terminal.textual_internals import render_screen
 
 
 def collect_cells(app: App[Any]) -> CellGrid:
-    """Return the cells of an app's screen, with its dialogs and notices."""
+    """Return the cells of the whole screen of an app, with its dialogs and notices."""
     width = app.screen.size.width
     runs = (
         [(text, style) for text, style, control in strip if not control]
@@ -26,7 +26,7 @@ def collect_cells(app: App[Any]) -> CellGrid:
 
 
 def save_screenshot(grid: CellGrid, folder: Path) -> tuple[Path, Path]:
-    """Write a screen as SVG and PNG; return the two files, which are new.
+    """Write the cells of a screen to new files, as SVG and as PNG; return their paths.
 
     Raises:
         ExportError: they cannot be written.

@@ -25,7 +25,7 @@ CHART_PERIOD_S = 0.33
 
 
 class RunPhase(StrEnum):
-    """What the run in view is doing."""
+    """The state of the run in view, such as running, paused or ended."""
 
     IDLE = "idle"
     """There is no run yet."""
@@ -34,7 +34,7 @@ class RunPhase(StrEnum):
     RUNNING = "running"
     PAUSED = "paused"
     WAITING = "waiting"
-    """It waits in `input()`."""
+    """The program waits in `input()`."""
     ENDED = "ended"
 
 
@@ -55,19 +55,22 @@ _DARK = BrickState()
 
 @dataclass(frozen=True)
 class Snapshot:
-    """The run at the instant in view, as every panel sees it. A sensor is measured when a panel first asks for it."""
+    """The state of the robot and the run at the instant in view, for the panels.
+
+    Readings of sensors are computed when a panel reads them first.
+    """
 
     state: RunPhase
     end: RunState | None
     """How the run ended; None unless `state` is ended."""
     spec: RunSpec
     field: Field | None
-    """None until the mat has been prepared."""
+    """The mat as the sensors see it; None until it has been prepared."""
     instant: Instant
     line: int
     """Line of the program during which time passes, 0 for none."""
     speed: float
-    """1.0 real time, 0 as fast as possible."""
+    """Speed of the run: 1.0 is real time, 0 as fast as possible."""
     pen_down: bool
     stalled: tuple[bool, bool] = (False, False)
     """Whether the left and the right motor are commanded to run but cannot turn."""
@@ -100,16 +103,19 @@ class Snapshot:
 
     @cached_property
     def time_s(self) -> float:
-        """Simulated time."""
+        """The simulated time in s."""
         return self.instant.tick / self.tick_hz
 
     @property
     def tick_hz(self) -> int:
-        """Ticks per second of the run whose record is in view."""
+        """Ticks per simulated second of the run in view."""
         return (self.recorded_spec or self.spec).profile.tick_hz
 
     def list_turns(self) -> list[tuple[float, float]]:
-        """Return position and speed of each motor, the wheel motors first, as the program reads them."""
+        """Return position in degrees and speed in degrees/s of each motor, as the program reads them.
+
+        The wheel motors come first.
+        """
         now = self.instant
         turns = (
             (now.left_position_deg, now.left_speed_dps),
@@ -133,7 +139,7 @@ class Snapshot:
 
     @cached_property
     def ultrasonic_mm(self) -> int | None:
-        """The distance; None without such a sensor."""
+        """The distance that the ultrasonic sensor measures, in mm; None without such a sensor."""
         sensor = self.spec.robot.ultrasonic
         return (
             ultrasonic.measure_noisy_mm(sensor, self.instant, self.spec.world) if sensor else None
@@ -141,7 +147,7 @@ class Snapshot:
 
     @cached_property
     def rays(self) -> tuple[tuple[float, float], ...]:
-        """Ultrasonic rays as (world angle in degrees, length in mm)."""
+        """The rays of the ultrasonic sensor as (world angle in degrees, length in mm)."""
         sensor = self.spec.robot.ultrasonic
         return (
             tuple(ultrasonic.measure_rays_mm(self.instant.pose, sensor, self.spec.world))
@@ -151,34 +157,34 @@ class Snapshot:
 
     @cached_property
     def gyro_deg(self) -> int:
-        """The angle; 0 without a gyro."""
+        """The angle that the gyro measures, in degrees; 0 without a gyro."""
         return self.instant.gyro_deg if self.spec.robot.gyro is not None else 0
 
     @cached_property
     def gyro_rate_dps(self) -> int:
-        """The rate of turn; 0 without a gyro."""
+        """The rate of turn that the gyro measures, in degrees/s; 0 without a gyro."""
         return self.instant.gyro_rate_dps if self.spec.robot.gyro is not None else 0
 
     @cached_property
     def further(self) -> Mapping[str, float]:
-        """Measurements of sensors that not every robot has, by telemetry column, such as `bumper_pressed`."""
+        """The readings of sensors that most robots do not have, by telemetry column, such as `bumper_pressed`."""
         if self.field is None:
             return {}
         return measure_sensors(self.spec.robot.further_sensors, self.instant, self.spec, self.field)
 
     @property
     def ends_turning(self) -> bool:
-        """Whether the end of a run is in view whose wheel motors still turned in the last tick."""
+        """Whether the end of a run is in view, and its wheel motors still turned in the last tick."""
         is_end = self.state is RunPhase.ENDED and not (self.past or self.placed)
         return is_end and bool(self.instant.left_speed_dps or self.instant.right_speed_dps)
 
     def has_stopped_since(self, before: Snapshot | None) -> bool:
-        """Return whether the run stands still now, and did not at an earlier moment."""
+        """Return whether the run is paused or over, and was in another state in an earlier snapshot."""
         return before is not None and self.state in AT_REST and before.state is not self.state
 
     @property
     def failed(self) -> bool:
-        """Whether the end of a failed run is in view."""
+        """Whether the end of a run that has failed is in view."""
         return (
             not self.past
             and self.state == RunPhase.ENDED
@@ -188,13 +194,13 @@ class Snapshot:
 
     @property
     def planned(self) -> RunSpec:
-        """The settings of the next run."""
+        """The specification of the next run."""
         return self.next_spec or self.spec
 
 
 @dataclass(frozen=True, slots=True)
 class PauseView:
-    """Where a program is paused, and its frames and variables there."""
+    """A pause of a program: where it is, and the frames and variables there."""
 
     paused: Paused
     inspected: Inspected
@@ -204,7 +210,7 @@ class PauseView:
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """The state that decides whether a key is available."""
+    """The state of the app that decides whether a key is available."""
 
     state: RunPhase
     has_program: bool
@@ -221,14 +227,14 @@ class Situation:
     has_reasons: bool = False
     """Whether the run in view went wrong, or repeats an earlier one that it is compared with."""
     can_undo: bool = False
-    """Whether there is something to take back."""
+    """Whether there is a change that the undo key can undo."""
     lesson_actions: tuple[str, ...] = ()
     """Ids of the actions that help in the step of the open lesson."""
 
 
 @dataclass(frozen=True, slots=True)
 class AppState:
-    """Everything that panels and footer show. Made once a frame."""
+    """Everything that the panels and the footer show at one moment; made once for each frame."""
 
     run: Snapshot
     """The run at the instant in view."""
@@ -240,7 +246,7 @@ class AppState:
 
     @property
     def status(self) -> str:
-        """State and speed of the run, in words."""
+        """The state and the speed of the run, in words."""
         run = self.run
         status = end_label(run.end) if run.state is RunPhase.ENDED else run.state.value
         if self.looks_back:
@@ -253,17 +259,17 @@ class AppState:
 
     @property
     def failed(self) -> bool:
-        """Whether the end of a failed run is in view."""
+        """Whether the end of a run that has failed is in view."""
         return self.run.failed and not self.looks_back
 
 
 def speed_label(speed: float) -> str:
-    """Return a speed as users read it: ¼×, 2×, max."""
+    """Return the speed of a run as users read it: ¼×, 2×, max."""
     return {0.0: "max", 0.25: "¼×", 0.5: "½×"}.get(speed, f"{speed:g}×")
 
 
 def end_words(ended: Ended, stood: str) -> tuple[str, str]:
-    """Return two texts about the end of a run: for the notice, and for the end of the output.
+    """Return two texts about the end of a run: one for the notice, one for the end of the output.
 
     Args:
         ended: How the run ended.
@@ -272,14 +278,14 @@ def end_words(ended: Ended, stood: str) -> tuple[str, str]:
     words = ended.summary or end_label(ended.end)
     if caught := ended.end is End.FINISHED and not ended.exit_code and bool(ended.summary):
         words = f"{end_label(ended.end)}: {ended.summary}"
-    # The traceback is among the rows already.
+    # The output already shows the traceback, so the last line need not repeat the error.
     known = ended.end in (End.FINISHED, End.RAISED) and not caught
     last = f"— {end_label(ended.end) if known else words} at {format_end(ended.time_ns / 1e9)} s"
     return ", ".join(filter(None, (words, stood))), ", ".join(filter(None, (last, stood)))
 
 
 def describe_busy_loop(busy_loop: BusyLoop) -> str:
-    """Return what the output says of a loop without a wait, with ids of actions in braces."""
+    """Return the line for the output about a loop without a wait, with ids of actions in braces."""
     since = f"{busy_loop.since_ns / 1e9:.2f} s"
     return f"— line {busy_loop.line}: a loop without a wait since {since}. {{stop}} stops it"
 
@@ -291,7 +297,7 @@ _SHORT = 6
 
 
 def shorten_value(text: str) -> str:
-    """Return the text of a value with numbers of many decimals to four digits, those in strings as they are."""
+    """Return the text of a value in which long decimal numbers have four digits, except in strings."""
 
     def shorten_number(match: re.Match[str]) -> str:
         word = match[0]
@@ -306,7 +312,7 @@ def shorten_value(text: str) -> str:
 
 
 def end_label(state: RunState | None) -> str:
-    """Return in words how a run ended; empty if that is not known."""
+    """Return in words how a run ended; empty if its end is unknown."""
     match state:
         case End.RAISED:
             return "error"

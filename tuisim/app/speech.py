@@ -35,7 +35,7 @@ _FADE_SAMPLES = 100
 
 
 def build_wav(tones: Sequence[Sequence[float]]) -> bytes:
-    """Return tones as a mono WAV file, cut after MAX_SOUND_S.
+    """Return tones as a mono WAV file of at most `MAX_SOUND_S` seconds.
 
     Args:
         tones: For each, Hz (0 is silence), ms, and ms of the pause after it.
@@ -61,7 +61,7 @@ def build_wav(tones: Sequence[Sequence[float]]) -> bytes:
 
 
 class Voice:
-    """Plays one sound at a time; sounds that arrive while it plays are only shown.
+    """Plays the sounds of the brick, one at a time; a sound that arrives while another one plays is not played.
 
     Args:
         quiet: Never make a sound.
@@ -81,7 +81,7 @@ class Voice:
         self._sounding: subprocess.Popen[bytes] | None = None
 
     def play(self, sound: Spoke) -> None:
-        """Speak a text or play a sound, unless one is still playing. Does not block."""
+        """Speak a text or play a sound; do nothing if one is still being played. Does not block."""
         if self._sounding and self._sounding.poll() is None:
             return
         if sound.file:
@@ -114,7 +114,10 @@ class Voice:
 
 
 def _start_player(command: Sequence[str], data: bytes) -> subprocess.Popen[bytes] | None:
-    """Start a program with data on its standard input, without waiting for it; None if it cannot be started."""
+    """Start a program that reads data from its standard input, and return it; None if it cannot be started.
+
+    Does not wait for the program.
+    """
     read, write = os.pipe()
     try:
         process = subprocess.Popen(
@@ -135,5 +138,5 @@ def _feed(pipe: int, data: bytes) -> None:
         with os.fdopen(pipe, "wb") as stream:
             stream.write(data)
     except BrokenPipeError:
-        # The sound was stopped.
+        # The player was stopped before it had read the whole sound.
         return

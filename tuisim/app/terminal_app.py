@@ -51,17 +51,17 @@ MINIMUM = Size(40, 12)
 
 
 def is_too_small(size: Size) -> bool:
-    """Return whether a terminal is too small for the apps."""
+    """Return whether a terminal has less than the minimum size of the apps."""
     return size.width < MINIMUM.width or size.height < MINIMUM.height
 
 
 def clamp_size(size: Size) -> Size:
-    """Return the size that panels and dialogs are laid out for: at least the minimum."""
+    """Return the size for which panels and dialogs are laid out: that of the terminal, but at least the minimum."""
     return Size(max(size.width, MINIMUM.width), max(size.height, MINIMUM.height))
 
 
 def _list_wordings(size: Size) -> Iterator[str]:
-    """Yield the versions of the message, the longest first."""
+    """Yield the wordings of the message that a terminal is too small, the longest first."""
     needed = f"{MINIMUM.width}×{MINIMUM.height}"
     has = f"{size.width}×{size.height}"
     yield f"Too small: tuisim needs {needed} or more, and this terminal has {has}. Enlarge it, or press q to quit."
@@ -71,7 +71,7 @@ def _list_wordings(size: Size) -> Iterator[str]:
 
 
 def build_message(size: Size) -> list[str]:
-    """Return the lines of the message that a terminal is too small: the longest version that fits."""
+    """Return the message that a terminal is too small, as lines: the longest wording that fits."""
     for wording in _list_wordings(size):
         lines = wrap(wording, max(size.width, 1), break_long_words=False)
         if len(lines) <= size.height and all(len(line) <= size.width for line in lines):
@@ -87,11 +87,11 @@ def _build_codes(size: Size) -> str:
 
 
 class TerminalApp(BufferedApp):
-    """Base of the apps: with themes, a command palette, dialogs that close once, and a minimum size."""
+    """Base of the apps in a terminal or a browser: themes, a command palette, notices, and a minimum size."""
 
     TITLE = "tuisim"
     NOTIFICATION_TIMEOUT = 4
-    # The app has a palette of its own.
+    # The app has its own command palette.
     ENABLE_COMMAND_PALETTE = False
 
     def __init__(self, picture_mode: PictureMode | None = None) -> None:
@@ -109,7 +109,7 @@ class TerminalApp(BufferedApp):
         self._take_theme()
 
     def get_theme_variable_defaults(self) -> dict[str, str]:
-        """Return the names of the palette's colours in style sheets, such as `$tuisim-ink`."""
+        """Return the colours of the palette by their names in style sheets, such as `tuisim-ink`."""
         return {
             f"tuisim-{name.lower().replace('_', '-')}": color
             for name, color in design.COLORS.items()
@@ -129,17 +129,17 @@ class TerminalApp(BufferedApp):
             for line_filter in self.line_filters
             if not isinstance(line_filter, ThemeColors)
         ]
-        # Before the filter for terminals without colours, which leaves no colour to be replaced.
+        # The theme comes before the filter for terminals without colours, which would leave no colour to replace.
         self.line_filters = [theme, *filters] if theme else filters
 
     def _apply_theme(self, theme: Theme) -> None:
-        """Draw everything in the colours of another theme."""
+        """Draw the whole screen in the colours of a theme."""
         self._take_theme()
         self.redraw_pictures()
         self.call_later(self.action_redraw)
 
     def action_choose_theme(self) -> None:
-        """Let the user choose a theme, and keep the choice."""
+        """Open the dialog of the themes, and store the user's choice."""
 
         def handle_choice(name: str | None) -> None:
             if name is not None:
@@ -162,10 +162,10 @@ class TerminalApp(BufferedApp):
         timeout: float | None = None,
         markup: bool = False,
     ) -> None:
-        """Show a notice to the user, on borders of the panels; its text is no markup.
+        """Show a notice to the user on borders of the panels.
 
         Args:
-            message: The text.
+            message: The text, without markup.
             title: Comes before the text, unless it is empty.
             severity: An error stays until it can have been read.
             timeout: How long it is shown at least, in seconds; None for the usual time.
@@ -180,32 +180,34 @@ class TerminalApp(BufferedApp):
         self.notices.clear()
 
     async def on_event(self, event: events.Event) -> None:
-        """Lay out for the minimum size at least; ignore clicks on cells outside the terminal."""
+        """Handle an event; for a resize, lay out at least the minimum size; ignore clicks outside the terminal."""
         if isinstance(event, events.Resize):
             was = self.too_small
             self.too_small = event.size if is_too_small(event.size) else None
             if self.too_small:
                 event = events.Resize(clamp_size(event.size), clamp_size(event.size))
             if was != self.too_small:
-                # The layout may stay the same, and would not be drawn then.
+                # The layout may stay the same, and then nothing would be drawn.
                 self.call_later(self.action_redraw)
         await super().on_event(event)
 
     def _waits(self, event: events.Event) -> bool:
-        """Return whether an event has to wait: the topmost screen is not ready for it, or a text looks up names."""
+        """Return whether an event has to wait, because the topmost screen is not ready or names are being looked up."""
         top = self.screen_stack[-1] if self.screen_stack else None
         if top is not None and getattr(top.focused, "is_completing", False):
             return True
         return isinstance(top, ClosesOnce) and not top.can_take(event)
 
     def _ignores(self, event: events.Event) -> bool:
-        """Return whether to ignore an event of the user: nothing can handle it, or its target is invisible or was just
-        removed."""
+        """Return whether to ignore an event of the user.
+
+        It is ignored if nothing can handle it, or if its target is invisible or was just removed.
+        """
         if super()._ignores(event):
             return True
         if not isinstance(event, events.MouseEvent):
             return False
-        # Nobody can aim at what is not drawn yet.
+        # The user cannot aim at what is not drawn yet.
         if self.too_small is not None or self._is_opening:
             return True
         if not isinstance(event, events.MouseDown):
@@ -220,7 +222,7 @@ class TerminalApp(BufferedApp):
 
     @on(ClosesOnce.Changed)
     async def give_waiting_keys(self) -> None:
-        """Pass the keys that were pressed while a screen was being opened to the topmost screen."""
+        """After a screen was opened or closed, handle the keys that waited for that."""
         self.notices.follow_screen()
         await self._input.release_inputs()
 
@@ -228,7 +230,7 @@ class TerminalApp(BufferedApp):
     @on(events.DescendantFocus)
     @on(events.DescendantBlur)
     def show_keys_of_dialog(self) -> None:
-        """Show in the footers below a dialog the keys that work in it."""
+        """Show the keys of the open dialog in the footers of the screens below it."""
         top = self.screen_stack[-1] if self.screen_stack else None
         for footer in (
             footer_row for screen in self.screen_stack for footer_row in screen.query(KeyFooter)
@@ -241,7 +243,7 @@ class TerminalApp(BufferedApp):
         return isinstance(top, ClosesOnce) and not top.is_ready
 
     def show_update(self, screen: Screen[Any], update: object) -> None:
-        """Send what has changed, or the message that the terminal is too small."""
+        """Send the changed cells to the terminal, or the message that the terminal is too small."""
         if isinstance(screen, ClosesOnce) and screen.is_closed:
             # A screen that was closed while being mounted still tries to draw itself.
             update = None
@@ -251,7 +253,7 @@ class TerminalApp(BufferedApp):
         super().show_update(screen, update)
 
     def keep_setting(self, path: str, value: Scalar | None) -> None:
-        """Write a setting that applies already to `config.toml`; None for the usual one."""
+        """Write a setting, which the app has applied already, to `config.toml`; None stands for the default value."""
         from tuisim.settings.user_config import save_setting
 
         try:
@@ -264,7 +266,7 @@ class TerminalApp(BufferedApp):
             )
 
     def action_switch_pixels(self) -> None:
-        """Draw pictures with characters in place of pixels, or again with pixels; for this session."""
+        """Switch between pictures with pixels and pictures with characters, for this session."""
         if self._left_pixels is not None:
             self.choose_pixels(self._left_pixels)
         elif self.picture_mode.graphics is not None:
@@ -277,8 +279,8 @@ class TerminalApp(BufferedApp):
             self.notify("This terminal does not report that it can draw pixels", markup=False)
 
     def action_save_screen(self) -> None:
-        """Save the whole screen as SVG and PNG, in the working directory."""
-        # Imported on demand: the app starts faster without it.
+        """Save a screenshot of the whole screen, as SVG and PNG, in the working directory."""
+        # This is imported on demand, so that the app starts faster.
         from tuisim.app.screenshot import collect_cells, save_screenshot
 
         def handle_saved(files: tuple[Path, Path]) -> None:
@@ -295,10 +297,10 @@ class TerminalApp(BufferedApp):
         )
 
     def run_in_terminal(self, command: Sequence[str]) -> None:
-        """Give the terminal to another program until it ends.
+        """Run another program in the terminal until it ends.
 
         Raises:
-            TuisimError: the app has no terminal to give, or the program cannot start.
+            TuisimError: the app is not in a terminal, or the program cannot start.
         """
         try:
             is_lent = self.lend_terminal(command)
@@ -309,7 +311,7 @@ class TerminalApp(BufferedApp):
 
     @on(ActionAsked)
     def act_as_asked(self, event: ActionAsked) -> None:
-        """Do what a button of the page asks for, also while the user types; a dialog comes first."""
+        """Run the action of a button of the web page, also while the user types; not above an open dialog."""
         host = self.screen if isinstance(self.screen, ActionHost) else self
         if isinstance(self.screen, Dialog):
             self.notify("A dialog is open: escape closes it", markup=False)
@@ -319,7 +321,7 @@ class TerminalApp(BufferedApp):
             self.notify("That works only in the lab: leave this screen first", markup=False)
 
     def action_command_palette(self) -> None:
-        """Offer every action of the screen, else of the app; not above a dialog, which other dialogs would cover."""
+        """Open the command palette with the actions of the screen, or else of the app; not above an open dialog."""
         host = self.screen if isinstance(self.screen, ActionHost) else self
         if isinstance(self.screen, Dialog) or not isinstance(host, ActionHost) or is_leaving(self):
             return
@@ -334,7 +336,7 @@ class TerminalApp(BufferedApp):
         self.push_screen(Palette(host.ACTIONS.values(), host.find_situation()), handle_choice)
 
     def _ask_guide(self, host: ActionHost, question: str) -> None:
-        """Open the guide with a question."""
+        """Open the guide with the results for a question."""
         from tuisim.app.guide.screen import GuideScreen
 
         host.action_act("help")
@@ -343,10 +345,10 @@ class TerminalApp(BufferedApp):
 
 
 def picture_mode_at_start(cells: str | None, colors: str) -> PictureMode:
-    """Return how an app that starts draws pictures.
+    """Return how a starting app draws pictures.
 
     Args:
-        cells: The option of the command line, if there is one; else `config.toml` decides.
+        cells: The set of glyphs from the command line; None lets `config.toml` decide.
         colors: The colour depth of the terminal; `AUTO` asks the terminal.
     """
     most_colors = choose_colors(colors)

@@ -24,7 +24,7 @@ from tuisim.terminal.pixels import Rgb
 from tuisim.terminal.text_runs import convert_color
 
 OWN_THEME = "textual-dark"
-"""Under it the app's colours are as they are."""
+"""The theme in which the app's colours are not replaced."""
 UNUSED_THEMES = ("ansi-dark", "ansi-light")
 """Themes that have no colours of their own to compute with."""
 
@@ -59,7 +59,7 @@ LIGHT = Theme(
 
 
 def list_themes() -> list[str]:
-    """Return the names of the themes that can be chosen."""
+    """Return the names of the themes that the user can choose."""
     return [
         *(name for name in BUILTIN_THEMES if name not in UNUSED_THEMES),
         HIGH_CONTRAST.name,
@@ -103,11 +103,11 @@ class ThemeColors(LineFilter):
         self._style = lru_cache(maxsize=4096)(self._apply_theme)
 
     def rgb(self, own: Rgb) -> Rgb:
-        """Return the colour in place of one of the app's own; any other is returned as it is."""
+        """Return the theme's colour in place of one of the app's own; any other colour is returned as it is."""
         return self._replaced.get(own, own)
 
     def choose_text_rgb(self, own: Rgb) -> Rgb:
-        """Return the colour of text or lines in one of the app's own colours: it can be read on the background."""
+        """Return the theme's colour for text or lines in place of one of the app's own, legible on the background."""
         new = self.rgb(own)
         return (
             self._make_legible(new, self._background.rgb, is_line=own == _LINE)
@@ -116,7 +116,7 @@ class ThemeColors(LineFilter):
         )
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the segments in the theme's colours."""
+        """Return segments in which the app's own colours are replaced by those of the theme."""
         return [
             segment
             if segment.style is None or segment.control
@@ -138,7 +138,7 @@ class ThemeColors(LineFilter):
     def _apply_theme(self, style: Style) -> Style:
         fore = convert_color(style.color)
         back = convert_color(style.bgcolor)
-        # No own background is white: a white one shows what a sensor sees.
+        # A white background is not replaced: it shows what a sensor sees, and none of the app's own is white.
         new_fore, new_back = (
             fore and self.rgb(fore),
             back and (back if back == _WHITE else self.rgb(back)),
@@ -156,7 +156,13 @@ class ThemeColors(LineFilter):
         return style + changed
 
     def _make_legible(self, rgb: Rgb, on: Rgb, is_line: bool) -> Rgb:
-        """Return a colour moved toward black or white until it can be read."""
+        """Return a colour moved toward black or white until it is legible on a background.
+
+        Args:
+            rgb: The colour.
+            on: The background.
+            is_line: Whether it is of a line, which needs less contrast than text.
+        """
         ground = Color(*on)
         color = Color(*rgb)
         min_contrast = 1.5 if is_line and self._contrast < _HIGH_CONTRAST else self._contrast
@@ -174,7 +180,7 @@ _LINE = Color.parse(palette.LINE).rgb
 
 
 def _measure_light(color: Color) -> float:
-    """Return the relative luminance of a colour."""
+    """Return the relative luminance of a colour, from 0 to 1."""
     channels = (
         c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color.normalized
     )
@@ -183,6 +189,6 @@ def _measure_light(color: Color) -> float:
 
 
 def measure_contrast(first: Color, other: Color) -> float:
-    """Return the contrast of two colours, 1 to 21."""
+    """Return the contrast ratio of two colours, from 1 to 21."""
     light, dark = sorted((_measure_light(first), _measure_light(other)), reverse=True)
     return (light + 0.05) / (dark + 0.05)

@@ -41,13 +41,13 @@ FASTEST = 16.0
 
 
 class Timeline:
-    """The current run and the cursor in its time."""
+    """The current run, the instant of it that is in view, and the playback of its past."""
 
     def __init__(self) -> None:
         self.recording: Recording | None = None
         """The live run, the last one, or a stored one; None before the first."""
         self.at: int | None = None
-        """Tick in view, None for now."""
+        """The past tick in view; None for the newest instant."""
         self.breaks: list[int] = []
         """Ticks at which the run was paused by a breakpoint."""
         self.searched = ""
@@ -60,7 +60,7 @@ class Timeline:
         """What the brick showed after output rows, by row number."""
 
     def show_run(self, recording: Recording | None) -> None:
-        """Switch to another run, at its newest instant."""
+        """Switch to another run, or to none, at its newest instant."""
         self.recording = recording
         self._face_numbers, self._face = [], BrickState()
         self.breaks.clear()
@@ -70,37 +70,37 @@ class Timeline:
 
     @property
     def newest(self) -> int:
-        """Tick of the newest record, -1 if there is none."""
+        """The tick of the newest record of the run, -1 if there is none."""
         return self.recording.newest if self.recording else -1
 
     @property
     def tick(self) -> int:
-        """Tick in view: the newest one for now."""
+        """The tick in view; at the newest instant, the newest one."""
         return self.newest if self.at is None else self.at
 
     @property
     def tick_hz(self) -> int:
-        """Ticks per second."""
+        """Ticks per simulated second of the run."""
         return self.recording.spec.profile.tick_hz if self.recording else 1
 
     @property
     def time_s(self) -> float:
-        """Simulated time in view."""
+        """The simulated time in view, in s."""
         return max(0, self.tick) / self.tick_hz
 
     @property
     def playing(self) -> bool:
-        """Whether the recording is being played."""
+        """Whether the recording is being played back."""
         return self._played_s is not None
 
     def record(self) -> TickRecord | None:
-        """Return the record in view, None for now."""
+        """Return the record of the past tick in view; None at the newest instant."""
         if self.at is None or self.recording is None:
             return None
         return self.recording.telemetry.record(self.at)
 
     def face(self, tick: int) -> BrickState:
-        """Return what the brick shows at a tick."""
+        """Return the state of the brick at a tick: its display, lights and sound."""
         if self.recording is None:
             return BrickState()
         numbers = self.recording.rows.list_face_numbers(tick)
@@ -112,7 +112,7 @@ class Timeline:
         return self._face
 
     def list_marks(self) -> list[tuple[int, Mark]]:
-        """Return the marked ticks, with the kind of each marker."""
+        """Return the ticks with markers in the time bar, and the kind of each marker."""
         if self.recording is None:
             return []
         done = [(action.tick, Mark.ACTION) for action in self.recording.known_actions]
@@ -122,28 +122,32 @@ class Timeline:
     # Navigation
 
     def go(self, tick: int | None) -> None:
-        """Go to a tick, clamped to the first one; None and ticks beyond the newest mean now."""
+        """Go to a tick, at least the first one; None and ticks from the newest on stand for the newest instant."""
         self._played_s = None
         self.at = None if tick is None or tick >= self.newest or self.newest <= 0 else max(0, tick)
 
     def step(self, ticks: int) -> None:
-        """Go forward by a number of ticks; negative goes back."""
+        """Go forward by a number of ticks; a negative number goes back."""
         self.go(self.tick + ticks)
 
     def play(self, wall_s: float) -> None:
-        """Start to play the recording from the instant in view."""
+        """Start playback from the instant in view.
+
+        Args:
+            wall_s: The wall-clock time now, in s.
+        """
         if self.at is not None:
             self._played_s, self._wall_s = self.at / self.tick_hz, wall_s
 
     def stop_playback(self) -> None:
-        """Stop playback."""
+        """Stop playing the recording back."""
         self._played_s = None
 
     def advance_playback(self, wall_s: float, speed: float) -> bool:
-        """Continue playback. Return whether the newest instant has just been reached.
+        """Go on in the playback. Return whether it has just reached the newest instant.
 
         Args:
-            wall_s: Seconds that only grow.
+            wall_s: The wall-clock time now, in s.
             speed: 1.0 real time, 0 as fast as possible.
         """
         if self._played_s is None:
@@ -183,7 +187,7 @@ _FORMS = (
 
 
 def list_forms(timeline: Timeline) -> list[tuple[str, str]]:
-    """Return the accepted forms, with what they mean at the instant in view."""
+    """Return the forms in which the user can name an instant, and what each means at the instant in view."""
     # Nothing can be found after the newest instant: the search goes from the start.
     which = "the first" if timeline.tick >= timeline.newest else "the next"
     recording = timeline.recording
@@ -207,7 +211,7 @@ _SECONDS = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+)\s*s?")
 
 @dataclass(frozen=True, slots=True)
 class _Search:
-    """Where a search begins, and in which direction."""
+    """A search in a run, with the tick at which it begins and its direction."""
 
     recording: Recording
     at: int
@@ -220,7 +224,7 @@ class _Search:
         return "in this run" if self.at < 0 else f"{side} {time_s:.2f} s"
 
     def texts(self) -> Iterator[OutputRow]:
-        """Yield the printed rows that come next, at another tick than the current one."""
+        """Yield the printed rows of later ticks (backwards: of earlier ones), the nearest first."""
         rows = self.recording.rows
         found = (
             rows.rows(rows.until(self.at - 1) - 1, -1)
@@ -230,14 +234,17 @@ class _Search:
         return (row for row in found if row.stream in TEXT_STREAMS)
 
     def find_tick(self, condition: ValueCondition) -> int | None:
-        """Return the tick of the next row of which a condition is true."""
+        """Return the tick of the nearest printed row, in the direction of the search, that meets a condition.
+
+        None if there is no such row.
+        """
         if condition.operator is Operator.CHANGES:
             every = (row for row in self.recording.rows.rows(0) if row.stream in TEXT_STREAMS)
             return self.find_nearest([row.tick for row in select_rows(condition, every)])
         return next((row.tick for row in select_rows(condition, self.texts())), None)
 
     def find_nearest(self, ticks: list[int]) -> int | None:
-        """Return the next of some sorted ticks in the direction of the search; None if there is none."""
+        """Return that tick of a sorted list which is nearest in the direction of the search; None if there is none."""
         where = bisect_left(ticks, self.at) - 1 if self.back else bisect_right(ticks, self.at)
         return ticks[where] if 0 <= where < len(ticks) else None
 
@@ -245,7 +252,7 @@ class _Search:
 def find(
     text: str, timeline: Timeline, mat: Field | None = None, *, first_at_end: bool = False
 ) -> int:
-    """Return the tick that an expression means, relative to the instant in view.
+    """Return the tick of the instant that an expression names, relative to the instant in view.
 
     Args:
         text: An expression in one of the forms of `list_forms`.
@@ -289,7 +296,7 @@ def find(
 
 
 def _find_condition(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
-    """Return the tick of a condition.
+    """Return the nearest tick, in the direction of a search, at which a condition is met.
 
     Raises:
         ConfigError: there is none.
@@ -307,7 +314,7 @@ def _find_condition(search: _Search, condition: ValueCondition, mat: Field | Non
 
 
 def describe_commands(text: str, timeline: Timeline) -> str:
-    """Return the program's commands at the instant in view, if a text has searched for commands; else nothing."""
+    """Return in words the program's commands at the instant in view, if the user has searched for commands; or ""."""
     words = parse_command_search(re.sub(r"\b(?:back|first)\b", "", text))
     if words is None or timeline.recording is None:
         return ""
@@ -322,7 +329,13 @@ def describe_commands(text: str, timeline: Timeline) -> str:
 
 
 def _parse_condition(word: str, rest: str, text: str) -> ValueCondition | None:
-    """Return the condition in the words of an instant; `word` is the first one, `rest` is without the direction."""
+    """Return the condition in the words for an instant; None if they are no condition.
+
+    Args:
+        word: The first word.
+        rest: The words without the direction.
+        text: All words, for errors.
+    """
     if word == ValueSource.PRINT and rest:
         return parse_run_condition(f"{word} {rest}") or ValueCondition(
             "", Operator.MATCHES, rest, ValueSource.PRINT
@@ -334,7 +347,7 @@ def _parse_condition(word: str, rest: str, text: str) -> ValueCondition | None:
 
 
 def _refuse(word: str, recording: Recording) -> ConfigError:
-    """Return the error for words that name no instant, with the form meant if they are like a name in the run."""
+    """Return the error for words that name no instant; for a mistyped name, it proposes the right form."""
     printed = _read_printed_names(recording)
     close = closest(word, [*list_column_names(recording.spec), *printed], 1)
     forms = [f"`{name} < 50`" for name in close]
@@ -389,18 +402,22 @@ def _find_sample(search: _Search, condition: ValueCondition) -> int:
 
 
 def _list_printed_names(recording: Recording) -> Iterator[str]:
-    """Yield the name of each sample that a run has printed."""
+    """Yield the name of each printed sample of a run."""
     printed = (row for row in recording.rows.rows(0) if row.stream in TEXT_STREAMS)
     return (sample[0] for row in printed if (sample := parse_sample(row.text)))
 
 
 def _read_printed_names(recording: Recording) -> list[str]:
-    """Return the names of the samples that a run has printed, each once."""
+    """Return the names of the printed samples of a run, each once."""
     return sorted({*_list_printed_names(recording)})
 
 
 def _find_change(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
-    """Return the tick at which a column begins to meet a condition, or at which a printed name of no column does."""
+    """Return the nearest tick at which a column begins to meet a condition, or of a printed sample that meets it.
+
+    Raises:
+        ConfigError: there is none, or no such name.
+    """
     recording = search.recording
     if find_column_name(condition.name, list_columns(recording.spec)) is None:
         printed = _read_printed_names(recording)
@@ -436,7 +453,12 @@ def _find_printed(search: _Search, condition: ValueCondition) -> int:
 
 
 def find_begins(condition: ValueCondition, true: Array) -> Array:
-    """Return the ticks at which a condition becomes true, in order; `true` tells whether it is true at each tick."""
+    """Return the ticks at which a condition becomes true, in order.
+
+    Args:
+        condition: The condition; of a momentary one, every tick at which it is true.
+        true: Whether it is true, for each tick.
+    """
     import numpy as np
 
     before = np.concatenate(([False], true[:-1]))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ActionContext:
-    """The parts of the app, which every function behind a key gets."""
+    """The parts of the app; every function behind a key gets this object."""
 
     app: LabHost
     runs: RunController

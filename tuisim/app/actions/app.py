@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def toggle(context: ActionContext, panel: str) -> None:
-    """Focus a panel that is shown without the focus; else, show a hidden panel and focus it, or hide it."""
+    """Focus a shown panel that does not have the focus; hide one that has it; show and focus a hidden one."""
     area = context.panels
     was_shown = area.is_shown(panel)
     if not area.can_take_focus(panel):
@@ -31,7 +31,7 @@ def toggle(context: ActionContext, panel: str) -> None:
 
 
 def enlarge(context: ActionContext) -> None:
-    """Maximize the panel with the focus, or restore the layout."""
+    """Maximize the panel with the focus; if a panel is maximized, show all panels again."""
     area = context.panels
     panel = area.find_focused_panel()
     if panel or area.alone:
@@ -48,7 +48,7 @@ def undo(context: ActionContext) -> None:
 
 
 def copy(context: ActionContext) -> None:
-    """Send the text of the panel with the focus, or of the one that was clicked, to the terminal's clipboard."""
+    """Copy the text of the focused panel, or of the panel that was clicked, to the terminal's clipboard."""
     from tuisim.app.clipboard import describe_copy, find_copied
 
     panel = context.panels.find_pointed_panel() or context.panels.alone or "world"
@@ -68,7 +68,7 @@ def choose_preset(context: ActionContext, preset: Preset) -> None:
 
 
 def show_next_preset(context: ActionContext) -> None:
-    """Show the next preset."""
+    """Show the panels of the next preset."""
     context.panels.show_next_preset()
     _say_layout(context, context.app.fill_keys(" ({layout-next}: next, {layout-keep}: keep)"))
 
@@ -111,7 +111,7 @@ _NUDGES = (
 
 
 def show_help(context: ActionContext) -> None:
-    """Open the guide: the page of the focused panel, or every key of the app and of the editor."""
+    """Open the guide at the page about the focused panel, or else at the table of all keys."""
     from tuisim.app.editor.area import EDITOR_KEYS
     from tuisim.app.guide.key_tables import EVERYWHERE, own_keys
     from tuisim.app.guide.screen import TOPICS, GuideScreen, KeyPage, Topic
@@ -128,7 +128,7 @@ def show_help(context: ActionContext) -> None:
         else []
     )
     topic = TOPICS.get(panel, Topic())
-    # The keys of the code have a group already.
+    # The table of keys has a group for the code panel already.
     if panel != "code" and (own := own_keys(widgets)):
         here = f"In the panel {PANELS[panel].title}"
         every = {here: own, **every}
@@ -138,7 +138,7 @@ def show_help(context: ActionContext) -> None:
 
 
 def choose_cells(context: ActionContext) -> None:
-    """Show the test card with the glyphs; draw the world with those that the user chooses, and remember the choice."""
+    """Show the test card of glyphs; draw the world with the set that the user chooses, and store the choice."""
     from tuisim.app.dialogs.cells import CellsCard
 
     app = context.app
@@ -191,7 +191,7 @@ def change_setting(context: ActionContext, setting: Setting, value: Scalar | Non
 
 
 def open_settings(context: ActionContext) -> None:
-    """Open the settings screen."""
+    """Open the dialog with the settings."""
     from tuisim.app.dialogs.settings import SettingsScreen
 
     context.app.push_screen(
@@ -210,7 +210,7 @@ def open_palette(context: ActionContext) -> None:
 
 
 def leave(context: ActionContext) -> None:
-    """Quit; with unsaved changes or a running program, ask first."""
+    """Quit the app; if there are unsaved changes or a running program, ask the user first."""
     context.document.run_when_saved(lambda: _leave(context))
 
 
@@ -224,17 +224,17 @@ def _leave(context: ActionContext) -> None:
 
 
 def redraw(context: ActionContext) -> None:
-    """Redraw the screen."""
+    """Send the whole screen to the terminal again."""
     context.app.action_redraw()
 
 
 def save_screen(context: ActionContext) -> None:
-    """Save a screenshot."""
+    """Save a screenshot of the app as files."""
     context.app.action_save_screen()
 
 
 def switch_pixels(context: ActionContext) -> None:
-    """Draw with pixels instead of characters, or the other way round."""
+    """Switch between pictures with pixels and pictures with characters."""
     context.app.action_switch_pixels()
 
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def clear_log(context: ActionContext) -> None:
-    """Clear the logged data from the output and the chart; the run keeps its log."""
+    """Remove the logged data from the output and the chart; the log of the run is not changed."""
     context.panels.clear_log()
     if context.runs.timeline.recording is not None:
         context.app.offer_undo(context.app.show_log_again)
@@ -45,7 +45,7 @@ def clear_log(context: ActionContext) -> None:
 
 
 def open_program(context: ActionContext) -> None:
-    """Ask for a program, a world, goals or a log and open it."""
+    """Ask for a file with a program, a world, goals or a log, and open it."""
     from tuisim.app.dialogs.chooser import build_program_chooser, is_log
 
     def handle_choice(path: str | None) -> None:
@@ -58,7 +58,7 @@ def open_program(context: ActionContext) -> None:
 
 
 def open_path(context: ActionContext, path: str) -> None:
-    """Open a program, a world or goals; if the open program has unsaved changes, a dialog asks first."""
+    """Open a program, a world or goals; if the open program has unsaved changes, ask the user first."""
 
     def load() -> None:
         context.loader.open_file(path)
@@ -72,7 +72,7 @@ _OPENABLE_SUFFIXES = frozenset({".py", ".toml"})
 
 
 def open_brought(context: ActionContext, path: Path) -> None:
-    """Open a file that the user has given to the web page: a program, a world, goals, or a log to be analysed.
+    """Open a file that the user has uploaded in the web page: a program, a world, goals, or a log to be analysed.
 
     During a run, a program, a world or goals are not opened; a notice names the key that opens them later.
     """
@@ -87,7 +87,7 @@ def open_brought(context: ActionContext, path: Path) -> None:
 
 
 _WELCOMED_PREFERENCE = "welcomed"
-"""Name of the preference."""
+"""Name of the preference that the welcome has been shown."""
 EXAMPLE = "log_greys.py"
 """The program that the welcome offers."""
 
@@ -98,11 +98,16 @@ def greet(context: ActionContext) -> None:
 
 
 def show_welcome(context: ActionContext, *, is_greeting: bool = False) -> None:
-    """Show the welcome: the ways to begin, and recent work to continue; a greeting without such work is left out."""
+    """Show the welcome, with ways to begin and recent work to continue.
+
+    Args:
+        context: The parts of the app.
+        is_greeting: Whether to show it only if there is recent work.
+    """
     from tuisim.app.setup.recent import list_recent
 
     def show_entries(entries: list[Recent]) -> None:
-        # At once with every entry, so that Enter takes the one that is seen as selected.
+        # The dialog opens with all entries in its list, so that Enter takes the entry that looks selected.
         if entries or not is_greeting:
             _push_welcome(context, entries)
         context.app.has_greeted = True
@@ -115,7 +120,7 @@ def _push_welcome(context: ActionContext, recent: Sequence[Recent]) -> None:
     from tuisim.app.setup.recent import Recent
 
     def handle_choice(what: Begin | Recent | None) -> None:
-        # If this cannot be written, the welcome appears again, which is no reason to fail.
+        # If the preference cannot be stored, the welcome only appears again at the next start.
         with suppress(OSError):
             keep(_WELCOMED_PREFERENCE, True)
         match what:
@@ -151,7 +156,7 @@ def _resume_recent(context: ActionContext, what: Recent) -> None:
 
 
 def save_robot(context: ActionContext) -> None:
-    """Ask for a file and write the robot to it."""
+    """Ask for a file, and write the robot of the next run to it."""
     from tuisim.settings.robots import save_robot as write
 
     runs = context.runs
@@ -160,7 +165,7 @@ def save_robot(context: ActionContext) -> None:
 
 
 def save_obstacles(context: ActionContext) -> None:
-    """Ask for a file and write the obstacles to it."""
+    """Ask for a file, and write the obstacles of the next run to it."""
     runs = context.runs
     _save(
         context,
@@ -177,13 +182,13 @@ def _save(context: ActionContext, what: str, name: str, write: Callable[[Path], 
         write(path)
         context.loader.note_saved(path)
 
-    # Propose the file from which it was loaded, if there is one.
+    # Propose the file from which the robot or the obstacles were loaded, if there is one.
     word = context.runs.next_run.words.get(what, "")
     context.app.push_screen(SaveDialog(what, word if word.endswith(".toml") else name, save))
 
 
 def save_world(context: ActionContext) -> None:
-    """Ask for a file and write the world to it, with the program that is open."""
+    """Ask for a file, and write the world of the next run to it, with the name of the open program."""
     from tuisim.app.dialogs.save import SaveDialog
     from tuisim.settings.worlds import save_world as write
 
@@ -202,7 +207,7 @@ def save_world(context: ActionContext) -> None:
 
 
 def export(context: ActionContext) -> None:
-    """Ask for a file and write the log to it."""
+    """Ask for a file, and write the log of the run to it."""
     from tuisim.app.dialogs.save import ExportDialog
 
     def handle_export(target: Path | None) -> None:
@@ -216,7 +221,7 @@ def export(context: ActionContext) -> None:
 
 
 def edit(context: ActionContext) -> None:
-    """Show the code, and start typing in it."""
+    """Show the code panel, and start typing in it."""
     if not context.panels.is_shown("code"):
         context.panels.toggle("code")
     context.app.call_after_refresh(_type, context)
@@ -231,12 +236,12 @@ def _type(context: ActionContext) -> None:
 
 
 def save_program(context: ActionContext) -> None:
-    """Save the program to its file, or ask for one."""
+    """Save the program to its file; if it has none, ask for a file."""
     context.document.save()
 
 
 def edit_in_own_editor(context: ActionContext) -> None:
-    """Open the program's file in the editor that the environment names; unsaved changes are saved before."""
+    """Save unsaved changes, and open the program's file in the editor that the environment names."""
     context.document.run_with_file(partial(_open_in_own_editor, context))
 
 
@@ -333,7 +338,7 @@ def open_analyser(context: ActionContext) -> None:
 
 
 def open_log(context: ActionContext, file: str) -> None:
-    """Open a log in a file in the analyser."""
+    """Open the log in a file, given by its path, in the analyser."""
     from tuisim.analysis.source import request_file
 
     _push_analyser(context, request_file(file))
@@ -368,7 +373,7 @@ VARIABLES = ("VISUAL", "EDITOR")
 
 
 def own_editor(environment: Mapping[str, str] = os.environ) -> list[str]:
-    """Return the command of the user's editor as a list of words, without a file.
+    """Return the command of the user's editor as a list of words, without the file to edit.
 
     Raises:
         TuisimError: no variable names an editor, or its command cannot be read.

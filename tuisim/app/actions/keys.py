@@ -1,4 +1,4 @@
-"""The table of keys: what each one does, its name, and when it is available.
+"""The table of the app's keys: what each one does, its name, and when it is available.
 
 To add a key: write its function in the file of this folder that holds its group, and add a line to `ACTIONS`. Binding,
 footer, help and command palette follow from the line.
@@ -64,7 +64,7 @@ def _can_look_back(now: Situation) -> str:
 
 
 def _can_ask_why(now: Situation) -> str:
-    # A program that cannot run at all has gone wrong before its first run.
+    # The key also explains why a program cannot run at all, before its first run.
     return "" if now.has_program else _can_look_back(now)
 
 
@@ -412,7 +412,7 @@ _WORDS: Mapping[str, str] = {
 }
 """Further words by which the command palette finds actions, by id."""
 
-# The footer shows the actions in this order, as far as they fit; `help` and `quit` always.
+# The order is that of the footer, which shows as many actions as fit, and `help` and `quit` always.
 ACTIONS: Mapping[str, LabAction] = {
     action.id: replace(action, words=_WORDS.get(action.id, ""))
     for action in (
@@ -674,7 +674,7 @@ RUN_KEYS = frozenset(
 
 
 def _find_next_steps(now: Situation) -> tuple[str, ...]:
-    """Return the ids of the actions that the user is likely to need next, the likeliest first."""
+    """Return the ids of the actions that the user is likely to need next, the most likely first."""
     code = ("to-cursor", "break") if now.reads_code else ()
     wrong = ("went-wrong",) if now.has_reasons else ()
     mended = ("edit",) if now.has_reasons else ()
@@ -704,7 +704,7 @@ TEXT_KEYS = frozenset({"lesson-back", "lesson-on"})
 def list_footer_actions(
     table: Mapping[str, LabAction], names: Iterable[str], now: Situation, playing: bool
 ) -> list[LabAction]:
-    """Return actions with the words of the footer: that of the pause key says what the key does now.
+    """Return actions with the words that the footer shows for them now; that of the pause key depends on the run.
 
     Keys of lessons that do nothing in the current step are left out, and so is `run` while a program is paused.
 
@@ -719,7 +719,7 @@ def list_footer_actions(
         word = "" if playing else "play"
     elif now.state == RunPhase.PAUSED:
         word = "go on"
-    # A paused program needs the room for its steps.
+    # In the footer of a paused program, the steps need the room of `run`.
     steps = [name for name in names if name != "run" or now.state != RunPhase.PAUSED or now.in_past]
     return [
         replace(table[name], footer=word) if word and name == "pause" else table[name]
@@ -737,7 +737,7 @@ def list_working(now: Situation) -> tuple[str, ...]:
 
 
 def check_config(config: UserConfig) -> None:
-    """Check the keys and the name of the theme in the user's settings, which only the app knows.
+    """Check the keys and the name of the theme in the user's settings; only the app knows which exist.
 
     Raises:
         ConfigError: something in the settings is wrong.

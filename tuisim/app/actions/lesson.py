@@ -22,7 +22,7 @@ _OPEN = "open "
 
 
 def answer(context: ActionContext) -> None:
-    """Ask for the answer to the question of the step."""
+    """Ask for the answer to the question of the lesson's step."""
     from tuisim.app.dialogs.question import AnswerPrompt
 
     lesson = context.lesson
@@ -45,7 +45,7 @@ def answer(context: ActionContext) -> None:
 
 
 def scroll(context: ActionContext, by: int) -> None:
-    """Scroll the text of the lesson by rows; if all of it is in view, scroll the code instead if it has the focus."""
+    """Scroll the text of the lesson by rows; if all of it is visible, scroll the code if that has the focus."""
     area = context.panels
     if area.lesson and has_more_text(area):
         area.lesson.action_scroll_text(by)
@@ -54,7 +54,7 @@ def scroll(context: ActionContext, by: int) -> None:
 
 
 def accept_page_keys(area: PanelArea) -> bool:
-    """Return whether page up and page down scroll the lesson or the code, and are no keys of another widget."""
+    """Return whether page up and page down scroll the lesson or the code, and not another widget."""
     if not area.screen.is_current:
         return False
     if area.code is not None and area.code.has_focus_within:
@@ -63,7 +63,7 @@ def accept_page_keys(area: PanelArea) -> bool:
 
 
 def has_more_text(area: PanelArea) -> bool:
-    """Return whether the lesson is in view, with more text above or below the visible rows."""
+    """Return whether the lesson is visible, and has more text above or below the visible rows."""
     return (
         area.screen.is_current
         and area.lesson is not None
@@ -102,7 +102,7 @@ def show_menu(context: ActionContext) -> None:
 
 
 def _find_current_lesson(context: ActionContext) -> str:
-    """Return the name of the lesson to select in the menu: the open one, or the next one if all its steps are done."""
+    """Return the name of the lesson to select in the menu: the open one, or if that is done, the next one."""
     lesson = context.lesson
     if lesson.lesson is None:
         return ""
@@ -141,7 +141,7 @@ def _ask_restart(context: ActionContext) -> None:
 
 
 def _switch_model(context: ActionContext) -> None:
-    """Show the robot of the model answer as a grey robot beside each run, or remove it."""
+    """Show the robot of the model answer as a grey robot beside each run; if it is shown already, remove it."""
     from tuisim.tasks.lessons.trial import run_model
 
     lesson = context.lesson.lesson

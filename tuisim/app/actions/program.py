@@ -17,7 +17,7 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 0.0)
 
 
 def run(context: ActionContext) -> None:
-    """Start the program; restart a paused one; in the past, ask whether to branch from that instant or to restart."""
+    """Start the program, or restart it if it is paused; in the past, ask whether to branch there or to restart."""
     if context.runs.in_past:
         propose_branch(context, None, restart=True)
     elif context.runs.state is RunPhase.PAUSED:
@@ -30,7 +30,7 @@ def run(context: ActionContext) -> None:
 
 
 def pause(context: ActionContext) -> None:
-    """Pause or continue: playback in the past, the program at the newest instant."""
+    """Pause or continue the program; if the past is in view, start or stop its playback."""
     timeline = context.runs.timeline
     if timeline.playing:
         timeline.stop_playback()
@@ -45,7 +45,7 @@ def pause(context: ActionContext) -> None:
 
 
 def change_speed(context: ActionContext, by: int) -> None:
-    """Change the speed by a number of places in `SPEEDS`; a negative number makes it slower."""
+    """Change the speed of the run to the one `by` steps further in `SPEEDS`; negative steps make it slower."""
     speed = context.runs.speed
     index = (
         SPEEDS.index(speed)
@@ -64,7 +64,7 @@ def change_speed(context: ActionContext, by: int) -> None:
 
 
 def run_to_cursor(context: ActionContext) -> None:
-    """Continue until the cursor's line in the code is about to run."""
+    """Continue the program until it is about to execute the line of the cursor in the code."""
     if line := _find_cursor_line(context):
         context.debugger.run_to(line)
 
@@ -85,7 +85,7 @@ def toggle_break(context: ActionContext) -> None:
 
 
 def _find_cursor_line(context: ActionContext) -> int:
-    """Return the line of the cursor in the code; if the code is hidden, show it and return 0."""
+    """Return the line of the cursor in the code; if the code panel is hidden, show it and return 0."""
     area = context.panels
     if area.is_shown("code"):
         return area.code.cursor_line if area.code else 0
@@ -103,7 +103,7 @@ def _go_to_code(context: ActionContext) -> None:
 
 
 def list_breaks(context: ActionContext) -> None:
-    """Show the dialog of the breakpoints."""
+    """Open the dialog of the breakpoints."""
     from tuisim.app.dialogs.entries import BreaksDialog
 
     context.app.push_screen(
@@ -117,7 +117,7 @@ def list_breaks(context: ActionContext) -> None:
 
 
 def list_watches(context: ActionContext) -> None:
-    """Show the dialog of the watches."""
+    """Open the dialog of the watches."""
     from tuisim.app.dialogs.entries import WatchesDialog
 
     context.app.push_screen(

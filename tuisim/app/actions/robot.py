@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def switch_pen(context: ActionContext) -> None:
-    """Lift the pen if it is down, else lower it."""
+    """Lift the pen if it is down; else put it down."""
     runs = context.runs
     runs.set_pen(not runs.pen_down)
     if not context.debugger.is_away:
@@ -28,7 +28,7 @@ def switch_pen(context: ActionContext) -> None:
 
 
 def home(context: ActionContext) -> None:
-    """Put the robot back to the start pose of the mat or the command line."""
+    """Put the robot at the start pose, that of the mat or of the command line."""
     _move(context, context.runs.home)
 
 
@@ -41,13 +41,13 @@ def _move(context: ActionContext, pose: Pose) -> None:
 
 
 def move_slightly(context: ActionContext, right_mm: float, up_mm: float, turn_deg: float) -> None:
-    """Move the robot in the directions of the mat, and turn it counter-clockwise."""
+    """Move the robot by a distance along the axes of the mat, and turn it counter-clockwise by an angle."""
     pose = context.runs.pose
     context.runs.place(Pose(pose.x_mm + right_mm, pose.y_mm + up_mm, pose.heading_deg + turn_deg))
 
 
 def clear_trace(context: ActionContext) -> None:
-    """Clear the pen trace."""
+    """Remove the pen trace from the world panel."""
     if world := find_world_panel(context):
         pieces = world.clear_trace()
         context.app.draw(force=True)
@@ -68,7 +68,7 @@ def place_randomly(context: ActionContext) -> None:
 
 
 def list_poses(context: ActionContext) -> None:
-    """Show the dialog of the saved poses."""
+    """Open the dialog of the saved poses."""
     from tuisim.app.dialogs.entries import SavedPoses
 
     def go(pose: Pose | None) -> None:
@@ -79,7 +79,7 @@ def list_poses(context: ActionContext) -> None:
 
 
 def choose_mat(context: ActionContext) -> None:
-    """Ask for a mat and set it."""
+    """Ask for a mat, and use it for the next run."""
     from tuisim.app.dialogs.chooser import MatPicker
 
     folder = context.runs.next_run.settings["mats"]
@@ -98,7 +98,7 @@ def choose_mat(context: ActionContext) -> None:
 
 
 def _propose_write(context: ActionContext, mat: str) -> None:
-    """Offer to write a mat into the magic line of the open program, if that line names another mat or none."""
+    """Offer to write a mat into the magic line of the open program, unless that line names the mat already."""
     from tuisim.app.dialogs.question import Question
 
     document = context.document
@@ -150,14 +150,14 @@ def reset_robot(context: ActionContext) -> None:
 
 
 def zoom(context: ActionContext) -> None:
-    """Switch the world to the next zoom."""
+    """Switch the world panel to its next zoom factor."""
     if world := find_world_panel(context):
         world.cycle_zoom()
         context.app.draw(force=True)
 
 
 def find_world_panel(context: ActionContext) -> World | None:
-    """Return the world panel; None, with a notice, if it is hidden."""
+    """Return the world panel; if it is hidden, show a notice and return None."""
     if context.panels.is_shown("world"):
         return context.panels.world
     context.app.say("The world is hidden: {panel-world} shows it")
@@ -179,7 +179,7 @@ def switch_earlier(context: ActionContext) -> None:
 
 
 def switch_rays(context: ActionContext) -> None:
-    """Switch the ultrasonic rays on or off."""
+    """Show or hide the ultrasonic rays."""
     if world := find_world_panel(context):
         world.show_rays = not world.show_rays
         context.app.draw(force=True)

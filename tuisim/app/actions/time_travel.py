@@ -25,9 +25,13 @@ MANY_TICKS = 10
 
 
 def go_to_tick(context: ActionContext, tick: int | None) -> None:
-    """Show a tick of the run, and pause a running program; None, or a tick beyond the newest, shows the newest instant.
+    """Show a tick of the run, and pause a running program.
 
     If the mat was changed since the run, only a notice appears.
+
+    Args:
+        context: The parts of the app.
+        tick: The tick; None, or one after the newest, shows the newest instant.
     """
     recording = context.runs.timeline.recording
     if recording is None or (tick is not None and not _is_laid_out(context, recording)):
@@ -59,9 +63,12 @@ def refresh(context: ActionContext) -> None:
 
 
 def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -> None:
-    """Go to a time of the run in s, or with None to the newest instant.
+    """Go to a time of the run.
 
-    With `sample`, go also to the line that printed a sample of that name at that time.
+    Args:
+        context: The parts of the app.
+        time_s: Simulated time in s; None for the newest instant.
+        sample: Name of a sample printed at that time, to whose line in the program to go as well; empty for none.
     """
     tick = None if time_s is None else round(time_s * context.runs.timeline.tick_hz)
     recording = context.runs.timeline.recording
@@ -78,7 +85,7 @@ def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -
 
 
 def skip_ticks(context: ActionContext, ticks: int) -> None:
-    """Go forward by a number of ticks of the recording; negative goes back."""
+    """Go forward in the recording by a number of ticks; a negative number goes back."""
     timeline = context.runs.timeline
     tick = timeline.tick
     if ticks < 0 and tick <= 0:
@@ -113,17 +120,17 @@ def step_ten_ticks(context: ActionContext) -> None:
 
 
 def skip_seconds(context: ActionContext, by: int) -> None:
-    """Go forward by a number of seconds of the recording; negative goes back."""
+    """Go forward in the recording by a number of seconds; a negative number goes back."""
     skip_ticks(context, by * context.runs.timeline.tick_hz)
 
 
 def go_to_now(context: ActionContext) -> None:
-    """Go to the newest instant."""
+    """Go to the newest instant of the run."""
     go_to_tick(context, None)
 
 
 def stop_time(context: ActionContext) -> None:
-    """Stop playback, and pause a running program."""
+    """Stop the playback of the past, and pause a running program."""
     context.runs.timeline.stop_playback()
     context.runs.pause()
 
@@ -139,7 +146,7 @@ def advance_playback(context: ActionContext) -> None:
 
 
 def ask_instant(context: ActionContext) -> None:
-    """Ask for an instant and go there."""
+    """Ask for an instant of the run, and go there."""
     from tuisim.app.dialogs.question import LinePrompt
 
     timeline = context.runs.timeline
@@ -182,7 +189,7 @@ def go_to_sample(context: ActionContext, words: str) -> None:
 
 
 def go_wrong(context: ActionContext) -> None:
-    """Go to the first reason why the run went wrong; at each further press to the next one, after the last to the end.
+    """Go to the first reason why the run went wrong; each further press goes to the next one, the last to the end.
 
     A running program is paused; its reasons are those of the run so far. If the text in the editor cannot run, that is
     the reason.
@@ -210,7 +217,7 @@ def go_wrong(context: ActionContext) -> None:
     def show(reasons_so_far: reasons.FoundReasons) -> None:
         tour.is_searching = False
         if context.runs.timeline.recording is recording and context.runs.in_run is has_ended:
-            # It has ended meanwhile, and what it waited for may have come.
+            # The run has ended meanwhile, which may have changed the reasons: search for them again.
             go_wrong(context)
             return
         reasons.note(context, recording, reasons_so_far)
@@ -221,7 +228,7 @@ def go_wrong(context: ActionContext) -> None:
 
 
 def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
-    """Go to the next reason and show its text; after the last one, go to the newest instant."""
+    """Go to the next reason why the run went wrong, and show its text; after the last one, go to the newest instant."""
     tour = context.reasons
     if (reason := tour.advance()) is None:
         go_to_now(context)
@@ -287,7 +294,7 @@ def propose_branch(
             run_controller.stop_now()
             context.app.start_run()
         else:
-            # Panels that showed the requested change show the past again.
+            # The user declined the branch: panels that already showed the requested change show the past again.
             context.app.draw(force=True)
 
     question = BranchQuestion(branch, action_words(then), run_controller.in_run, restart)

@@ -20,7 +20,7 @@ from tuisim.terminal.picture_options import AUTO
 
 
 class Analyser(LogScreen):
-    """The views of one log, and the keys that work on them."""
+    """The screen with the views of one log and the keys that work on them."""
 
     ACTIONS = ACTIONS
     BINDINGS: ClassVar[list[BindingType]] = build_bindings(ACTIONS.values())
@@ -30,7 +30,7 @@ class AnalyserApp(TerminalApp):
     """The app of `tuisim analyse`; its only screen is the analyser.
 
     Args:
-        request: What to open.
+        request: The log to open.
         picture_mode: How pictures are drawn.
     """
 
@@ -43,12 +43,12 @@ class AnalyserApp(TerminalApp):
         """The error that prevented the log from being opened."""
 
     def on_mount(self) -> None:
-        """Show the analyser; closing it ends the app."""
+        """Show the analyser; when the user closes it, end the app."""
         self.push_screen(_First(self.request), lambda _: self.exit())
 
 
 class _First(Analyser):
-    """The only screen of an `AnalyserApp`: an error before anything is shown ends the app."""
+    """The only screen of an `AnalyserApp`; an error before a log is shown ends the app."""
 
     def set_model(self, model: AnalysisModel) -> None:
         first = not self.is_open
@@ -58,7 +58,7 @@ class _First(Analyser):
             self.call_after_refresh(gc.freeze)
 
     def complain(self, error: TuisimError) -> None:
-        """Show an error; before a log is open, store it in the app instead, for the shell."""
+        """Show an error; before a log is open, store the error in the app instead, so that the shell shows it."""
         app = self.app
         if not self.is_open and isinstance(app, AnalyserApp):
             app.failure = error
@@ -70,7 +70,7 @@ def run_analyser(request: LogRequest) -> int:
     """Run the analyser in this terminal until the user leaves it; return the exit code.
 
     Raises:
-        LogError: there is no such log, or it cannot be read.
+        LogError: the log does not exist, or cannot be read.
     """
     enter()
     app = AnalyserApp(request, picture_mode_at_start(None, AUTO))

@@ -48,7 +48,7 @@ FACETS_ROWS = 2 * _MIN_FACET_ROWS
 
 @dataclass(slots=True)
 class ChartOptions:
-    """The display options of the chart."""
+    """The options of the analyser's chart that the user switches by keys."""
 
     facets: bool = False
     """One chart for each ticked variable."""
@@ -60,7 +60,7 @@ class ChartOptions:
 
 
 class LogChart(LinesPanel):
-    """The panel with one chart of all variables, or one for each, and the values at the cursor or the pointer."""
+    """The widget with the analyser's chart: all variables in one, or one chart for each."""
 
     ALLOW_SELECT = False
     DEFAULT_CSS = f"""
@@ -72,13 +72,13 @@ class LogChart(LinesPanel):
 
     @dataclass
     class Pointed(Message):
-        """Posted when a time was clicked."""
+        """Posted when the user has clicked a time in the chart."""
 
         time_s: float
 
     @dataclass
     class Ticked(Message):
-        """Posted when the tick box of a variable was clicked."""
+        """Posted when the user has clicked the tick box of a variable."""
 
         name: str
 
@@ -94,12 +94,12 @@ class LogChart(LinesPanel):
         """The time below the pointer."""
 
     def set_model(self, model: AnalysisModel) -> None:
-        """Switch to another log, or redraw the same one with other options."""
+        """Show another log in the chart, or the same one with other options."""
         self._painters.clear()
         self.show(model)
 
     def show(self, model: AnalysisModel) -> None:
-        """Draw the current view of the model."""
+        """Draw the chart for the present state of the model."""
         self._model = model
         width, height = self._text.size
         if not width or not height or not self.display:
@@ -164,7 +164,7 @@ class LogChart(LinesPanel):
         return [*lines, *(self._mark_events(model) if marked else []), *measured], self._pictures
 
     def _mark_events(self, model: AnalysisModel) -> list[list[Run]]:
-        """Return the line below the charts with a marker for each threshold crossing."""
+        """Return the line below the charts, with a mark at each threshold crossing."""
         _, picture = self._pictures[-1]
         if not picture.columns:
             return [[]]
@@ -190,7 +190,7 @@ class LogChart(LinesPanel):
         return draw_xy_chart(xs, ys, model.sample, names, trace.rgb, marker, width, height)
 
     def columns(self) -> int:
-        """Return the width of the canvas in characters; 1 if no chart over time is drawn."""
+        """Return the width of the chart's canvas in characters; 1 if no chart over time is drawn."""
         return max(self._pictures[0][1].columns, 1) if self._pictures else 1
 
     def time_beside(self, time_s: float, columns: int) -> float:
@@ -239,7 +239,7 @@ class LogChart(LinesPanel):
             unit = "mm" if model.alignment == DISTANCE else "s"
             time_s = model.cursor_s if time_s is None else time_s
             words = escape_markup(format_values(drawn, time_s, unit, self.size.width - 4))
-        # Each assignment draws the panel again.
+        # An assignment draws the panel again even if the words are the same.
         if words != self.border_subtitle:
             self.border_subtitle = words
 
@@ -252,7 +252,7 @@ def _select_facets(facets: list[LogTrace], selected: str, max_count: int) -> lis
 
 
 def _build_measure_line(model: AnalysisModel, unit: str, width: int) -> list[list[Run]]:
-    """Return one line with the differences and the statistics between the two cursors; none without a second cursor."""
+    """Return a line with the differences and the statistics between the two cursors; empty without a second cursor."""
     if model.mark_s is None or not model.log.rows:
         return []
     plain = Style(color=palette.SOFT)

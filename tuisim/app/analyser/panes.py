@@ -60,14 +60,14 @@ EMPTY = ("This log is empty. T shows the telemetry of a run.",)
 
 @dataclass(frozen=True, slots=True)
 class Pane:
-    """A pane: its title and headings, and the functions that return its content."""
+    """A pane of the analyser: its title and headings, and the functions that return its content."""
 
     title: str
     rows: Callable[[AnalysisModel], Sequence[Cells]]
-    """Its rows as texts; no rows for the table, which has too many and is drawn by itself."""
+    """Returns the rows of the pane as texts; none for the table, which has too many and is drawn by itself."""
     heads: Cells
     below: Callable[[AnalysisModel], Sequence[str]] = lambda _: ()
-    """Text below the rows."""
+    """Returns the lines of text below the rows."""
     empty: str = ""
     wraps: bool = False
     """Whether its last column is prose, which wraps instead of being cut."""
@@ -144,7 +144,7 @@ def _format_event(event: Event | CommandRow) -> Cells:
 
 def _list_statistics(model: AnalysisModel) -> list[Cells]:
     rows = []
-    # A short log is processed faster than it is drawn.
+    # A short log needs no background job: computing its statistics takes less time than drawing them.
     missing = model.list_unsummed() if model.log.rows > FAST_ROWS else []
     for trace in model.traces.list_ticked():
         if trace.name in missing:
@@ -260,18 +260,18 @@ def build_frame(name: str, model: AnalysisModel) -> pd.DataFrame:
         [list(row) for row in pane.rows(model)], columns=[head or "#" for head in pane.heads]
     )
     for head in frame.columns:
-        # Thousands separators are for display only.
+        # Numbers have thousands separators in the pane, but not in the data frame.
         numbers = pd.to_numeric(frame[head].str.replace(",", ""), errors="coerce")
         frame[head] = numbers if numbers.notna().all() else frame[head]
     return frame
 
 
 def pane_lines(name: str, model: AnalysisModel, chosen: int, width: int, height: int) -> list[Line]:
-    """Return a pane as lines.
+    """Return the content of a pane as lines of text.
 
     Args:
         name: Key of `PANES`.
-        model: The current view.
+        model: The state of the analysis.
         chosen: Selected row; in the table it is that of the cursor.
         width: Characters.
         height: Lines, at least 1.
@@ -321,7 +321,7 @@ def pane_lines(name: str, model: AnalysisModel, chosen: int, width: int, height:
             stop = len(lines) + len(row_lines)
             row_lines = [[*line, (" " * width, HERE)] for line in row_lines]
         lines += row_lines
-    # With rows of several lines, the selected one stays visible.
+    # A row may have several lines: scroll on, so that the selected row stays visible.
     start = max(min(start, stop - room), 0)
     return [head, *lines[start : start + room], *more, *([(text, DIM)] for text in below)]
 
@@ -334,7 +334,10 @@ def _build_continuation(
     width: int,
     height: int,
 ) -> list[Line]:
-    """Return the columns that do not fit as a second table, which repeats the first column; none without room."""
+    """Return the columns that do not fit as a second table below the first one, which repeats the first column.
+
+    It is empty if there are no rows left for it.
+    """
     columns_below = [0, *columns]
     wide = [widths[index] for index in columns_below]
     if height < 1 + len(rows) or sum(wide) + _GAP * (len(wide) - 1) > width:
@@ -363,10 +366,10 @@ def _count_rows(name: str, model: AnalysisModel, width: int) -> int:
 def _split_below(
     pane: Pane, model: AnalysisModel, width: int, height: int
 ) -> tuple[list[str], int]:
-    """Return the lines below the rows of a pane, and the number of rows for which there is room.
+    """Return the lines of text below the rows of a pane, and the number of rows for which there is room.
 
-    If all rows fit, the text below them gets the lines that are left, else a sixth of all lines. A text that would be
-    cut to one line is left out.
+    If all rows fit, the text gets the remaining lines, else a sixth of all lines. A text that would be cut to one line
+    is left out.
     """
     spare = height - 1 - len(pane.rows(model))
     texts = pane.below(model)
@@ -377,7 +380,7 @@ def _split_below(
 
 
 def describe_place(name: str, model: AnalysisModel, chosen: int, width: int, height: int) -> str:
-    """Return the number of the selected row in a pane other than the table; empty if all rows are in view."""
+    """Return in words the number of the selected row, of a pane other than the table; empty if all rows are visible."""
     count = len(PANES[name].rows(model))
     fits = count <= _split_below(PANES[name], model, width, height)[1]
     return "" if fits else f"↑↓ row {chosen + 1:,} of {count:,}"
@@ -405,7 +408,7 @@ def _choose_columns(
 def _build_rows(
     texts: Sequence[str], widths: Sequence[int], gap: int, style: Style, width: int
 ) -> list[Line]:
-    """Return a row as lines: one, or as many as the last text needs in that width."""
+    """Return a row of a pane as one line, or as many lines as its last text needs."""
     margin = sum(widths[:-1]) + gap * (len(widths) - 1)
     if margin + len(texts[-1]) <= width:
         return [_build_row(texts, widths, gap, style)]
@@ -417,7 +420,10 @@ def _build_rows(
 
 
 def _fit_columns(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
-    """Return as many columns as fit: the first one in any case; a wide text may be the last one, and is cut."""
+    """Return the columns that fit into a width, at least the first one.
+
+    A column with wide texts may be the last of them, and is cut.
+    """
     left = width
     seen: list[int] = []
     for index in columns:
@@ -437,9 +443,9 @@ def _build_row(texts: Sequence[str], widths: Sequence[int], gap: int, style: Sty
 
 
 def _wrap_texts(texts: Sequence[str], width: int, max_lines: int) -> list[str]:
-    """Return the first lines of wrapped texts, the last one with an ellipsis if there is more.
+    """Return texts wrapped to a width, at most `max_lines` lines; a text that is cut ends in an ellipsis.
 
-    Only the visible part of each is wrapped.
+    Only the visible part of each text is wrapped.
     """
     wide = max(width, 10)
     seen = (text[: (max_lines + 1) * wide] for text in texts)
@@ -453,7 +459,7 @@ def _wrap_texts(texts: Sequence[str], width: int, max_lines: int) -> list[str]:
 
 
 class PaneView(LinesPanel):
-    """Shows a pane, with the titles of all panes above it; computes its content, for a long log in the background.
+    """The widget that shows a pane below the titles of all panes; for a long log, it computes in the background.
 
     Args:
         complain: Shows an error.
@@ -471,11 +477,11 @@ class PaneView(LinesPanel):
         super().__init__()
         self.name_shown = "table"
         self.chosen = 0
-        """Selected row, in all panes but the table."""
+        """Index of the selected row, in all panes but the table."""
         self._model: AnalysisModel | None = None
         self._complain = complain
         self._busy: dict[str, AnalysisModel] = {}
-        """The log that is being processed, by pane."""
+        """For each pane whose content is being computed, the model for which that is done."""
 
     @property
     def lines(self) -> int:
@@ -483,12 +489,12 @@ class PaneView(LinesPanel):
         return max(self._text.size.height - 1, 1)
 
     def turn_to(self, name: str) -> None:
-        """Switch to another pane."""
+        """Show another pane, given by its key in `PANES`."""
         self.name_shown = name
         self.chosen = 0
 
     def show(self, model: AnalysisModel) -> None:
-        """Draw the current view of the model."""
+        """Draw the pane for the present state of the model."""
         self._model = model
         self._compute(model, self.name_shown)
         # Brackets mark the current pane even without colours.
@@ -542,14 +548,17 @@ class PaneView(LinesPanel):
 
 
 def find_bands(model: AnalysisModel, names: Sequence[str]) -> None:
-    """Search variables for bands; for a log of more rows than `SEARCHED_AT_ONCE`, call it in a worker."""
+    """Search variables of a log for bands.
+
+    If the log has more than `SEARCHED_AT_ONCE` rows, call this in a worker.
+    """
     model.find_bands(names, build_band_search(model.log.rows))
 
 
 def build_band_search(rows: int) -> Search:
-    """Return the function that searches a log of that many rows for bands; for a long log, call this in a worker.
+    """Return the function that searches a log with this number of rows for bands.
 
-    It searches more than `SEARCHED_AT_ONCE` rows in another process, until the worker is cancelled.
+    More than `SEARCHED_AT_ONCE` rows are searched in another process, until the worker that calls this is cancelled.
     """
     if rows <= SEARCHED_AT_ONCE:
         return find_plateaus

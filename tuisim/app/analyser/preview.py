@@ -38,12 +38,12 @@ _COLUMN_CHOICES = ("header", "separator")
 
 
 class PreviewDialog(Dialog[ReadChoices]):
-    """The dialog with the first rows of a file; it returns how the file is to be read.
+    """The dialog with the first rows of a file; it returns the user's choices of how to read the file.
 
     Args:
-        file: Its path.
-        choices: How it is read at first.
-        log: Its first rows, read in this way.
+        file: Path of the file.
+        choices: The choices at first.
+        log: The first rows of the file, read with these choices.
     """
 
     HINT = "Enter opens · Escape goes back"
@@ -122,7 +122,7 @@ class PreviewDialog(Dialog[ReadChoices]):
             offers = self._list_offers(name)
             field.set_options(offers)
             field.value, field.disabled = getattr(self._choices, name), self._is_idle(name)
-            # The widget shows another word only for another value.
+            # The widget updates its label only when the value changes, but the same value may have another label now.
             word = next(word for word, value in offers if value == field.value)
             field.query_one("#label", Static).update(word)
 
@@ -149,7 +149,7 @@ class PreviewDialog(Dialog[ReadChoices]):
 
 
 def _build_rows(preview: Preview) -> Table:
-    """Return the first rows with names and roles of the columns."""
+    """Return a table of the first rows of a file, with the names and roles of the columns."""
     log = preview.log
     rows = Table(box=None, padding=(0, 1), pad_edge=False)
     row = log.form.header

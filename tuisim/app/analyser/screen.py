@@ -48,10 +48,10 @@ Made = TypeVar("Made")
 
 
 class LogScreen(ActionHost, ClosesOnce[None]):
-    """The views of one log. Modal, so that no key of the app below it works here.
+    """The screen with the views of one log. It is modal, so that the keys of the app below do not work.
 
     Args:
-        request: What to open.
+        request: The log to open.
         beside: A widget for the right edge, such as the lesson that the log is for. Where there is little room, it
             takes the place of the world until the key of the world is pressed.
     """
@@ -75,7 +75,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self._beside = beside
         self._model: AnalysisModel | None = None
         self.searched = ""
-        """The text that was searched for last."""
+        """The last search text; empty for none."""
         self.job: TableTask | None = None
         """The current background job."""
         self._reading = False
@@ -83,7 +83,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self._stamp: object = None
         """Length of the log when it was last read."""
         self._said: tuple[str, ...] = ()
-        """Notes on the log that were said; a log has them before it is read to its end."""
+        """Notes on the reading of the log that were shown; a log has them before it is read to its end."""
         self.title_line = LinesView()
         self.title_line.id = "title"
         self.chart = LogChart()
@@ -117,7 +117,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         }
 
     def on_resize(self, event: Resize) -> None:
-        """Put the world below the log where the screen is high and narrow, as that of a phone."""
+        """Put the world below the log if the screen is high and narrow, as that of a phone; else beside the log."""
         self.set_class(is_tall(*event.size) and event.size.width < _NARROW_COLS, "-tall")
 
     def on_mount(self) -> None:
@@ -129,7 +129,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     @property
     def is_open(self) -> bool:
-        """Whether there is a log: its first rows have been read."""
+        """Whether a log is open, of which at least the first rows have been read."""
         return self._model is not None
 
     @property
@@ -144,11 +144,11 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         return self._model
 
     def open(self, request: LogRequest, asks: bool = False) -> None:
-        """Open another log in the background; the current one stays until then.
+        """Open another log in the background; until it is read, the current log stays on the screen.
 
         Args:
-            request: What to open.
-            asks: Whether the user is asked how to read it, if that is in doubt.
+            request: The log to open.
+            asks: Whether to ask the user how to read the log, if that is in doubt.
         """
         self.request = request
         self._reading, self._began_s = True, monotonic()
@@ -220,7 +220,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
                 self.say(note)
 
     def poll(self) -> None:
-        """Read the log again if it has grown; the longer a reading takes, the longer the pause before the next one."""
+        """Read the log again if it has grown; the pause before that is longer if the last reading took long."""
         model = self._model
         if self.job is not None:
             self._show_title(self._describe_progress())
@@ -245,7 +245,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         return None if self._model is None else self._model.log.rows
 
     def update(self) -> None:
-        """Draw title, footer, pane, chart and world from the model."""
+        """Draw the title, the footer, the pane, the chart and the world for the present state of the model."""
         if self._model is None:
             return
         self._show_title(self._describe_progress())
@@ -253,7 +253,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.key_footer.show(
             [action for action in self.ACTIONS.values() if not action.why_not(now)]
         )
-        # The pane finds the bands, which the chart shades.
+        # The pane comes before the chart, since it finds the bands that the chart shades.
         self.pane.show(self._model)
         self.chart.show(self._model)
         self.world.show(self._model)
@@ -269,7 +269,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.call_after_refresh(self.update)
 
     def show_world(self, is_on: bool) -> None:
-        """Show or hide the world; in a narrow terminal it takes the place of the widget beside the log."""
+        """Show or hide the world beside the log; in a narrow terminal, it replaces the other widget there."""
         self.world.display = self.world.is_on = is_on
         if self._beside is not None:
             self._beside.display = not is_on or self.size.width >= _WIDE_COLS
@@ -323,7 +323,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         model.follow_cursor()
 
     def go_to_event(self, number: int) -> None:
-        """Put the cursor on an event."""
+        """Move the cursor to an event, given by its index in the list of events."""
         model = self.model
         event = model.events.list_events(model.log)[number]
         if not isinstance(event, CommandRow):
@@ -373,7 +373,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.app.push_screen(LinePrompt(title, apply, value, own, words))
 
     def ask_choices(self) -> None:
-        """Ask how the file is to be read."""
+        """Open the dialog that asks how to read the file."""
         request = self.request
         if not is_readable_again(request.file):
             self.say("You can change only how a file is read, not a run or a pipe")
@@ -386,7 +386,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             self.app.push_screen(dialog, self._set_choices)
 
     def _set_choices(self, choices: ReadChoices | None) -> None:
-        """Open the file as the user wants it to be read; leave if nothing is open and nothing was chosen."""
+        """Open the file with the user's choices; if nothing was chosen and no log is open, close the screen."""
         if choices is None:
             if not self.is_open:
                 self.dismiss()
@@ -398,11 +398,16 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.open(LogRequest(self.request.file, choices=choices))
 
     def copy(self, text: str, what: str) -> None:
-        """Copy a text to the clipboard of the user's terminal."""
+        """Copy a text to the clipboard of the user's terminal, and show a notice.
+
+        Args:
+            text: The text.
+            what: Name of the text in the notice.
+        """
         self.app.copy_to_clipboard(text)
         self.say(f"{what}: sent to the terminal's clipboard. {{export}} writes a file")
 
-    # Background work
+    # The following methods work in the background.
 
     def run_task(
         self, word: str, rows: int, do: Callable[[TableTask], Made], then: Callable[[Made], None]
@@ -432,7 +437,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         )
 
     def begin(self, task: TableTask) -> None:
-        """Make a task the current background job and show its label; the result of an older job is ignored."""
+        """Make a task the current background job, and show its label; the result of an older job will be ignored."""
         self.give_up()
         self.job = task
         self.update()

@@ -24,7 +24,7 @@ _SAMPLED = 40
 
 
 def build_table_lines(model: AnalysisModel, width: int, height: int) -> list[Line]:
-    """Return the rows of the table around the cursor, with as many columns as fit."""
+    """Return the lines of the table: the rows around the cursor, with as many columns as fit."""
     rows = model.rows
     if not len(rows):
         return [[("No row matches the filter: U clears it", DIM)]]
@@ -71,7 +71,7 @@ def _build_head_line(
 
 
 def _read_cells(rows: Rows, column: str, shown_rows: Sequence[int]) -> list[str]:
-    """Return the cells of a column, its numbers with their points below each other."""
+    """Return the cells of a column as texts; the decimal points of numbers are below each other."""
     texts = [rows.text(row, column).replace("\n", "↵").replace("\t", " ") for row in shown_rows]
     tails = [len(text) - len(text.partition(".")[0]) if _is_number(text) else 0 for text in texts]
     return [

@@ -61,10 +61,10 @@ class RunWorld:
         self._recording = Recording(run) if run is not None else None
         self._log = log
         self.program = run.program if run is not None else None
-        """None if it is unknown."""
+        """The program of the run; None if it is unknown."""
 
     def find_snapshot(self, time_s: float, row: int) -> Snapshot:
-        """Return the snapshot at a time.
+        """Return the state of the run at a time.
 
         Args:
             time_s: Simulated time.
@@ -122,7 +122,7 @@ def has_poses(opened: OpenedLog) -> bool:
 
 
 def load_world(opened: OpenedLog, run: int) -> RunWorld | None:
-    """Return the world of a run of a log; None if the log does not know it. Blocks, long the first time for each mat.
+    """Return the world of a run of a log; None if it cannot be found. Blocks, long the first time for each mat.
 
     Args:
         opened: The log.
@@ -158,7 +158,7 @@ class WorldPane(Vertical):
     def __init__(self) -> None:
         super().__init__()
         self.is_on = True
-        """Whether to show it if there is something to show."""
+        """Whether the user wants to see the world; it is shown if the log has poses."""
         # The robot is shown where it was; the mouse cannot move it.
         self._world = WorldView()
         self._world.disabled = True

@@ -36,7 +36,7 @@ _SAMPLES = 4
 
 
 def draw_test_card(cols: int, rows: int, cell_px: tuple[int, int]) -> Pixels:
-    """Return a picture with a disc, a line and three greys.
+    """Return the test picture, which has a disc, a line and three greys.
 
     Args:
         cols: Cells across.
@@ -75,7 +75,7 @@ class _TestCard(PixelView):
 
     @property
     def graphics(self) -> None:
-        """None: glyphs are shown even where the terminal can draw pixels."""
+        """None, since the test picture is drawn with glyphs even where the terminal can draw pixels."""
 
     @property
     def cell_set(self) -> CellSet:
@@ -87,7 +87,7 @@ class _TestCard(PixelView):
         self.draw_picture()
 
     def draw_picture(self) -> None:
-        """Draw the test picture for the current size."""
+        """Draw the test picture for the present size of the widget."""
         cell = self.choose_cell(None)
         if self.size.width and self.size.height:
             self.set_fine_picture(
@@ -96,7 +96,7 @@ class _TestCard(PixelView):
 
 
 class CellsCard(ListDialog):
-    """The dialog with the test card; it returns the name of the chosen set.
+    """The dialog with a test picture in each set of glyphs; it returns the name of the chosen set.
 
     Args:
         current: The name of the set that is chosen now, or `AUTO`.

@@ -47,7 +47,7 @@ OPENABLE = (".py", ".toml")
 TABLES = (".toml", ".json")
 LOGS = (*LOG_SUFFIXES, ".txt", ".log")
 IMAGES = (".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff")
-"""Endings of the files that choosers list in a folder."""
+"""Suffixes of the files that choosers list in a folder."""
 MAX_FILES = 200
 MAX_TRIED = 50
 """Most files of the folder that are opened to check their format."""
@@ -55,11 +55,11 @@ MAX_TRIED = 50
 
 @dataclass(frozen=True, slots=True)
 class ChoiceGroup:
-    """A part of a list of choices, with a title."""
+    """A titled group of entries in a list of choices."""
 
     title: str
     entries: Sequence[tuple[str, str, str]]
-    """For each entry: value, name, and title, which may be empty."""
+    """The entries, each with its value, its name, and its title, which may be empty."""
 
 
 def list_files(
@@ -68,7 +68,7 @@ def list_files(
     """Return the files in the current folder, without hidden ones, as a group of choices.
 
     Args:
-        suffixes: With their dots.
+        suffixes: Suffixes of the files, with their dots.
         fits: Raises TuisimError for a file that must not be listed.
     """
     endings = tuple(suffixes)
@@ -132,7 +132,7 @@ class ListDialog(FieldDialog[str]):
         return typed
 
     def report_unread(self, error: TuisimError) -> None:
-        """Say what is wrong with the typed text, which stays in the field."""
+        """Show what is wrong with the typed text, which stays in the field."""
         self.app.notify(shorten_error(error), severity="error", markup=False)
 
 
@@ -180,13 +180,13 @@ class Chooser(ListDialog):
         yield Static(id="message", markup=False)
 
     def field(self) -> Input:
-        """Return a new field, for words to search for or a path."""
+        """Return a new text field for words to search for, or for a path."""
         return Input(
             placeholder=f"Search, or the {self._path_hint}", compact=True, select_on_focus=False
         )
 
     def build_list(self) -> OptionList:
-        """Return the list of all groups, with the current value highlighted."""
+        """Return a new list of all groups, with the current value highlighted."""
         listed = OptionList(*self._build_options(self._groups))
         names = [option.id for option in listed.options]
         if self._current in names:
@@ -200,7 +200,7 @@ class Chooser(ListDialog):
                 options.append(None)
             if group.title:
                 options.append(Option(Text(group.title, "italic"), disabled=True))
-            # Short names leave the room to their titles.
+            # The names get no more width than they need, so that the titles get the rest.
             name_cells = max((len(name) for _, name, title in group.entries if title), default=0)
             options += [
                 Option(
@@ -218,7 +218,7 @@ class Chooser(ListDialog):
     def _search(self, event: Input.Changed) -> None:
         listed = self.query_one(OptionList)
         typed = event.value.strip()
-        # The dialog keeps its place while the list becomes shorter.
+        # A fixed height keeps the dialog in place while the list becomes shorter.
         listed.styles.height = listed.outer_size.height if typed else None
         groups = self._search_groups(typed)
         listed.clear_options()
@@ -234,7 +234,7 @@ class Chooser(ListDialog):
             )
 
     def clear_preview(self) -> None:
-        """Remove the preview of the entry that was highlighted before; a plain list has none."""
+        """Remove the preview of the previously highlighted entry; a plain list has no preview."""
 
     def _search_groups(self, typed: str) -> Sequence[ChoiceGroup]:
         if not (self._suffixes and is_path(typed)):
@@ -288,7 +288,7 @@ class Chooser(ListDialog):
 
 
 def search_groups(groups: Iterable[ChoiceGroup], typed: str) -> list[ChoiceGroup]:
-    """Return the entries whose names or titles have every word of a text, in their groups."""
+    """Return the groups with only those entries whose name or title contains every word of a text."""
     words = typed.lower().split()
 
     def has_words(entry: tuple[str, str, str]) -> bool:
@@ -312,7 +312,7 @@ def find_best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
 
 
 def build_program_chooser() -> Chooser:
-    """Return the dialog for programs, worlds, goals and logs: those in the current folder, and the examples."""
+    """Return the dialog with the programs, worlds, goals and logs in the current folder, and the examples."""
     from tuisim.programs.program_file import list_programs
     from tuisim.settings.worlds import load_world
     from tuisim.tasks.goals.files import list_examples as goals_examples
@@ -342,7 +342,7 @@ def build_program_chooser() -> Chooser:
 
 
 def is_log(word: str) -> bool:
-    """Return whether a path names a log."""
+    """Return whether a path names a log file, by its suffix."""
     return Path(word).suffix.lower() in LOGS
 
 
@@ -365,7 +365,7 @@ def _read_openable(word: str) -> object:
 
 
 def build_obstacle_chooser(plan: NextRun) -> Chooser:
-    """Return the dialog for sets of obstacles."""
+    """Return the dialog with the sets of obstacles to choose from."""
     presets = [
         (
             name,
@@ -390,7 +390,7 @@ def build_obstacle_chooser(plan: NextRun) -> Chooser:
 
 
 def build_profile_chooser(plan: NextRun) -> Chooser:
-    """Return the dialog for profiles."""
+    """Return the dialog with the profiles to choose from."""
     presets = [
         (
             name,
@@ -462,7 +462,7 @@ class MatPicker(Chooser):
         self.call_after_refresh(self.show_again)
 
     def clear_preview(self) -> None:
-        """Show no mat."""
+        """Remove the picture and the title of the previewed mat."""
         self._show("")
 
     def show_again(self) -> None:
@@ -508,7 +508,7 @@ class MatPicker(Chooser):
 
     def _show_decoded(self, key: tuple[str, Viewport], picture: Pixels) -> None:
         self._pictures[key] = picture
-        # A dialog that is being closed loses its view first.
+        # A dialog that is being closed may have no view any more.
         if not self.is_attached or not self.query(PixelView) or key[0] != self._shown:
             return
         view = self.query_one(PixelView)
@@ -516,7 +516,7 @@ class MatPicker(Chooser):
             self._say_title(key[0], is_drawn=True)
             view.set_fine_picture(picture, view.graphics)
         else:
-            # The view got its height while the image was decoded.
+            # The view got its size while the image was decoded: decode the image again for that size.
             self.show_again()
 
     def _report(self, name: str, error: TuisimError) -> None:

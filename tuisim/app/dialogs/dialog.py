@@ -50,7 +50,7 @@ def name_and_title(name: str, title: str, name_cells: int, wraps: bool = True) -
     table = Table.grid(padding=(0, 2), expand=True)
     table.add_column(width=name_cells, style="bold", no_wrap=not wraps)
     table.add_column(ratio=1, no_wrap=not wraps)
-    # A user-defined name is no markup.
+    # A user-defined name may contain brackets, which must not be read as markup.
     table.add_row(Text(name), Text(title))
     return table
 
@@ -107,12 +107,12 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
     ]
 
     class Changed(Message):
-        """Posted when a screen is ready for keys, or has closed."""
+        """Posted when the screen has become ready for keys, or has closed."""
 
     is_ready = False
-    """Whether it is mounted, and has focused the widget that gets the first key."""
+    """Whether the screen is mounted, and has focused the widget that gets the first key."""
     _is_at_work = False
-    """Whether keys have to wait for a result."""
+    """Whether a function runs in a thread, so that keys have to wait for its result."""
 
     def on_mount(self) -> None:
         self.call_after_refresh(self.app.call_later, self._mark_ready)
@@ -176,7 +176,7 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         self.dismiss(result)
 
     def render_lines(self, crop: Region) -> list[Strip]:
-        """Return rows of the screen below the dialog; Textual would make plain text of them, without pixels."""
+        """Return the rows of the screen below the dialog with their pixels; Textual would make plain text of them."""
         below = None if self.styles.background.a else self.read_lower_parts(crop)
         if below is None:
             return super().render_lines(crop)
@@ -184,7 +184,10 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         return [row.crop_extend(*crop.column_span, self.rich_style) for row in rows]
 
     def should_drop(self, message: Message) -> bool:
-        """Return whether to ignore a message: widgets of a closed screen may still post some, as at a second Enter."""
+        """Return whether to ignore a message, because the screen is closed.
+
+        Widgets of a closed screen may still post messages, for example for a second Enter.
+        """
         return message.bubble and self.is_closed
 
 
@@ -239,7 +242,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
         ]
 
     async def on_click(self, event: Click) -> None:
-        """Press the key whose word was clicked in the footer below the dialog: a phone may lack that key."""
+        """If a word for a key was clicked in the footer below the dialog, press that key, which a phone may lack."""
         keys = {
             _shorten_label(key): key
             for binding in self._collect_bindings()
@@ -264,7 +267,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
         )
 
     def compose_content(self) -> ComposeResult:
-        """Return the widgets in the frame."""
+        """Yield the widgets inside the dialog's frame."""
         yield from ()
 
     def say(self, text: str, wrong: bool = False) -> None:

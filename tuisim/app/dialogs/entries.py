@@ -26,7 +26,7 @@ Entry = TypeVar("Entry")
 
 
 class _List(FieldDialog[Result]):
-    """A list of entries, with a field to add one."""
+    """A dialog with a list of entries, and a field to add one."""
 
     _entries: Sized
 
@@ -46,7 +46,7 @@ class _List(FieldDialog[Result]):
 
 
 class _TextList(_List[None], Generic[Entry]):
-    """A list of entries that are written as text, and can be edited in the field.
+    """A dialog with entries that are texts, and can be edited in the field.
 
     Args:
         entries: The current ones.
@@ -93,7 +93,7 @@ class _TextList(_List[None], Generic[Entry]):
 
     @abstractmethod
     def format_entry(self, entry: Entry) -> str:
-        """Return the text of an entry, for editing."""
+        """Return an entry as the text that the user edits."""
 
     def label(self, entry: Entry) -> str:
         """Return an entry as a line of the list."""
@@ -177,14 +177,18 @@ class BreaksDialog(_TextList[Breakpoint]):
         yield build_form_table(FORMS)
 
     def parse(self, text: str) -> Breakpoint:
-        """Parse a breakpoint."""
+        """Return the breakpoint that a text stands for.
+
+        Raises:
+            ConfigError: the text is no breakpoint, or the program has no such line.
+        """
         entry = parse_break(text, self.run_spec)
         if self._lines:
             entry.check_line(self._lines)
         return entry
 
     def format_entry(self, entry: Breakpoint) -> str:
-        """Return the text of a breakpoint."""
+        """Return a breakpoint as the text that the user edits."""
         return entry.written()
 
     def label(self, entry: Breakpoint) -> str:
@@ -215,7 +219,7 @@ class WatchesDialog(_TextList[str]):
         return parse_watch(text)
 
     def format_entry(self, entry: str) -> str:
-        """Return the expression."""
+        """Return a watched expression as the text that the user edits."""
         return entry
 
 
@@ -225,7 +229,7 @@ def label_pose(pose: Pose) -> str:
 
 
 class SavedPoses(_List[Pose]):
-    """The dialog of the saved poses; it returns the pose to go to.
+    """The dialog of the saved poses; it returns the pose that the user chooses for the robot.
 
     Args:
         here: The current pose of the robot.

@@ -44,17 +44,17 @@ class SkeletonSensor(NamedTuple):
     noun: str
     """The sensor in words."""
     sample: str
-    """Name of its samples."""
+    """Name of the samples that the program prints."""
     value: str
-    """Attribute of its object."""
+    """Attribute of the sensor's object that the program reads."""
     made: str
-    """Class and port, as the prelude makes the object."""
+    """Expression that makes the object, with class and port, as in the prelude."""
     goes_on: str
     """Condition under which the robot drives on."""
     method: str
-    """Method of its object in Pybricks."""
+    """Method of the sensor's object in Pybricks."""
     hub_made: str
-    """Class and port of Pybricks on a PrimeHub."""
+    """Expression that makes the object in Pybricks on a PrimeHub, with class and port."""
     speeds: tuple[int, int] = (50, 50)
     """Speeds of the left and the right wheel in percent."""
     turn_rate_dps: int = 0
@@ -173,7 +173,7 @@ def build_program_text(mat: str, sensor: str, skeleton: Skeleton) -> str:
         case Skeleton.EMPTY:
             return begins + "\n"
         case Skeleton.LIBRARY:
-            # The library does not have the course's own name of the attribute.
+            # The library lacks the attribute of the course, whose name ends in `_pc`.
             words |= {"drive": "tank", "value": reading.value.removesuffix("_pc")}
             magic = replace_mat("# %%{} {}\n".format(*BRICK_MAGIC), "", mat) + _EXPLAINS_BRICK
             return head + magic + "\nimport time\n\n" + (_LIBRARY + _LOG).format(**words)

@@ -53,9 +53,9 @@ class Entry(NamedTuple):
     group: str = ""
     key: str = ""
     words: str = ""
-    """Further words by which it is found."""
+    """Further words by which the entry is found."""
     works: bool = True
-    """Whether it can be chosen with effect now."""
+    """Whether choosing the entry has an effect now."""
 
 
 def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
@@ -120,7 +120,7 @@ class SearchList(Dialog[str]):
         self.query_one(Input).focus()
 
     def on_resize(self) -> None:
-        # It keeps its place while the list becomes shorter.
+        # A fixed height keeps the dialog in place while the list becomes shorter.
         rows = min(len(self._entries), max(_MIN_ROWS, self.size.height // 2))
         self.query_one(".dialog").styles.height = rows + _OTHER_ROWS
         self._list(self.query_one(Input).value)
@@ -162,7 +162,7 @@ class SearchList(Dialog[str]):
 
 
 def _build_line(entry: Entry, cells: int) -> Text:
-    """Return the line of an entry, as wide as `cells`, with the key at its right."""
+    """Return an entry as a line of the list, `cells` wide, with its key at the right."""
     right = f"{entry.group}  {entry.key:>7}" if entry.key else entry.group
     title = cut(entry.title, cells - len(right) - 1)
     line = Text(no_wrap=True, overflow="ellipsis")

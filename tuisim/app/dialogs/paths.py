@@ -17,16 +17,19 @@ def is_path(typed: str) -> bool:
 
 
 def list_completions(typed: str, suffixes: Collection[str]) -> list[tuple[str, str, str]]:
-    """Return the folders and files that begin with a typed path, as entries of a list: value, name, and an empty title.
+    """Return the folders and files that a typed path may become, as entries of a list.
 
     Args:
-        typed: A path; upper and lower case are the same in its last part. The value of a folder ends with `/`.
+        typed: A path; in its last part, upper and lower case are the same.
         suffixes: Suffixes of the files, with their dots.
+
+    Returns:
+        For each the value, which ends with `/` for a folder, the name, and an empty title.
     """
     if typed in ("~", ".", ".."):
         return [(f"{typed}/", f"{typed}/", "")]
     folder, prefix = os.path.split(typed)
-    # Joined as it was typed, so that `~` stays.
+    # The completions begin as the user has typed the path, so that `~` stays.
     stem = typed[: len(typed) - len(prefix)]
     completions = []
     try:
@@ -47,7 +50,7 @@ def list_completions(typed: str, suffixes: Collection[str]) -> list[tuple[str, s
 
 
 def complete_path(typed: str, entries: Collection[tuple[str, str, str]]) -> str:
-    """Return a typed path, made longer by the letters that all of its completions have in common.
+    """Return a typed path, extended by the letters that all of its completions have in common.
 
     Args:
         typed: The path.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tuisim.app.branch import Branch
 
 Answer = tuple[str, str]
-"""A key, and what it does. The key is the result."""
+"""The key of an answer, which is the dialog's result, and in words what it does."""
 
 
 def _compose_answers(answers: Iterable[tuple[str, str, str]]) -> Iterator[Static]:
@@ -61,7 +61,7 @@ class Question(Dialog[str]):
 
     @property
     def keys(self) -> tuple[KeyWord, ...]:
-        """The answers, then Escape."""
+        """The keys of the answers, then Escape, for the footer."""
         return (*((key, does[:1].lower() + does[1:]) for key, does in self._answers), *super().keys)
 
     def on_key(self, event: events.Key) -> None:
@@ -130,24 +130,24 @@ class BranchQuestion(Dialog[str]):
 
     @property
     def keys(self) -> tuple[KeyWord, ...]:
-        """The keys of the answers that are offered, then Escape."""
+        """The keys of the offered answers, then Escape, for the footer."""
         return tuple(word for word in super().keys if self._restart or word[0] != "r")
 
     def action_likely(self) -> None:
-        """Return the first answer."""
+        """Close the dialog with its first answer."""
         self.dismiss(RESTART if self._restart and self._is_edited else BRANCH)
 
     def action_branch(self) -> None:
         self.dismiss(BRANCH)
 
     def action_restart(self) -> None:
-        """Return `RESTART`, if that is offered."""
+        """Close the dialog with the result `RESTART`, if a restart is offered."""
         if self._restart:
             self.dismiss(RESTART)
 
 
 class LeaveQuestion(Dialog[bool]):
-    """The dialog that asks whether to quit during a run; it returns True to quit."""
+    """The dialog that asks whether to quit during a run; it returns True if the user wants to quit."""
 
     TITLE_TEXT: str = "Quit?"
     HINT: str = "y quits · n stays"
@@ -198,17 +198,18 @@ class LineInput(Input):
 
     @on(Input.Changed)
     def _complete(self, event: Input.Changed) -> None:
-        # Done synchronously: Textual's own suggester leaves a task behind, with a warning, when the field closes first.
+        # The completion is found synchronously: Textual's own suggester leaves a task behind, with a warning, when the
+        # field closes first.
         if (completion := complete_line(event.value, self._words)) is not None:
             self.post_message(SuggestionReady(event.value, completion))
 
 
 def complete_line(line: str, words: Sequence[str]) -> str | None:
-    """Return the line with its last word completed, None if there is no completion.
+    """Return a line with its last word completed; None if there is no completion.
 
     Args:
         line: The typed text.
-        words: Possible completions; the first one with the prefix is used.
+        words: Possible completions; the first one that begins with the last word is used.
     """
     match = _LAST_WORD.search(line)
     if match is None:

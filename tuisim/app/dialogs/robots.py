@@ -89,7 +89,7 @@ class RobotPicker(Chooser):
                 yield RobotParts()
 
     def clear_preview(self) -> None:
-        """Show no robot."""
+        """Remove the picture and the parts of the previewed robot."""
         self.query_one(RobotParts).show([])
         self.query_one(RobotPicture).show(None)
 
@@ -105,7 +105,7 @@ class RobotPicker(Chooser):
         picture.show(robot)
 
     def _find_robot(self, name: str) -> RobotSpec | None:
-        """Return a robot by name or path; None for a file that has changed since it was listed."""
+        """Return the robot with a name or a path; None for a file that has changed since it was listed."""
         if name and name not in self._robots:
             try:
                 self._robots[name] = load_robot(name)
@@ -115,7 +115,7 @@ class RobotPicker(Chooser):
 
 
 class RobotPicture(PixelView):
-    """A robot from above, its front at the top."""
+    """The picture of a robot from above, with its front at the top."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -127,7 +127,7 @@ class RobotPicture(PixelView):
         self.draw_picture()
 
     def draw_picture(self) -> None:
-        """Draw the robot for the current size."""
+        """Draw the robot again for the present size of the widget."""
         if self._find_robot is None:
             self.clear_picture()
         elif self.size:
@@ -168,7 +168,7 @@ class RobotParts(LinesPanel):
 
 
 def describe_parts(robot: RobotSpec) -> Iterator[Line]:
-    """Yield a line for the wheels, each further motor and each sensor, with its port and its place."""
+    """Yield a line each for the wheels, every further motor and every sensor, with its port and its position."""
     if robot.has_wheels:
         yield _build_line(
             None,

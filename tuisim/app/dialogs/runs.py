@@ -137,7 +137,7 @@ def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
     line = Text(no_wrap=True, overflow="ellipsis")
     for name, text in _arrange(texts, columns).items():
         line.append(f"{' ' if line else ''}{text}", styles.get(name, ""))
-    # Of most runs the summary says the end, which has its own column.
+    # The summary of most runs only repeats how they ended, which has its own column.
     if columns >= _MIN_NOTE_COLUMNS and (
         note := run.tags
         or ("" if run.end is End.TIME_LIMIT or run.summary == end_label(run.end) else run.summary)
@@ -205,7 +205,7 @@ class RunChooser(ListDialog):
             yield Static("Loading the list …", id="message", markup=False)
 
     def on_mount(self) -> None:
-        """Read the list in the background: there may be thousands of runs."""
+        """Read the list of runs in the background, because there may be thousands."""
         super().on_mount()
         self.wait_while(_load_runs, self._fill, lambda error: self.say(str(error)))
 
@@ -261,7 +261,7 @@ class RunChooser(ListDialog):
         background.run(self, work, show, lambda _: show(None), group="way", exclusive=True)
 
     def _show_way(self, run_id: str, picture: Pixels | None) -> None:
-        # A dialog that is being closed loses its view first.
+        # A dialog that is being closed may have no view any more.
         if not self.is_attached or not self.query(PixelView) or run_id != self._looked_at:
             return
         view = self.query_one(PixelView)
@@ -303,7 +303,7 @@ class RunsChooser(RunChooser):
     def __init__(self) -> None:
         super().__init__()
         self._marked: list[str] = []
-        """Ids, in the order in which they were marked."""
+        """Ids of the marked runs, in the order in which they were marked."""
 
     def on_descendant_focus(self) -> None:
         """Show in the frame which key marks runs: in the text field, space separates words instead."""
@@ -385,7 +385,7 @@ class Differences(Dialog[bool]):
                 table.add_row(Text(name), Text(what))
         with VerticalScroll():
             yield Static(table)
-            # The lines of the programs have the whole width.
+            # The lines of the programs are below the table, where they have the whole width.
             if lines := [what for name, what in rows if not name]:
                 yield Static(Text("\n".join(["", *lines])))
 

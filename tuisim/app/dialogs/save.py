@@ -83,10 +83,10 @@ class FileDialog(Dialog[Path]):
         return path
 
     def write(self, target: Path) -> None:
-        """Write the file, then close the dialog or call `report_failure`.
+        """Write the file; then close the dialog, or call `report_failure`.
 
         Raises:
-            TuisimError: it cannot be written.
+            TuisimError: the file cannot be written.
         """
 
     @on(Input.Changed)
@@ -116,7 +116,7 @@ class FileDialog(Dialog[Path]):
             self.report_failure(str(error))
 
     def report_failure(self, text: str) -> None:
-        """Show why nothing was written."""
+        """Show why the file was not written."""
         self._writing = False
         self.say(text, wrong=True)
 
@@ -228,7 +228,7 @@ class ExportDialog(FileDialog):
         return check_target(path)
 
     def write(self, target: Path) -> None:
-        """Write the file in the background: it may be large."""
+        """Write the file in the background, because it may be large."""
         self.say("Writing …")
         work = partial(_write_log, self._run_id, target, self._telemetry)
         report = partial(self._report_written, target)

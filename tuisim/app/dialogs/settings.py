@@ -41,7 +41,7 @@ def format_value(value: Scalar) -> str:
 
 
 def describe_setting(setting: Setting) -> str:
-    """Return what a setting does, and what it accepts unless the help has listed it."""
+    """Return the help of a setting, followed by its allowed values if the help does not list them."""
     listed = all(
         str(word) in setting.help for word in setting.value.choices or [setting.value.allowed]
     )
@@ -108,7 +108,7 @@ class SettingsScreen(Dialog[None]):
 
     @property
     def _selected_setting(self) -> Setting:
-        """The selected setting."""
+        """The setting that is selected in the list."""
         listed = self.query_one(OptionList)
         name = listed.get_option_at_index(listed.highlighted or 0).id
         return SETTINGS[name or THEME]
@@ -195,7 +195,7 @@ class SettingsScreen(Dialog[None]):
 
 
 def _build_line(setting: Setting, config: UserConfig) -> Table:
-    """Return the line of a setting: its name, its value, and whether that is the user's own."""
+    """Return a setting as a line of the list: its name, its value, and whether the user has set it."""
     value = format_value(config.value(setting.path)) or "–"
     return name_and_title(
         setting.name, f"{value}  (yours)" if setting.path in config.written else value, _NAME_CELLS

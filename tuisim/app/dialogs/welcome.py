@@ -86,7 +86,7 @@ class Welcome(Dialog[Begin | Recent]):
         listed = self.query_one(OptionList)
         listed.focus()
         if len(self._entries) > len(Begin):
-            # Below the heading.
+            # Select the first entry below the heading.
             listed.highlighted = len(Begin) + 1
 
     def _build_options(self) -> Iterator[Option | None]:
@@ -98,7 +98,7 @@ class Welcome(Dialog[Begin | Recent]):
             yield _build_option(number, *words)
 
     def _collect_bindings(self) -> list[Binding]:
-        # The frame names the numbers. Those keys of the app that the text names work here as well.
+        # The frame already names the number keys; the text names keys of the app, which work here as well.
         own = (binding for binding in super()._collect_bindings() if not binding.key.isdigit())
         return [*own, *self._app_keys]
 

@@ -106,30 +106,30 @@ class CodeArea(TextArea):
         command: EditorCommand
 
     class LookedUp(Message):
-        """Posted when the lookup of names begins or ends, see `is_completing`."""
+        """Posted when a look-up of names begins or ends, see `is_completing`."""
 
     class LettersChanged(Message):
         """Posted when letters begin to be typed into the text, or become keys of the app again."""
 
     @dataclass
     class GutterClicked(Message):
-        """Posted when a line number was clicked."""
+        """Posted when the user has clicked a line number."""
 
         line: int
 
     def __init__(self) -> None:
-        # Needed before the base class asks for the first line.
+        # The base class reads the first line in its `__init__`, which needs these attributes.
         self._colouring = Colouring()
         self._breaks: Mapping[int, str] = {}
         self._lit = self._error = 0
         self.is_completing = False
         """Whether names are looked up: keys wait for them, however long it takes."""
         self.unknown_word: str | None = None
-        """The word at the cursor if no possible name begins with it, until something else is typed."""
+        """The word at the cursor if no possible name begins with it; None after something else was typed."""
         self.path = ""
         """Path of the program's file, or its name."""
         self.candidates = CandidateList()
-        """The list of names; it takes its keys from here."""
+        """The list of possible names; the text passes keys on to it."""
         self._unknown: tuple[UnknownName, ...] = ()
         self.can_be_typed_in = False
         """Whether a click makes the next letter start typing."""
@@ -169,7 +169,7 @@ class CodeArea(TextArea):
         self.scroll_to(y=top, animate=False, force=True)
 
     def edit(self, edit: Edit) -> EditResult:
-        """Change the text; see `TextArea`."""
+        """Apply an edit to the text, and update colours and marks; see `TextArea`."""
         self._colouring.forget_line(edit.top[0])
         text = edit.text.translate(_GUARD)
         guarded = Edit(text, edit.from_location, edit.to_location, edit.maintain_selection_offset)
@@ -256,10 +256,10 @@ class CodeArea(TextArea):
         return self._unknown
 
     def set_unknown(self, names: tuple[UnknownName, ...]) -> None:
-        """Mark names as not defined."""
+        """Mark these names in the text as not defined."""
         if names != self._unknown:
             self._unknown = names
-            # Its lines are drawn anew.
+            # This clears the cache of drawn lines.
             self.notify_style_update()
             self.refresh()
 
@@ -287,7 +287,7 @@ class CodeArea(TextArea):
             self.refresh(*(Region(0, y, self.size.width, 1) for y in visible))
 
     def scroll_to_line(self, line: int) -> None:
-        """Scroll a line into view."""
+        """Scroll so that a line, from 1, is visible."""
         rows = self._find_rows(line)
         height = self.scrollable_content_region.height
         if rows and not (
@@ -381,7 +381,7 @@ class CodeArea(TextArea):
             text = Strip.join([cut_strip(text, start - 1, style), Strip([Segment(" ", style)], 1)])
         return Strip.join([text.crop(0, start), Strip(segments)]).extend_cell_length(room, style)
 
-    # Keys and mouse
+    # The following methods handle keys and the mouse.
 
     @property
     def typing(self) -> bool:
@@ -419,13 +419,13 @@ class CodeArea(TextArea):
         if not self.typing:
             self._begin_typing(event)
             return
-        # What was typed just before may not have been reported yet.
+        # The message about the last edit may not have arrived yet: update the list of names first.
         self.follow_word()
         self._set_unknown_word(None)
         if event.character in _NAME_ENDINGS and self.candidates.can_complete(
             self._find_word() or ""
         ):
-            # The user types on instead of choosing from the list.
+            # The user types on without pressing Enter: the chosen name completes the word first.
             self.replace_word(self.candidates.take_key("enter"))
         elif self.candidates.takes_key(event):
             self._consume_event(event)
@@ -524,7 +524,7 @@ class CodeArea(TextArea):
         self._announce_lookup()
 
     def _announce_lookup(self) -> None:
-        # This widget's own messages wait for the key that it handles.
+        # The parent gets the message: messages to this widget wait until its key has been handled.
         if isinstance(self.parent, Widget):
             self.parent.post_message(self.LookedUp())
 
@@ -557,12 +557,12 @@ class CodeArea(TextArea):
             self.candidates.filter(word, self._locate_word(word))
 
     def on_blur(self) -> None:
-        """Close the list of names; letters are keys of the app again."""
+        """When the text loses the focus, close the list of names, and make letters keys of the app again."""
         self.candidates.close()
         self.await_letters(False)
 
     def insert_text(self, text: str) -> None:
-        """Replace the selection with a text."""
+        """Replace the selected text, or insert a text at the cursor."""
         self.replace(text, *sorted(self.selection), maintain_selection_offset=False)
 
     def _change_lines(self, change: text_lines.Change) -> None:
@@ -621,7 +621,7 @@ _WHILE_TYPING = {
 _CHANGES: Mapping[str, text_lines.Change] = {
     "tab": text_lines.indent_lines,
     "shift+tab": text_lines.outdent_lines,
-    # What terminals send for ctrl and the slash key.
+    # Terminals send this for ctrl and the slash key.
     "ctrl+underscore": text_lines.toggle_comments,
     "ctrl+slash": text_lines.toggle_comments,
 }

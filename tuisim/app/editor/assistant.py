@@ -43,9 +43,10 @@ class Assistant:
         self._names: tuple[UnknownName, ...] = ()
         self._attributes: tuple[UnknownName, ...] = ()
         self._fault: UnknownName | None = None
-        """The line that is not Python."""
+        """The mark of a line that is not valid Python; None without one."""
         self._fresh_fault: UnknownName | None = None
-        """The same in the line that is typed in; it is marked once the cursor has left the line."""
+        """The mark of the line with the cursor if that is not valid Python; it is shown once the cursor has left
+        the line."""
         self._signature: completion.Signature | None = None
         self._check_timer: Timer | None = None
         self._ask_timer: Timer | None = None
@@ -97,7 +98,7 @@ class Assistant:
             )
 
     def follow_cursor(self) -> None:
-        """After the cursor has moved, shorten the list of names and look up the signature of the call around it."""
+        """After the cursor has moved, update the list of names and the signature of the call around the cursor."""
         self._area.follow_word()
         row, column = self._area.cursor_location
         if self._fresh_fault is not None and self._fresh_fault.row != row:
@@ -123,7 +124,7 @@ class Assistant:
             background.start(completion.preload)
 
     def stop(self) -> None:
-        """When typing ends, close the list of names and forget the signature."""
+        """When typing ends, close the list of names and remove the signature."""
         self._area.candidates.close()
         self._signature = None
 

@@ -141,7 +141,7 @@ class CandidateList(Widget):
         self._word = ""
         self._opened_s = 0.0
         self.is_offered = False
-        """Whether nobody asked for the open list: then only enter, tab and a click put a name in."""
+        """Whether the list opened by itself: then only enter, tab and a click write a name into the text."""
         self.begin = (0, 0)
         """Row and column of the word that is completed."""
 
@@ -190,7 +190,7 @@ class CandidateList(Widget):
         self.refresh()
 
     def close(self) -> None:
-        """Hide the list."""
+        """Hide the list of names."""
         self._candidates = self._shown = ()
         self.display = False
 

@@ -77,11 +77,11 @@ class Candidate:
 
     name: str
     signature: str = ""
-    """The parameters in parentheses; empty for what is not called."""
+    """The parameters in parentheses; empty for a name that is not a function."""
     kind: str = ""
-    """What it is if it is not called, such as `property`."""
+    """The type of a name that is not a function, such as `property`."""
     help: str = ""
-    """The first sentence of its docstring."""
+    """The first sentence of the name's docstring."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,7 +204,7 @@ def find_members(text: str, path: str, row: int, column: int) -> frozenset[str] 
             lambda: script.complete(first + row + 1, column + 1), []
         )
         members = frozenset(completion.name for completion in names)
-        # Some classes make their attributes when they are asked for them.
+        # A class with `__getattr__` may have attributes that Jedi does not know.
         return None if not members or "__getattr__" in members else members | _COURSE_ATTRIBUTES
 
 
@@ -216,7 +216,7 @@ def _is_library_object(kind: Any) -> bool:
 
 
 def is_ready() -> bool:
-    """Return whether Jedi is imported already, so that it answers without delay."""
+    """Return whether Jedi is already imported, so that look-ups are quick."""
     return "jedi" in sys.modules
 
 
@@ -229,7 +229,7 @@ def _ask_jedi(ask: Callable[[], Result], otherwise: Result) -> Result:
     """Return the result of a look-up with Jedi, or `otherwise` if Jedi fails."""
     try:
         return ask()
-    # Jedi has errors of its own with some programs that are not finished.
+    # Jedi itself fails with some unfinished programs.
     except Exception:
         return otherwise
 
@@ -255,7 +255,7 @@ def _build_script(text: str, path: str) -> tuple[Script, int]:
     ]
     project = jedi.Project(folder, added_sys_path=own, smart_sys_path=False)
     environment = InterpreterEnvironment()
-    # Compiled modules are imported to look into them: only those of Python and of installed packages.
+    # Jedi imports compiled modules to read their names: let it import only those of Python and of installed packages.
     installed = [
         *dict.fromkeys(map(sysconfig.get_path, ("stdlib", "platstdlib", "purelib", "platlib")))
     ]
@@ -276,7 +276,7 @@ def _find_pybricks(text: str) -> str:
 def _is_likely(completion: Completion, word: str) -> bool:
     if completion.name.startswith("_") and not word.startswith("_"):
         return False
-    # A property of a class is one of Python's.
+    # Jedi says that a property is defined in `builtins`.
     if completion.name in _SIMULATED_NAMES and _find_module(completion).startswith(
         (_PYBRICKS, "builtins")
     ):
@@ -320,7 +320,7 @@ def _rank(completion: Completion, word: str, owner: str) -> tuple[int, ...]:
     is_inherited = is_internal = False
     if owner and use == len(_USUAL):
         is_inherited = not _ask_jedi(lambda: str(completion.full_name), "").startswith(f"{owner}.")
-        # What methods assign, and what its author has not described, is seldom meant.
+        # The user seldom means an attribute that a method assigns, or one without a docstring.
         is_internal = completion.type == "statement" or not _ask_jedi(
             partial(completion.docstring, raw=True), ""
         )
@@ -352,7 +352,7 @@ def _describe_completion(completion: Completion) -> Candidate:
 
 
 def _format_parameter(parameter: Any) -> str:
-    """Return a parameter without its type."""
+    """Return the text of a parameter of a signature, without its type."""
     text: str = parameter.to_string()
     name, _, default = re.sub(r":[^=]*", "", text, count=1).partition("=")
     return f"{name.strip()}={default.strip()}" if default else name.strip()

@@ -55,9 +55,10 @@ class Document:
         self._panel_area = panel_area
         self._loader = loader
         self._program: Program | None = None
-        """The next program to run unless the text was edited."""
+        """The program of the next run, if the text was not edited since."""
         self._name = self._path = self._text = self._saved = self._applied = ""
-        """File name; path; text as edited; as in the file; as it was when `_program` was made from it."""
+        """The file's name; its path; the text as edited; as in the file; and as it was when `_program` was made
+        from it."""
         self._form = TextFormat()
         self._seeks_error = False
         """Whether the code panel is to move to the marked error as soon as it is there."""
@@ -69,7 +70,7 @@ class Document:
         self._error_line = 0
         """Line of the current run's text at which it ended with an error; 0 for none, or once the text has changed."""
         self._error_words = ""
-        """What is wrong at that line, as far as it is known."""
+        """The error at that line in words; empty if it is unknown."""
         self._ran: tuple[Recording, str] | None = None
         """A recording, and the text that it ran, as it was in the editor."""
 
@@ -80,10 +81,10 @@ class Document:
 
     @property
     def dirty(self) -> bool:
-        """Whether there are unsaved changes."""
+        """Whether the text of the program has unsaved changes."""
         return self._text != self._saved
 
-    # The open program
+    # The following methods open programs.
 
     def begin(self, asks: bool) -> None:
         """Show the open program at the start of the app.
@@ -99,7 +100,7 @@ class Document:
     def open_at_mistake(self) -> None:
         """If the opened program has a mistake, show the line of the mistake."""
         words = self.go_to_mistake() if self._program else ""
-        # The frame of a narrow panel has no room for all of it.
+        # The output shows the message, too, because the frame of a narrow code panel cuts it.
         if words and (output := self._panel_area.output):
             output.note(f"— {words}")
 
@@ -169,7 +170,7 @@ class Document:
     def _go_to_error(self) -> None:
         if self._seeks_error and self._panel_area.code:
             self._seeks_error = False
-            # A new panel has no size yet.
+            # A new panel has no size yet, so it cannot scroll.
             self._app.call_after_refresh(self._panel_area.code.go_to_error)
 
     def run_changed(self) -> None:
@@ -242,7 +243,7 @@ class Document:
         when = time.strftime("%d %b %H:%M", time.localtime(draft.written_s))
         lines = count_differing_lines(self._text, draft.text)
         text = f"{name} was edited on {when} and not saved: {counted(lines, 'line differs', 'lines differ')}."
-        # No key of the app, which may be pressed before the question is seen.
+        # The answers have no keys of the app, which the user may press before the question is visible.
         answers = (("r", "Restore the edited text"), ("ctrl+d", "Discard it"))
         self._app.push_screen(
             Question("Unsaved work", text, answers),
@@ -298,7 +299,7 @@ class Document:
         self.show()
 
     def apply(self) -> bool:
-        """Make the edited text the next program to run, or mark and report its error.
+        """Make the edited text the program of the next run; if it cannot run, mark and show its error.
 
         Returns:
             Whether the program can run.
@@ -337,7 +338,7 @@ class Document:
 
     @property
     def _lacks_mat(self) -> bool:
-        """Whether the program was opened without the mat of its magic line, and nobody has chosen another one."""
+        """Whether the program was opened without the mat in its magic line, and the user has chosen no other one."""
         settings = self._run_controller.next_run.settings
         is_usual = settings["background"] == Settings()["background"]
         return is_usual and find_wrong_mat(self._text, self._name, settings["mats"]) is not None
@@ -458,7 +459,7 @@ class Document:
 
     @property
     def _has_own_file(self) -> bool:
-        """Whether the program is a file of the student's own."""
+        """Whether the program is in a file of the student's own, and no example."""
         return bool(self._path) and self._is_file and not is_protected(Path(self._path))
 
     def _try_write(self, path: Path) -> bool:
@@ -491,7 +492,7 @@ class Document:
         write_text(path, self._text, self._form)
 
     def _finish_save(self, path: Path, then: Callable[[], None]) -> None:
-        """Note that the text was saved to a file, and show a notice, also of a mistake in it; then call `then`."""
+        """Handle that the text was saved to a file: show a notice, also of a mistake in the text, and call `then`."""
         moved = str(path) != self._path
         self._mark_saved(path)
         mistake = self._find_mistake()
@@ -505,7 +506,7 @@ class Document:
             self._app.say(f"{self._name} is saved")
         then()
 
-    # Changes of the file on disk
+    # The following methods handle changes of the file on disk.
 
     def check_conflict(self, path: Path) -> bool:
         """If a file that changed on disk has unsaved edits in the app, ask which version to keep.

@@ -84,7 +84,7 @@ class Colouring:
         self._before: list[str] = [""]
 
     def forget_line(self, line: int) -> None:
-        """Note that a line, from 0, was edited: the colours of the lines from it on are computed again."""
+        """Drop the stored colours of a line, from 0, that was edited, and of all lines below it."""
         del self._before[line + 1 :]
 
     def color_line(self, lines: Sequence[str], line: int) -> list[Span]:

@@ -31,7 +31,7 @@ class TextFormat:
     encoding: str = "utf-8"
     """Python's name of the encoding; `utf-8` also for a file with a byte order mark."""
     has_mark: bool = False
-    """Whether it begins with a byte order mark."""
+    """Whether the file begins with a byte order mark."""
     newline: str = "\n"
     """The line end of most lines."""
 
@@ -60,10 +60,10 @@ _ENDS = {"\n": r"(?<!\r)\n", "\r\n": r"\r\n", "\r": r"\r(?!\n)"}
 
 
 def write_text(path: Path, text: str, form: TextFormat) -> None:
-    """Write a program atomically; an existing file keeps its permissions, and a link stays a link.
+    """Write a program completely or not at all; an existing file keeps its permissions, and a link stays a link.
 
     Raises:
-        ConfigError: the file cannot be written, or not in its encoding.
+        ConfigError: the file cannot be written, or its encoding lacks a character of the text.
     """
     data = (codecs.BOM_UTF8 if form.has_mark else b"") + _encode_text(text, form, path)
     try:
@@ -93,8 +93,10 @@ def _encode_text(text: str, form: TextFormat, path: Path) -> bytes:
 
 
 def _is_declared(encoding: str, text: str) -> bool:
-    """Return whether Python would read a text in this encoding: the default one, or the one named in the first two
-    lines."""
+    """Return whether Python would read a text in an encoding.
+
+    It would if this is the default encoding, or the one that the first two lines of the text name.
+    """
     return encoding == "utf-8" or encoding in "\n".join(text.split("\n", 2)[:2])
 
 
@@ -117,7 +119,7 @@ class Draft:
     """Absolute path of the program; empty for a new one without a file."""
     text: str
     written_s: float
-    """When it was stored, in seconds since 1970."""
+    """When the draft was stored, in seconds since 1970."""
 
 
 def find_program_data(folder: str, path: str) -> Path:
@@ -135,14 +137,18 @@ def find_program_data(folder: str, path: str) -> Path:
 
 
 def write_json(file: Path, data: object) -> None:
-    """Write data atomically to a file that only its owner may read; raises OSError."""
+    """Write data to a file that only its owner may read, completely or not at all.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
     make_private_folder(file.parent)
     with replacing(file, owner_only=True) as handle:
         handle.write(json.dumps(data).encode("ascii"))
 
 
 def keep_draft(path: str, text: str) -> None:
-    """Store the text of a program, replacing an older draft.
+    """Store the text of a program as its draft, in place of an older one.
 
     Raises:
         ConfigError: the draft cannot be written.
@@ -159,14 +165,14 @@ def keep_draft(path: str, text: str) -> None:
 
 
 def find_draft(path: str) -> Draft | None:
-    """Return the draft of a program, None if there is no readable one."""
+    """Return the stored draft of a program; None if there is none, or it cannot be read."""
     path = _locate(path)
     draft = _read_draft(find_program_data(FOLDER, path))
     return draft if draft and draft.path == path else None
 
 
 def list_drafts() -> list[Draft]:
-    """Return all drafts, the newest first."""
+    """Return the stored drafts of all programs, the newest first."""
     drafts = filter(None, map(_read_draft, (session_folder() / FOLDER).glob("*.json")))
     return sorted(drafts, key=lambda draft: -draft.written_s)
 

@@ -67,7 +67,10 @@ def toggle_comments(lines: Sequence[str]) -> list[str]:
 
 
 def find_matches(lines: Sequence[str], search: str) -> list[tuple[int, int]]:
-    """Return the matches of a text, as (line, column) from 0; case matters only if the text has capitals."""
+    """Return where lines contain a search text, as (line, column) from 0.
+
+    Upper and lower case are different only if the search text has capitals.
+    """
     if not search:
         return []
     flags = re.IGNORECASE if search == search.lower() else 0
@@ -78,7 +81,7 @@ def find_matches(lines: Sequence[str], search: str) -> list[tuple[int, int]]:
 
 
 def count_differing_lines(text: str, other: str) -> int:
-    """Return how many lines differ between two texts."""
+    """Return the number of lines that differ between two texts."""
     matcher = SequenceMatcher(None, source_lines(text), source_lines(other), autojunk=False)
     changes = (op for op in matcher.get_opcodes() if op[0] != "equal")
     return sum(
@@ -87,7 +90,7 @@ def count_differing_lines(text: str, other: str) -> int:
 
 
 def count_same_lines(lines: Sequence[str], other: Sequence[str]) -> int:
-    """Return how many lines two texts have in common at their start."""
+    """Return the number of lines at the start of two texts that are the same."""
     pairs = enumerate(zip(lines, other, strict=False))
     return next(
         (index for index, (ours, theirs) in pairs if ours != theirs), min(len(lines), len(other))

@@ -24,7 +24,7 @@ _EDGES = 3
 _MIN_COLUMNS = 20
 _ITEM = "• "
 STANDS_OUT = Style(bold=True, color=palette.WHITE)
-"""A word of the question."""
+"""Style of the words of the question."""
 _SECTION, _PAGE, _TEXT = (
     Style(bold=True, color=palette.BLUE),
     Style(color=palette.SOFT),
@@ -82,14 +82,14 @@ class AnswerList(OptionList):
             text = _build_passage(answer, columns, lines if row else _FIRST_LINES, self._asked)
             if self._asked:
                 text.highlight_regex(self._asked, STANDS_OUT)
-            # A section is named once above the answers in it that follow each other.
+            # Consecutive answers of one section share the heading above the first.
             item = text if section == above else _build_heading(answer, columns).append_text(text)
             yield item.append("\n" * gap)
             above = section
 
     @property
     def chosen(self) -> SearchResult | None:
-        """The highlighted answer; None without answers."""
+        """The answer that is highlighted; None without answers."""
         return self._found[self.highlighted] if self.highlighted is not None else None
 
 

@@ -50,7 +50,7 @@ def _list_keys(actions: Iterable[Action[Any, Any]]) -> list[tuple[str, ...]]:
 
 
 def _load_actions(module: str) -> Mapping[str, Action[Any, Any]]:
-    # Both tables name the key that opens this guide.
+    # The table is imported by its name, because its actions import this guide in turn.
     table: Mapping[str, Action[Any, Any]] = import_module(module).ACTIONS
     return table
 
@@ -58,7 +58,7 @@ def _load_actions(module: str) -> Mapping[str, Action[Any, Any]]:
 def list_app_keys() -> Table:
     """Return the table of the app's keys; where the user has chosen other keys, it has those."""
     actions = _load_actions("tuisim.app.actions.keys")
-    # The app and `tuisim config` tell what is wrong.
+    # The app and `tuisim config` report wrong keys, so the guide need not.
     with suppress(ConfigError):
         actions = apply_keys(actions, load_config())
     rows = [
@@ -69,7 +69,7 @@ def list_app_keys() -> Table:
 
 
 def list_analyser_keys() -> Table:
-    """Return the keys of the analyser."""
+    """Return the table of the analyser's keys."""
     return Table(
         ("key", "does", "group"),
         _list_keys(_load_actions("tuisim.app.analyser.actions.keys").values()),
@@ -77,14 +77,14 @@ def list_analyser_keys() -> Table:
 
 
 def list_editor_keys() -> Table:
-    """Return the keys of the code panel."""
+    """Return the table of the keys in the code panel."""
     return Table(
         ("key", "does"), [(" ".join(map(code, keys.split())), does) for keys, does in EDITOR_KEYS]
     )
 
 
 def list_panels() -> Table:
-    """Return the panels, their keys and from which size of terminal they are shown at the start."""
+    """Return the table of the panels: the key of each, and from which size of terminal it is shown at the start."""
     rows = [
         (
             code(label_of_key(panel.key)),

@@ -50,7 +50,7 @@ class Topic:
     """The page of the guide about a panel, and the groups of keys that concern the panel."""
 
     page: str = ""
-    """Empty for the page with every key."""
+    """Name of the page; empty for the page with every key."""
     groups: tuple[str, ...] = ()
     """The groups of keys that stand above the page, or before all others."""
 
@@ -141,13 +141,13 @@ class _Contents(Tree[Place | None]):
         self.root.add_leaf(words, None)
 
     def go_to(self, place: Place) -> None:
-        """Move the cursor to a page, without opening it."""
+        """Move the cursor to a page or section, without opening it."""
         node = next((node for node in self.walk() if node.data == place), None)
         if node is not None:
             self.move_cursor(node)
 
     def walk(self) -> list[TreeNode[Place | None]]:
-        """Return every node below the root, level by level."""
+        """Return every node of the tree below its root, level by level."""
         nodes = []
         level = list(self.root.children)
         while level:
@@ -157,7 +157,7 @@ class _Contents(Tree[Place | None]):
 
 
 class _Page(VerticalScroll):
-    """A page of the guide, drawn for the width of the widget, and again when that changes.
+    """The widget that shows a page of the guide, drawn for its width.
 
     Args:
         keys: The page with every key.
@@ -169,13 +169,13 @@ class _Page(VerticalScroll):
         self._keys = keys
         self._topic = topic
         self.place: Place = (topic.page, "")
-        """What is in view, and the section that was gone to."""
+        """The page in view, and the section to which the user went."""
         self._with_keys = bool(topic.page)
         """Whether the keys of the topic stand above the page."""
         self._passage = ""
         """What a search has found in view, in Markdown."""
         self.drawn_columns = 0
-        """The columns that it was drawn for; 0 if it was not in view."""
+        """The number of columns for which the page was drawn; 0 if it was not visible."""
         self._text = Static(markup=False)
 
     def compose(self) -> ComposeResult:
@@ -186,7 +186,7 @@ class _Page(VerticalScroll):
             self._draw()
 
     def show(self, place: Place, matches: SearchResult | None = None) -> None:
-        """Show another page or section, or what a search has found there."""
+        """Show another page or section; with `matches`, the passage that a search has found there."""
         self.place = place
         self._with_keys = False
         self._passage = matches.passage if matches else ""
@@ -409,7 +409,7 @@ class GuideScreen(Dialog[None]):
         if not self._found:
             self._contents.say(_SEARCHING)
         self._frame(reading=False)
-        # The first search loads every command, for its page.
+        # The first search takes long: it loads every command to build the page about commands.
         work: Callable[[], list[SearchResult]] = partial(search, question)
         background.run(self, work, partial(self._answer, question), group="search", exclusive=True)
 

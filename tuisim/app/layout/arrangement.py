@@ -86,12 +86,12 @@ class _Plan:
     """The panels that a preset shows, and the forms in which they are arranged."""
 
     core: tuple[str, ...]
-    """Panels that it is made for, the most important first."""
+    """Panels that the preset always shows, the most important first."""
     fill: tuple[str, ...]
-    """Panels for what space is left."""
+    """Panels that fill the remaining space."""
     forms: tuple[Form, ...]
     low: tuple[str, ...]
-    """What a low terminal shows instead, the most important first."""
+    """Panels that a low terminal shows instead, the most important first."""
     beside: tuple[str, ...] = ()
     """Further panels, one for each column that the terminal has beyond those of `core`."""
     compact: bool = True
@@ -173,7 +173,8 @@ def choose_panels(
     if is_low(preset, width, height):
         return panels, []
     if preset == Preset.STANDARD and not is_tall(width, height):
-        # The strip below a wide world gets no fuller: its panels would be too narrow. A board has no room beside it.
+        # The strip below a wide world gets no more panels, which would be too narrow; a board has no room for a side
+        # column.
         is_board = size == TerminalSize.MEDIUM and "chart" in panels
         fill = [] if is_board else select_panels(fill, PanelPlace.SIDE)
     return panels, fill
@@ -220,7 +221,7 @@ def _fit_panels(
 
 
 def measure_mat(box: PanelBox) -> float:
-    """Return the area of the mat in a world panel, in cells."""
+    """Return the area that the mat has in a world panel of this box, in cells."""
     width, height = box.width - EDGES, box.height - EDGES - TIME_BAR_ROWS
     return (
         min(width, 2 * height * FIELD_WIDTH_MM / FIELD_HEIGHT_MM) ** 2
@@ -302,7 +303,7 @@ def _score_forms(
     if is_cramped or is_low(preset, width, height):
         forms: tuple[Form, ...] = (build_low,)
     elif is_standard and is_medium and "chart" in panels and not is_tall(width, height):
-        # A larger world would leave too little to the chart.
+        # No other form is tried: a larger world would leave too little to the chart.
         forms = (build_board,)
     else:
         forms = plan.forms
@@ -396,7 +397,7 @@ class KeptLayout:
 
 
 def load_layout(size: TerminalSize) -> KeptLayout:
-    """Return the stored arrangement for a size of the terminal, without its damaged or unknown parts."""
+    """Return the stored arrangement for a size of the terminal, without damaged or unknown parts of it."""
     size_table = _check_table(get_preference(_NAME)).get(size)
     layout_table = _check_table(size_table)
     layout = KeptLayout()
@@ -414,7 +415,7 @@ def load_layout(size: TerminalSize) -> KeptLayout:
 
 def save_layout(size: TerminalSize, layout: KeptLayout) -> None:
     """Store an arrangement for a size of the terminal; if the folder cannot be written, it lasts until the app ends."""
-    # A list: the order counts, and the file sorts the keys of tables.
+    # The panels are stored as a list, since their order counts and the file sorts the keys of tables.
     panels = [[panel, on] for panel, on in layout.asked.items()]
     with suppress(OSError):
         keep(

@@ -38,14 +38,16 @@ _CODE_COLS = 64
 """Columns in which most lines of code are whole, with the values beside them."""
 _CHART_COLS = 80
 _LEAST_CODE_COLS = 46
-"""Columns that a chart gets in the strip of a wide screen, if at least so many are left to the code."""
+"""A chart in the strip of a wide screen gets `_CHART_COLS` columns, if at least `_LEAST_CODE_COLS` are left to the
+code."""
 _LINE_COLS = 80
 _LEAST_CHART_COLS = 64
-"""Columns of code in which lines of an example are whole, and minimum of a chart beside it, above the output."""
+"""Lines of an example are whole in `_LINE_COLS` columns; a chart beside such code, above the output, gets at least
+`_LEAST_CHART_COLS`."""
 _STACKED_ROWS = 14, 7
-"""Rows of such a chart and of the output below it."""
+"""Rows of a chart beside the code, and of the output below the chart."""
 MAX_TAKEN_ROWS = 7
-"""Maximum number of rows that such a strip takes from the world."""
+"""Maximum number of rows that a strip with chart and output takes from the world."""
 _ERROR_ROWS = 8
 """Rows of the panels below code in the whole width, so that *Output* shows an error with its traceback."""
 COLUMN_COLS = 40
@@ -59,7 +61,7 @@ Form = Callable[[Sequence[str], int, int], Node]
 
 
 def classify_size(width: int, height: int) -> TerminalSize:
-    """Return the size of a terminal: small, medium or large."""
+    """Return the class of a terminal's size in columns and rows: small, medium or large."""
     if width >= MIN_LARGE_COLS and height >= _MIN_LARGE_ROWS:
         return TerminalSize.LARGE
     if width >= _BOARD_COLS and height >= _BOARD_ROWS:
@@ -68,7 +70,7 @@ def classify_size(width: int, height: int) -> TerminalSize:
 
 
 def is_single(width: int, height: int) -> bool:
-    """Return whether the area of the panels is so small that it shows one panel at a time."""
+    """Return whether an area of columns and rows is so small that it shows one panel at a time."""
     return height < _SINGLE_ROWS - 1 or (width < _SINGLE_COLS and height < _TALL_ROWS)
 
 
@@ -78,7 +80,7 @@ def is_tall(width: int, height: int) -> bool:
 
 
 def measure_side(width: int, panels: Sequence[str] = ()) -> int:
-    """Return the width of the side column: two sensor discs fit side by side from 112 columns on.
+    """Return the width of the side column; from 112 columns of the screen on, it has room for two sensor discs.
 
     Args:
         width: Columns of the screen.
@@ -351,9 +353,9 @@ _LINE_ROWS = 5
 _ROOMY = ("code", "chart", "brick")
 """Panels that get the whole width of a low screen."""
 _MAX_YIELDED_ROWS = 2
-"""Maximum number of rows that such a panel leaves to those beside the world, if they find no room otherwise."""
+"""Maximum number of rows that a panel of `_ROOMY` leaves to those beside the world, if they find no room otherwise."""
 _FAIR_ROWS = 22
-"""From this height of the screen on, such a panel keeps its rows, even if the panels above it find too few."""
+"""From this height of the screen on, a panel of `_ROOMY` keeps its rows, even if the panels above it find too few."""
 
 
 def build_low(panels: Sequence[str], width: int, height: int) -> Node:

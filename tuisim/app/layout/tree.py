@@ -19,7 +19,7 @@ _CELL_ASPECT = 2
 
 
 class Axis(StrEnum):
-    """The direction in which the parts of a split follow each other."""
+    """The direction in which the parts of a split are arranged."""
 
     ROWS = "/"
     """One above the other."""
@@ -55,7 +55,7 @@ class PanelBox:
 
 @dataclass
 class PanelLayout:
-    """The boxes of the panels that fit, and the panels that do not."""
+    """A layout of panels: the boxes of those that fit, and the ids of those that do not."""
 
     boxes: dict[str, PanelBox] = field(default_factory=dict)
     """The boxes by panel."""
@@ -71,7 +71,7 @@ class PanelLayout:
 
 
 def compute_ideal_rows(width: int) -> int:
-    """Return the rows that a world panel of this width needs, so that the mat fills it."""
+    """Return the height in rows at which the mat fills a world panel of a width in columns."""
     return (
         round((width - EDGES) * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / _CELL_ASPECT)
         + EDGES
@@ -80,7 +80,7 @@ def compute_ideal_rows(width: int) -> int:
 
 
 def compute_ideal_columns(rows: int) -> int:
-    """Return the columns that a world panel of this height needs, so that the mat fills it."""
+    """Return the width in columns at which the mat fills a world panel of a height in rows."""
     inside = rows - EDGES - TIME_BAR_ROWS
     return round(inside * _CELL_ASPECT * FIELD_WIDTH_MM / FIELD_HEIGHT_MM) + EDGES
 
@@ -187,7 +187,7 @@ def _divide_rows(split: Split, width: int, height: int, rank: Callable[[Node], i
 
 
 def _divide_extent(split: Split, box: PanelBox, rank: Callable[[Node], int]) -> list[int]:
-    """Return the rows or columns of each part of a split, at least what the part needs."""
+    """Return the rows or columns that each part of a split gets of a box, at least the part's minimum."""
     rows = split.axis == Axis.ROWS
     needs = _list_min_rows(split) if rows else [count_min_columns(part) for part in split.parts]
     extent = box.height if rows else box.width

@@ -21,68 +21,71 @@ if TYPE_CHECKING:
 
 
 class TerminalSize(StrEnum):
-    """How large a terminal is, for the choice of panels."""
+    """The size of a terminal, which decides about the panels at the start."""
 
     SMALL = "small"
-    """From 80×24."""
+    """A terminal from 80×24 on."""
     MEDIUM = "medium"
-    """From 100×30."""
+    """A terminal from 100×30 on."""
     LARGE = "large"
-    """From 170×50."""
+    """A terminal from 170×50 on."""
 
 
 class PanelPlace(StrEnum):
-    """An area of the screen."""
+    """The area of the screen in which a panel is usually shown."""
 
     MAIN = "main"
     BOTTOM = "bottom"
     """The strip below the main area."""
     SIDE = "side"
-    """The column beside both."""
+    """The column beside the main area and the strip."""
 
 
 class Panel(Protocol):
-    """The interface of a panel, in addition to `Widget`."""
+    """The interface of all panels, in addition to that of `Widget`."""
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment; almost free if nothing has changed."""
+        """Show an instant of the run; takes almost no time if nothing has changed."""
 
 
 @runtime_checkable
 class NextRunPanel(Protocol):
-    """The additional interface of a panel that edits the plan of the next run."""
+    """The interface of a panel that edits the plan of the next run, in addition to `Panel`."""
 
     def show_next_run(self, plan: NextRun) -> None:
-        """Show a plan."""
+        """Show the plan of the next run."""
 
 
 @dataclass(frozen=True, slots=True)
 class PanelInfo:
-    """What the app knows of a panel without importing it: key, place and sizes. Rows and columns include the border."""
+    """The key, the area and the sizes of a panel, which the app knows without importing its class.
+
+    Rows and columns include the border.
+    """
 
     id: str
     title: str
     key: str
-    """In Textual's notation, such as `f9`; `action.label_of_key` is for people."""
+    """The panel's key in Textual's notation, such as `f9`; `action.label_of_key` is for people."""
     path: str
-    """Module in this package, and class; imported when the panel is first shown."""
+    """Module in this package, and class of the panel; imported when the panel is first shown."""
     place: PanelPlace
     sizes: tuple[TerminalSize, ...]
-    """Terminal sizes at which it is on by default."""
+    """Terminal sizes at which the panel is shown by default."""
     min_rows: int
     fair_rows: int
-    """Height that shows everything, compactly."""
+    """Height in rows that shows everything, compactly."""
     good_rows: int
-    """Preferred height."""
+    """Preferred height in rows."""
     weight: int = 1
     """Its share of the space among panels that are side by side, or grow. Lines of an example are whole at 200×60."""
     grows: bool = False
-    """Whether it has a use for more rows than the preferred ones."""
+    """Whether the panel has a use for more rows than the preferred ones."""
     min_cols: int = 24
     """Minimum width beside another panel; that of *Output* has room for a printed fraction in one line."""
 
     def load(self) -> type[Panel]:
-        """Import the panel's class."""
+        """Import the panel's class and return it."""
         module, _, name = self.path.partition(":")
         return cast("type[Panel]", getattr(import_module(f"{__name__}.{module}"), name))
 
@@ -92,7 +95,7 @@ _ALL = tuple(TerminalSize)
 _MEDIUM_UP = (TerminalSize.MEDIUM, TerminalSize.LARGE)
 _LARGE = (TerminalSize.LARGE,)
 
-# By priority: if space runs out, the later ones are hidden first.
+# The order is the priority: if space runs out, the later panels are hidden first.
 PANELS: Mapping[str, PanelInfo] = {
     panel.id: panel
     for panel in (
@@ -168,4 +171,4 @@ PANELS: Mapping[str, PanelInfo] = {
         ),
     )
 }
-"""Every panel by id."""
+"""All panels by id."""

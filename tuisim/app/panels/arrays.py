@@ -28,19 +28,19 @@ RIM_16_RGB = (0, 0, 135)
 
 
 class _DiscPicture(PixelView):
-    """The disc of one sensor, in the finest cells or pixels that the terminal has."""
+    """The picture of what one colour sensor sees, in the finest points that the terminal has."""
 
     def __init__(self) -> None:
         super().__init__()
         self._face: DiscFace | None = None
 
     def show(self, face: DiscFace | None) -> None:
-        """Show a disc, or none."""
+        """Show what a sensor sees; None clears the picture."""
         self._face = face
         self.draw_picture()
 
     def draw_picture(self) -> None:
-        """Draw the disc for the current size."""
+        """Draw the picture again for the present size of the widget."""
         if self._face is None:
             self.clear_picture()
         elif self.size:
@@ -56,7 +56,7 @@ class _DiscPicture(PixelView):
 
 
 class _Disc(Widget):
-    """The disc of one sensor, and the lines about it."""
+    """The picture of what one colour sensor sees, and the lines with its values."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -70,7 +70,7 @@ class _Disc(Widget):
         yield self._text
 
     def place(self, where: Arrangement) -> None:
-        """Move the lines below the disc or beside it."""
+        """Put the lines below the picture or beside it, as an arrangement says."""
         self._where = where
         self.styles.layout = "vertical" if where.below else "horizontal"
         self._picture.styles.width = "1fr" if where.below else where.disc_cols
@@ -79,7 +79,12 @@ class _Disc(Widget):
         self._text.display = where.text_rows > 0
 
     def show(self, face: DiscFace | None, *, has_limits: bool = False) -> None:
-        """Show what is known of a sensor, or nothing."""
+        """Show the picture and the values of a sensor.
+
+        Args:
+            face: What the sensor sees; None clears picture and lines.
+            has_limits: Whether to leave a line for thresholds.
+        """
         self._picture.show(face)
         lines: list[Line] = []
         if face is not None and (where := self._where) is not None:
@@ -89,7 +94,7 @@ class _Disc(Widget):
 
 
 class Arrays(Widget, can_focus=True):
-    """The sensor arrays panel."""
+    """The sensor arrays panel: what each colour sensor sees, as discs with values."""
 
     DEFAULT_CSS = """
     Arrays > _Disc { width: 1fr; height: 1fr; align-horizontal: center; }
@@ -106,18 +111,18 @@ class Arrays(Widget, can_focus=True):
         """The lines whose thresholds are shown."""
 
     def on_resize(self) -> None:
-        """Arrange the discs for the new size."""
+        """Arrange the discs for the new size of the panel."""
         self._drawn = None
         self.call_after_refresh(self._draw)
 
     def render(self) -> str:
-        """Return the text of a panel without discs."""
+        """Return the text that the panel shows in place of the discs while there are none."""
         if self._snapshot is not None and not self._snapshot.spec.robot.color_sensors:
             return "The robot has no colour sensor"
         return "" if self._discs else "Preparing the mat"
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment."""
+        """Show an instant of the run."""
         shown = self._snapshot
         self._snapshot = snapshot
         if shown is None or shown.spec.robot is not snapshot.spec.robot:

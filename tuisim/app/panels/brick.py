@@ -35,7 +35,7 @@ _TOUCH_KEYS = "1234"
 
 
 class Brick(LinesPanel, can_focus=True):
-    """The brick panel."""
+    """The brick panel: the display, the lights and the buttons of the EV3 or a hub."""
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -60,7 +60,7 @@ class Brick(LinesPanel, can_focus=True):
 
     @dataclass
     class Pressed(Message):
-        """Posted when the held buttons have changed, even if no program runs."""
+        """Posted when the user has pressed or released buttons, even if no program runs."""
 
         buttons: frozenset[str]
 
@@ -71,7 +71,7 @@ class Brick(LinesPanel, can_focus=True):
         self._tapped: dict[str, Timer] = {}
         """Buttons that a key holds for a moment."""
         self._latched: set[str] = set()
-        """Buttons that are held until they are released in the same way."""
+        """Buttons that the right mouse button holds until the next click."""
         self._clicked = ""
         """The button that the mouse holds down."""
         self._throttle = Throttle(self, _PERIOD_S, self._redraw)
@@ -80,12 +80,12 @@ class Brick(LinesPanel, can_focus=True):
         self.border_subtitle = _HUB_HELP if self._hub else _HELP
 
     def on_blur(self) -> None:
-        """Release the buttons that keys held; the keys belong to the app again."""
+        """When the panel loses the focus, release the buttons that keys hold."""
         self.border_subtitle = self._idle_words
         self._let_go(*self._tapped)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment; at most a few updates per second."""
+        """Show an instant of the run; at most a few updates per second."""
         former = self._hub
         self._snapshot = snapshot
         if self._hub != former:
@@ -98,12 +98,12 @@ class Brick(LinesPanel, can_focus=True):
 
     @property
     def _hub(self) -> str:
-        """The robot's hub; empty for the EV3."""
+        """Name of the robot's hub; empty for the EV3."""
         return self._snapshot.spec.robot.hub if self._snapshot else ""
 
     @property
     def _idle_words(self) -> str:
-        """The words in the frame before the first run; empty after that."""
+        """Words for the frame before the first run; empty after that."""
         is_idle = self._snapshot is not None and self._snapshot.state is RunPhase.IDLE
         return "R: a program draws here" if is_idle else ""
 
@@ -129,7 +129,10 @@ class Brick(LinesPanel, can_focus=True):
         return frozenset((*self._tapped, *self._latched, *filter(None, [self._clicked])))
 
     def _has_program(self, name: str) -> bool:
-        """Return whether a live program is in view; if not, post the press, so that the app explains that."""
+        """Return whether a live run is in view.
+
+        If it is not, post the press of the button `name`, so that the app says why it has no effect.
+        """
         if (
             self._snapshot is not None
             and self._snapshot.state in IN_RUN
@@ -144,14 +147,14 @@ class Brick(LinesPanel, can_focus=True):
             self.post_message(self.Pressed(self.held))
 
     def action_tap_touch(self, key: str) -> None:
-        """Press a touch sensor for a moment."""
+        """Press a touch sensor for a moment, given by its key."""
         if self._snapshot is not None:
             touches = [sensor.port for sensor in self._snapshot.spec.robot.touch_sensors]
             if port := find_touch_keys(touches).get(key):
                 self.action_tap(port)
 
     def action_tap(self, name: str) -> None:
-        """Press a button for a moment; key repeat keeps it pressed."""
+        """Press a button of the brick for a moment; while a key repeats, the button stays pressed."""
         if not self._has_program(name):
             return
         before = self.held
@@ -167,9 +170,14 @@ class Brick(LinesPanel, can_focus=True):
         return self._snapshot.time_s if self._snapshot else 0.0
 
     def _release_tapped(self, name: str, seen_s: float) -> None:
-        """Release a button, but not before the program has had time to read it, however slow the run is."""
+        """Release a button after the program has had time to read it, however slow the run is.
+
+        Args:
+            name: The button.
+            seen_s: The simulated time from which on the program has read it.
+        """
         if name not in self._tapped:
-            # The run ended after the timer had fired.
+            # The run has ended since the timer fired, and all buttons were released.
             return
         if self._time_s < seen_s:
             self._tapped[name] = self.set_timer(TAP_S, partial(self._release_tapped, name, seen_s))
@@ -190,7 +198,7 @@ class Brick(LinesPanel, can_focus=True):
         self._post_pressed(before)
 
     def release_all(self) -> None:
-        """Release every button: the run in which they were pressed is over."""
+        """Release every button, because the run in which they were pressed is over."""
         before = self.held
         self._latched.clear()
         self._clicked = ""
@@ -207,7 +215,7 @@ class Brick(LinesPanel, can_focus=True):
         return next(hit, "")
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Press the button under the mouse; the right mouse button holds it until the next click."""
+        """Press the button under the mouse; if the right mouse button was used, hold it until the next click."""
         name = self._find_button(event)
         if not name:
             return

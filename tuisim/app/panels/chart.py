@@ -32,7 +32,7 @@ _VALUE_COLS = 40
 
 
 class Chart(LinesPanel, can_focus=True):
-    """The chart panel. Keeps data that arrives while it is hidden."""
+    """The chart panel. It also stores the data that arrives while it is hidden."""
 
     FOOTER_KEYS: ClassVar[tuple[KeyWord, ...]] = (("← →", "cursor"), ("1…9", "traces"))
     FROZEN: ClassVar[str] = "frozen: f follows again"
@@ -56,7 +56,10 @@ class Chart(LinesPanel, can_focus=True):
 
     @dataclass
     class CursorMoved(Message):
-        """Posted when the cursor was moved to another simulated time, or removed; all panels go to that time."""
+        """Posted when the user has moved the cursor to another simulated time, or removed it.
+
+        All panels then show that time.
+        """
 
         time_s: float | None
         sample: str = ""
@@ -82,7 +85,7 @@ class Chart(LinesPanel, can_focus=True):
     def append(
         self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True
     ) -> None:
-        """Add points to a trace.
+        """Add points to a trace, which is made if it does not exist.
 
         Args:
             name: A logged NAME, or the name of a column of telemetry, which is off at first.
@@ -94,7 +97,7 @@ class Chart(LinesPanel, can_focus=True):
         self._schedule_drawing()
 
     def clear(self) -> None:
-        """Remove all traces; one that gets points again is ticked as before."""
+        """Remove all traces; a trace that gets points later is shown or hidden as before."""
         self._traces.clear()
         self._state = replace(self._state, x_limits=None)
         self._read(None)
@@ -102,7 +105,7 @@ class Chart(LinesPanel, can_focus=True):
         self._schedule_drawing()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Draw new data; at most a few updates per second."""
+        """Draw the data up to now, and the instant in view; at most a few updates per second."""
         grows = snapshot.state in (RunPhase.RUNNING, RunPhase.PAUSED, RunPhase.WAITING)
         state = replace(self._state, grows=grows)
         if not self._dragging:
@@ -138,7 +141,7 @@ class Chart(LinesPanel, can_focus=True):
         self._read(self._pointed_s)
 
     def _find_chosen(self) -> Trace | None:
-        """Return the selected trace, or the first one that is shown; None if none is."""
+        """Return the selected trace, or the first one that is drawn; None if none is drawn."""
         drawn = self._traces.list_drawn()
         return next(
             (trace for trace in drawn if trace.name == self._state.selected),
@@ -146,7 +149,10 @@ class Chart(LinesPanel, can_focus=True):
         )
 
     def _find_bands(self) -> None:
-        """Find the bands of the chosen trace, or of the first trace with several; none while the run goes on."""
+        """Find the bands of the chosen trace; if that has fewer than two, those of the first trace with several.
+
+        While the run goes on, there are no bands.
+        """
         chosen = self._find_chosen()
         if chosen is None or not self._is_at_rest:
             self._spanned = None
@@ -221,7 +227,7 @@ class Chart(LinesPanel, can_focus=True):
         self.clear()
 
     def action_move_cursor(self, columns: int) -> None:
-        """Move the cursor; the first time it starts at the newest point."""
+        """Move the cursor by a number of columns; without a cursor, put it at the newest point first."""
         picture = self._picture
         if picture is None or not picture.columns:
             return
@@ -277,7 +283,11 @@ class Chart(LinesPanel, can_focus=True):
         self._read(None)
 
     def _read(self, time_s: float | None) -> None:
-        """Show the values below the pointer, or without it those at the cursor."""
+        """Show the values of the drawn traces in the lower border.
+
+        Args:
+            time_s: Time under the pointer; None shows the values at the cursor.
+        """
         self._pointed_s = time_s
         time_s = self._state.cursor_s if time_s is None else time_s
         drawn = self._traces.list_drawn()
@@ -287,12 +297,15 @@ class Chart(LinesPanel, can_focus=True):
             words = escape_markup(
                 format_values(drawn, time_s, self._state.unit, self.size.width - 4)
             )
-        # Each assignment draws the panel again.
+        # An assignment draws the panel again even if the words are the same.
         if words != self.border_subtitle:
             self.border_subtitle = words
 
     def copy_text(self) -> Copied | None:
-        """Return the values of all drawn traces at the pointer, else at the cursor; None without both, or any trace."""
+        """Return the values of all drawn traces at the pointer, else at the cursor.
+
+        None if there is neither a pointer nor a cursor, or no trace.
+        """
         time_s = self._state.cursor_s if self._pointed_s is None else self._pointed_s
         drawn = self._traces.list_drawn()
         if time_s is None or not drawn:
@@ -306,11 +319,14 @@ class Chart(LinesPanel, can_focus=True):
             self.release_mouse()
 
     def on_mouse_release(self) -> None:
-        """Stop dragging: a dialog has captured the mouse."""
+        """Stop dragging the cursor, because a dialog has captured the mouse."""
         self._dragging = False
 
     def _find_sample(self, time_s: float, picture: ChartPicture) -> tuple[float, str]:
-        """Return the time and the name of the sample at a time, or nearest to it in its band; else the time only."""
+        """Return the time and the name of the sample at a time, or of the one nearest to it in its band.
+
+        If there is neither, return the time itself and an empty name.
+        """
         span = next((span for span in self._state.spans if span.start <= time_s <= span.stop), None)
         of_span = (
             trace

@@ -36,7 +36,7 @@ LINE = "line"
 
 
 class FindBar(Horizontal):
-    """The find bar, shown during a search."""
+    """The bar of the code panel with the field for a search, or for the number of a line."""
 
     DEFAULT_CSS = """
     FindBar { height: 1; }
@@ -51,7 +51,7 @@ class FindBar(Horizontal):
 
     @dataclass
     class Asked(Message):
-        """Posted to find the text, or to go to the line."""
+        """Posted to find the typed text, or to go to the typed line."""
 
         mode: str
         text: str
@@ -59,7 +59,7 @@ class FindBar(Horizontal):
         """1 the next match, -1 the previous one, 0 the one at or after the cursor."""
 
     class Closed(Message):
-        """Posted when the focus returns to the text."""
+        """Posted when the bar was closed, so that the text gets the focus."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -74,7 +74,11 @@ class FindBar(Horizontal):
         yield Static(id="found", markup=False)
 
     def open(self, mode: str) -> None:
-        """Open the bar to find a text or go to a line."""
+        """Open the bar.
+
+        Args:
+            mode: Whether to find a text or go to a line.
+        """
         self.mode = mode
         self.display = True
         self.query_one("#label", Static).update("Find " if mode == FIND else "Line ")
@@ -86,7 +90,7 @@ class FindBar(Horizontal):
         field.focus()
 
     def say(self, text: str) -> None:
-        """Show the result of the search."""
+        """Show the result of the search, or what is wrong with it."""
         self.query_one("#found", Static).update(text)
 
     def action_close(self) -> None:
@@ -117,22 +121,22 @@ LIT_GAP_S = 0.1
 _INFO = PANELS["code"]
 NOTHING_OPEN = "No program: {open} opens one, {new} creates one"
 _FRAME = 4
-"""Cells of the frame beside what it says."""
+"""Cells of the frame beside its words."""
 
 
 class ProgramCommand(StrEnum):
-    """What the code panel asks the app to do."""
+    """A command of a key in the code panel that the app carries out, such as saving."""
 
     SAVE = "save"
     RUN = "run"
     NEW = "new"
     OPEN = "open"
     NONE = "none"
-    """To say that there is no program to edit."""
+    """Asks the app to say that there is no program to edit."""
 
 
 class Code(Vertical):
-    """The code panel."""
+    """The code panel: the text of the open program, with its editor."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+s", "want('save')", "Save the program", show=False),
@@ -141,25 +145,25 @@ class Code(Vertical):
 
     @dataclass
     class Edited(Message):
-        """Posted when the text was edited here."""
+        """Posted when the user has edited the text in the panel."""
 
         text: str
 
     @dataclass
     class Wanted(Message):
-        """Posted for a key that concerns the whole program."""
+        """Posted when a key for the whole program was pressed, see `ProgramCommand`."""
 
         command: ProgramCommand
 
     @dataclass
     class TypingChanged(Message):
-        """Posted when typing in the text begins or ends."""
+        """Posted when the user begins or ends typing in the text."""
 
         typing: bool
 
     @dataclass
     class BreakpointToggled(Message):
-        """Posted when a line number, from 1, was clicked."""
+        """Posted when the user has clicked a line number, to set or remove a breakpoint there."""
 
         line: int
 
@@ -170,7 +174,7 @@ class Code(Vertical):
         self._bar = FindBar()
         self._key: str | None = None
         self._shown = ""
-        """The text as last set or reported."""
+        """The shown text, as it was last set or reported."""
         self._run_lines: list[str] | None = None
         self._mapped: tuple[list[str], LineMap] | None = None
         """The shown lines when the line map was last computed."""
@@ -200,12 +204,12 @@ class Code(Vertical):
 
     @property
     def cursor_line(self) -> int:
-        """The line of the cursor, from 1."""
+        """The line of the text in which the cursor is, from 1."""
         return self._area.cursor_location[0] + 1
 
     @property
     def is_read(self) -> bool:
-        """Whether the text has the focus, so that the arrow keys move its cursor."""
+        """Whether the text has the focus; the arrow keys then move its cursor."""
         return self._area.has_focus
 
     @property
@@ -215,7 +219,7 @@ class Code(Vertical):
 
     @property
     def awaits_letters(self) -> bool:
-        """Whether the next letter starts typing: the text was clicked."""
+        """Whether the next letter starts typing, because the text was clicked."""
         return self._area.awaits_letters
 
     def set_program(self, name: str, text: str, key: str = "") -> None:
@@ -224,7 +228,7 @@ class Code(Vertical):
         Args:
             name: Name of its file; empty for no program.
             text: The text of the file.
-            key: Identifies the program; for the same one, cursor and scroll position stay.
+            key: Identifies the program; if it is that of the program before, cursor and scroll position stay.
         """
         key = key or name
         if key != self._key:
@@ -257,7 +261,7 @@ class Code(Vertical):
 
     @property
     def differs(self) -> bool:
-        """Whether a run of this program is in view that runs another text than the one shown."""
+        """Whether the run in view is one of the shown program, but of another text of it."""
         tells = self._run_lines is not None and self._tells_run and self._in_run
         return tells and self._run_lines != source_lines(self._shown)
 
@@ -276,11 +280,11 @@ class Code(Vertical):
         self.border_subtitle = helped if helped else escape_markup(title_words)
 
     def on_resize(self) -> None:
-        """Say as much as there is room for."""
+        """Shorten the words in the frame to the new width."""
         self._say()
 
     def set_running(self, text: str | None, tells: bool = True) -> None:
-        """Set the text of the run in view.
+        """Set the text of the run in view, to which the lines of the run belong.
 
         Args:
             text: None without a run.
@@ -297,32 +301,32 @@ class Code(Vertical):
 
         Args:
             breaks: The markers by line.
-            words: What the frame tells of breakpoints that have no line.
+            words: Words for the frame about breakpoints that are on no line.
         """
         self._area.set_breaks(breaks)
         self._break_words = words
         self._say()
 
     def mark_run_error(self, line: int, words: str = "") -> None:
-        """Mark the line of the run's text at which the run ended with an error, if it still exists; 0 for none.
+        """Mark the line at which the run ended with an error, if the shown text still has that line.
 
         Args:
-            line: From 1, in the text of the run.
+            line: From 1, in the text of the run; 0 removes the mark.
             words: What is wrong, see `mark_error`.
         """
         self.mark_error(self._find_shown_line(line), words)
 
     @property
     def error_line(self) -> int:
-        """The line that is marked as an error, 0 for none."""
+        """The line of the shown text that is marked as an error, 0 for none."""
         return self._area.error_line
 
     def mark_error(self, line: int, words: str = "") -> None:
-        """Mark the line of an error; 0 removes the mark.
+        """Mark the line of an error, and show what is wrong.
 
         Args:
-            line: From 1.
-            words: What is wrong, which stays in view as long as the mark.
+            line: From 1, in the shown text; 0 removes the mark.
+            words: What is wrong; they stay in the frame as long as the mark.
         """
         self._area.set_error(line)
         self._error_words = words
@@ -331,12 +335,12 @@ class Code(Vertical):
             self._area.scroll_to_line(line)
 
     def go_to_error(self) -> None:
-        """Move the cursor, and the view, to the line that is marked as an error, if there is one."""
+        """Move the cursor to the line that is marked as an error, and scroll to it; do nothing without such a line."""
         if self.error_line:
             self._area.move_to_code(self.error_line)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Highlight the line that the program is at; while it runs, move the highlight at most once in `LIT_GAP_S`."""
+        """Highlight the line that the program executes; in a live run, the highlight moves once in `LIT_GAP_S`."""
         in_run = snapshot.state not in (RunPhase.IDLE, RunPhase.ENDED) or snapshot.past
         if in_run != self._in_run:
             self._in_run = in_run
@@ -362,11 +366,11 @@ class Code(Vertical):
         self._stands = stands
         self.show_line(line)
         if (lit := self._find_shown_line(line)) and not self.typing and stands:
-            # The arrow keys go on from this line.
+            # The cursor moves there, so that the arrow keys start from this line.
             self._area.move_to_code(lit)
 
     def show_line(self, line: int) -> None:
-        """Highlight a line of the run's text, 0 for none, at its place in the text shown."""
+        """Highlight a line of the run's text in the shown text; 0 removes the highlight."""
         self._line = line
         lit = self._find_shown_line(line)
         self._area.light(lit)
@@ -374,7 +378,7 @@ class Code(Vertical):
             self._area.scroll_to_line(lit)
 
     def _find_shown_line(self, line: int) -> int:
-        """Return where a line of the run's text is in the text shown, 0 if it no longer exists."""
+        """Return the line of the shown text that is a line of the run's text; 0 if it no longer exists."""
         if self._run_lines is None:
             return line
         lines = self._area.document.lines
@@ -383,7 +387,11 @@ class Code(Vertical):
         return self._mapped[1].find_shown_line(line)
 
     def show_pause(self, pause: PauseView | None) -> None:
-        """Show the values where the program is paused, behind the lines that assign them; None while it runs."""
+        """Show the values of variables behind the lines that assign them.
+
+        Args:
+            pause: Where the program is paused; None while it runs, which removes the values.
+        """
         self._pause = pause
         self._show_values()
 
@@ -401,13 +409,13 @@ class Code(Vertical):
         self._area.set_values(values)
 
     def copy_text(self) -> Copied:
-        """Return what is wrong with the program, if the panel says so, else its text."""
+        """Return the error that the panel shows, or without one the text of the program."""
         if self.error_line and self._error_words:
             return Copied("Error", f"line {self.error_line}: {self._error_words}")
         return Copied("Program", self._area.program_text)
 
     def page(self, by: int) -> None:
-        """Move the cursor a page down, or up if `by` is negative."""
+        """Move the cursor down by a number of pages; negative moves it up."""
         if by > 0:
             self._area.action_cursor_page_down()
         else:
@@ -420,7 +428,7 @@ class Code(Vertical):
 
         Args:
             at_error: Start on the line that is marked as an error, if there is one.
-            at_end: Start at its end.
+            at_end: Start at the end of the text.
         """
         if not self._key:
             self.post_message(self.Wanted(ProgramCommand.NONE))
@@ -435,12 +443,12 @@ class Code(Vertical):
         self.call_after_refresh(self.show_cursor)
 
     def stop_typing(self) -> None:
-        """Stop typing: letters are keys of the app again."""
+        """Stop typing, so that letters are keys of the app again."""
         self._type(False)
         self._area.scroll_to(x=0, animate=False, force=True)
 
     def show_cursor(self) -> None:
-        """Scroll to the cursor, and no farther to the right than that needs."""
+        """Scroll to the cursor, and as far left as the cursor stays visible."""
         self._area.scroll_to(x=0, animate=False, force=True)
         self._area.scroll_cursor_visible(animate=False)
 

@@ -24,7 +24,7 @@ _INFO = PANELS["debug"]
 
 
 class Debug(LinesPanel, can_focus=True):
-    """The debug panel."""
+    """The debug panel: where the program is paused, its call stack, variables and watches."""
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -39,12 +39,12 @@ class Debug(LinesPanel, can_focus=True):
 
     @dataclass
     class FrameWanted(Message):
-        """Posted to select the caller of the frame, or the function that it called."""
+        """Posted to show the variables of the caller of the current frame, or of the function that it called."""
 
         by: int
 
     class ThreadWanted(Message):
-        """Posted to select the next thread."""
+        """Posted to show the variables of the next thread."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -61,7 +61,7 @@ class Debug(LinesPanel, can_focus=True):
         self.border_subtitle = ""
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show whether the program runs; the place of a pause comes with `show_pause`."""
+        """Show whether the program runs, and the time in view; `show_pause` shows where it is paused."""
         now = snapshot.instant.tick, snapshot.time_s
         # While it runs, it has no current line, and nothing can belong to another instant.
         if snapshot.state != self._state or (now != self._now and self._content.paused):
@@ -71,10 +71,10 @@ class Debug(LinesPanel, can_focus=True):
         self._now = now
 
     def show_pause(self, view: PauseView | None, is_busy: bool) -> None:
-        """Show where the program is paused; None while it runs, or before it is first paused.
+        """Show where the program is paused, with its variables there.
 
         Args:
-            view: The place.
+            view: The pause; None while the program runs, or before it is first paused.
             is_busy: Whether a past instant is still being computed.
         """
         if view is None:
@@ -116,7 +116,10 @@ class Debug(LinesPanel, can_focus=True):
 
 
 def _read_module_line(paused: Paused) -> str:
-    """Return the paused line of a module beside the program; empty in the program itself, or if it cannot be read."""
+    """Return the source line at which a program is paused in another module.
+
+    It is empty if the program is paused in its own file, or the line cannot be read.
+    """
     if not paused.file:
         return ""
     linecache.checkcache(paused.file)

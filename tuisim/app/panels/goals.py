@@ -19,7 +19,7 @@ _INFO = PANELS["goals"]
 
 
 class Goals(LinesPanel, can_focus=True):
-    """The goals panel."""
+    """The goals panel: the list of goals with their states, and the details of one."""
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -42,19 +42,19 @@ class Goals(LinesPanel, can_focus=True):
         self._drawn: object = None
 
     def watch_has_focus(self, _has_focus: bool) -> None:
-        """Show or hide what the keys do."""
+        """Show what the keys of the panel do while it has the focus."""
         super().watch_has_focus(_has_focus)
         self._show_subtitle()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show the goals as of an instant; the judgements come with `show_goals`."""
+        """Show the state of the goals at an instant of the run; `show_goals` sets the goals and their judgements."""
         past = (snapshot.instant.tick, snapshot.time_s) if snapshot.past else None
         if past != self._past:
             self._past = past
             self._draw_changes()
 
     def show_goals(self, view: GoalsView) -> None:
-        """Show goals with their judgements."""
+        """Show other goals, or other judgements of the run by them."""
         if view.goals != self._content.goals:
             self._chosen = None
             self._first = 0
@@ -63,7 +63,7 @@ class Goals(LinesPanel, can_focus=True):
 
     def _draw_changes(self) -> None:
         self._show_subtitle()
-        # Most instants of a run are like the one before.
+        # Most instants of a run change nothing in the panel.
         if (self._content, self._content.states(self._tick)) != self._drawn:
             self._redraw()
 
@@ -73,7 +73,7 @@ class Goals(LinesPanel, can_focus=True):
 
     @property
     def _index(self) -> int:
-        """Index of the goal that is shown in detail."""
+        """Index of the goal of which the panel shows the details."""
         return (
             find_current_goal(self._content.states(self._tick))
             if self._chosen is None
@@ -113,8 +113,8 @@ class Goals(LinesPanel, can_focus=True):
             self._choose(max(0, min(self._index + by, len(self._content.goals) - 1)))
 
     def on_click(self, event: events.Click) -> None:
-        """Show the goal under the mouse in detail."""
-        # The focus stays here.
+        """Show the details of the goal that was clicked."""
+        # The click must not reach the app, which may move the focus to the world.
         event.stop()
         _, row = self.find_cell(event)
         if 0 <= row < len(self._picture.rows) and (goal := self._picture.rows[row]) is not None:

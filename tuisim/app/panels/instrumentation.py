@@ -37,14 +37,17 @@ _CELL = 16
 
 
 class Instrumentation(LinesPanel, can_focus=True):
-    """The instrumentation panel. It has four forms, by height: 11 lines, 9 lines, 6 lines, and columns of cells."""
+    """The instrumentation panel: the readings of motors and sensors, and the pose.
+
+    It has four forms, by height: 11 lines, 9 lines, 6 lines, and columns of cells.
+    """
 
     def __init__(self) -> None:
         super().__init__()
         self._snapshot: Snapshot | None = None
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment."""
+        """Show an instant of the run."""
         self._snapshot = snapshot
         self._redraw()
 
@@ -60,12 +63,12 @@ class Instrumentation(LinesPanel, can_focus=True):
 
 
 def build_lines(now: Snapshot, width: int, height: int) -> list[Line]:
-    """Return the text of a moment for a panel of that inner size.
+    """Return the readings at an instant as lines of the instrumentation panel.
 
     Args:
-        now: The moment.
-        width: Columns, 18 or more for whole words.
-        height: Rows; with fewer than 6, the readings stand side by side.
+        now: The instant.
+        width: Columns inside the border; 18 or more for whole words.
+        height: Rows inside the border; with fewer than 6, the readings stand side by side.
     """
     if tall := _build_tall_lines(now, width, height):
         return tall
@@ -98,7 +101,10 @@ def _build_sensor_lines(now: Snapshot, width: int) -> list[Line]:
 
 
 def _build_tall_lines(now: Snapshot, width: int, height: int) -> list[Line]:
-    """Return all lines, those of motors with the values of their drivers; none without such values, or without room."""
+    """Return the readings with a further line for each motor: the values of its driver.
+
+    The result is empty if there are no such values, or more lines than `height`.
+    """
     drivers = [
         build_driver_line(values, now.instant.get_scale(number), width)
         for number, values in enumerate(now.instant.motors)
@@ -131,7 +137,7 @@ def _build_tall_lines(now: Snapshot, width: int, height: int) -> list[Line]:
 
 
 def _build_further_line(column: str, value: float, width: int) -> Line:
-    """Return the line of a sensor that not every robot has, by its telemetry column."""
+    """Return the line of a sensor that most robots do not have, given by its telemetry column."""
     name, _, what = column.rpartition("_")
     if what == "pressed":
         value_text = "pressed" if value else "released"
@@ -155,8 +161,8 @@ def _build_further_line(column: str, value: float, width: int) -> Line:
 def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
     """Return the readings in columns, with as much detail as the width allows.
 
-    If not all fits, the names of colours are left out, else the pose, else both, else the speeds, too; then whole
-    columns.
+    If not all of it fits, these are left out in turn until the rest fits: the names of colours, the pose, both, the
+    speeds too, and at last whole columns.
     """
     for detail, with_pose in ((2, True), (1, True), (2, False), (1, False), (0, False)):
         columns, sensing = _arrange_cells(now, height, detail)
@@ -183,7 +189,7 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
 
 
 def _build_color_names(now: Snapshot, width: int) -> Line:
-    """Return the names of colours in a line, as many as fit."""
+    """Return one line with the names of the colours that the sensors see, as many as fit."""
     line: Line = []
     for sensor in now.spec.robot.color_sensors:
         seen = now.colors.get(sensor.name)
@@ -198,11 +204,11 @@ def _build_color_names(now: Snapshot, width: int) -> Line:
 
 
 def _arrange_cells(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]], int]:
-    """Return cells in columns of that height, and how many columns motors and sensors take.
+    """Return the readings as columns of cells, and how many of these columns the motors and sensors fill.
 
     Args:
-        now: The moment.
-        height: Cells a column has at most.
+        now: The instant.
+        height: Most cells of a column.
         detail: 2 with speeds and names of colours, 1 without names, 0 without both.
     """
     robot = now.spec.robot

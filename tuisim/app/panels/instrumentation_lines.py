@@ -26,7 +26,7 @@ COLUMN = 12
 
 
 def fit_line(width: int, *variants: Sequence[Run]) -> Line:
-    """Return the first variant that fits, or the last one."""
+    """Return the first of some variants of a line that fits a width in cells; if none does, the last one."""
     for variant in variants:
         if sum(len(text) for text, _ in variant) <= width:
             return list(variant)
@@ -34,22 +34,22 @@ def fit_line(width: int, *variants: Sequence[Run]) -> Line:
 
 
 def format_label(text: str, column: int = COLUMN) -> Run:
-    """Return a label."""
+    """Return a label, padded to `column` cells, in the style of labels."""
     return text.ljust(column), LABEL
 
 
 def format_value(text: str) -> Run:
-    """Return a value."""
+    """Return a value in the style of values."""
     return text, VALUE
 
 
 def format_unit(text: str) -> Run:
-    """Return a unit, or other words between values."""
+    """Return a unit, or other words between values, in the style of units."""
     return text, UNIT
 
 
 def format_values(*texts: str) -> list[Run]:
-    """Return values, each with the unit after it."""
+    """Return values and units in their styles; the texts are a value, its unit, the next value and so on."""
     return [
         format_unit(text) if index % 2 else format_value(text) for index, text in enumerate(texts)
     ]
@@ -64,7 +64,7 @@ PORT_CELLS = 4
 
 @dataclass(frozen=True, slots=True)
 class LightSeen:
-    """A reading of a colour sensor, and what the program reads of it."""
+    """A reading of a colour sensor, and which number of it the program gets."""
 
     color: ColorReading
     read: LightRead
@@ -73,7 +73,7 @@ class LightSeen:
 
     @property
     def value(self) -> str:
-        """The number that the program gets."""
+        """The number that the program gets, as a text."""
         number = self.read.compute_value(self.color, self.reflected_max)
         if self.read is LightRead.REFLECTED:
             return f"{number:3.0f}"
@@ -81,17 +81,17 @@ class LightSeen:
 
     @property
     def word(self) -> str:
-        """The channels of which the number is: the red one, or the mean of all."""
+        """The name of the channels from which the number comes: `red`, or `mean` of all three."""
         return "mean" if self.read.uses_all_channels(self.color) else "red"
 
     @property
     def unit(self) -> str:
-        """The unit behind the value."""
+        """The unit of the number that the program gets."""
         return f"/{self.reflected_max}" if self.read is LightRead.REFLECTED else "%"
 
 
 def list_seen(now: Snapshot) -> list[tuple[str, str, LightSeen | None]]:
-    """Return the name and the port of each colour sensor, and what it sees; None before the mat is known."""
+    """Return the name, the port and the reading of each colour sensor; the reading is None while the mat is unknown."""
     robot = now.spec.robot
     reads = read_facts(now.program).find_light_reads(robot) if now.program else {}
     lines: list[tuple[str, str, LightSeen | None]] = []
@@ -104,7 +104,13 @@ def list_seen(now: Snapshot) -> list[tuple[str, str, LightSeen | None]]:
 
 
 def build_color_cell(port: str, seen: LightSeen | None, with_name: bool) -> Line:
-    """Return a sensor as a cell of a column."""
+    """Return the reading of a colour sensor as a cell of a column.
+
+    Args:
+        port: Port of the sensor.
+        seen: Its reading; None while the mat is unknown.
+        with_name: Whether to add the name of the colour.
+    """
     if seen is None:
         return [format_label(port, PORT_CELLS), format_unit("–")]
     cell: Line = [
@@ -119,7 +125,7 @@ def build_color_cell(port: str, seen: LightSeen | None, with_name: bool) -> Line
 def build_sensor_lines(
     name: str, port: str, seen: LightSeen | None, width: int
 ) -> tuple[Line, Line]:
-    """Return a sensor in two lines, the second one with its channels and its colour."""
+    """Return the reading of a colour sensor in two lines, the second one with its channels and its colour."""
     if seen is None:
         return [format_label(name), format_unit("–")], []
     color = seen.color
@@ -183,7 +189,7 @@ def build_sensor_lines(
 
 
 def build_sensor_line(name: str, port: str, seen: LightSeen | None, width: int) -> Line:
-    """Return a sensor in one line."""
+    """Return the reading of a colour sensor in one line."""
     if seen is None:
         return fit_line(
             width,
@@ -214,7 +220,7 @@ _MAX_STATE_CELLS = 10
 
 
 def build_wheel_lines(now: Snapshot, width: int) -> list[Line]:
-    """Return the lines of the motors of the wheels; none without wheels."""
+    """Return a line for each wheel motor; none for a robot without wheels."""
     if not now.spec.robot.has_wheels:
         return []
     return [
@@ -224,7 +230,7 @@ def build_wheel_lines(now: Snapshot, width: int) -> list[Line]:
 
 
 def build_extra_motor_lines(now: Snapshot, width: int) -> list[Line]:
-    """Return the lines of the motors that drive no wheel."""
+    """Return a line for each motor that drives no wheel."""
     return [
         _build_motor_line(
             f"Motor {motor.port[-1]}",
@@ -240,11 +246,11 @@ def build_extra_motor_lines(now: Snapshot, width: int) -> list[Line]:
 
 
 def build_driver_line(values: MotorValues, scale: float, width: int) -> Line:
-    """Return the line with the values of a motor's driver: the speed asked for, the duty and the state.
+    """Return a line with the values of a motor's driver: the commanded speed, the duty cycle and the state.
 
     Args:
         values: The values.
-        scale: How many degrees the program counts for one of the motor.
+        scale: How many degrees the program counts for one degree of the motor.
         width: Cells of the line.
     """
     asked_dps, _, duty_pc, state = values
@@ -267,7 +273,7 @@ def build_driver_line(values: MotorValues, scale: float, width: int) -> Line:
 
 
 def add_states(lines: list[Line], now: Snapshot, width: int) -> list[Line]:
-    """Return the lines of wheel motors with the states that their drivers know, where there is room."""
+    """Return the lines of the wheel motors, each with the state of its driver behind it if that fits."""
     states = [
         (*format_values("", "  "), _describe_motor_state(values[3]))
         for values in now.instant.motors
@@ -278,7 +284,11 @@ def add_states(lines: list[Line], now: Snapshot, width: int) -> list[Line]:
 
 
 def _describe_motor_state(state: int) -> Run:
-    """Return the most important state of a motor, padded; blanks if it has none."""
+    """Return the most important state of a motor, padded; blanks if the motor has no state.
+
+    Args:
+        state: The states as flags.
+    """
     for word in ("stalled", "overloaded", "holding", "ramping", "running"):
         if state & STATE_BITS[word]:
             return word.ljust(_MAX_STATE_CELLS), WARNING if word == "stalled" else VALUE
@@ -295,7 +305,7 @@ def _build_wheel_line(now: Snapshot, name: str, short: str, width: int) -> Line:
 
 
 def _build_motor_line(name: str, short: str, counts: int, speed: Run, width: int) -> Line:
-    """Return the line of a motor's counts and speed, or a warning instead."""
+    """Return a line with the position of a motor in degrees, and its speed or a warning."""
     warns = speed[1] is WARNING
     unit, close = (
         (format_unit(""), format_unit("")) if warns else (format_unit(" °/s"), format_unit("°/s"))
@@ -326,7 +336,7 @@ def _build_motor_line(name: str, short: str, counts: int, speed: Run, width: int
 
 
 def build_motor_cells(now: Snapshot, *, with_speed: bool) -> list[Line]:
-    """Return a cell for each motor: counts, and with speed also speed or state."""
+    """Return a cell for each motor: its position in degrees, and `with_speed` also its speed or state."""
     robot = now.spec.robot
     names = ("L", "R", *(motor.port[-1] for motor in robot.extra_motors))
     known = now.instant.motors

@@ -20,10 +20,10 @@ _INFO = PANELS["lesson"]
 
 
 class LessonPanel(LinesPanel, can_focus=True):
-    """The lesson panel.
+    """The lesson panel: the step of the lesson, its result and its hints.
 
     Args:
-        is_brief: Whether it only accompanies a log, which keeps the keys; its first row is the title of the step.
+        is_brief: Whether it only accompanies a log, which has the focus; its first row is the title of the step.
     """
 
     ALLOW_SELECT = False
@@ -50,17 +50,17 @@ class LessonPanel(LinesPanel, can_focus=True):
         self._is_typing = False
 
     def watch_has_focus(self, _has_focus: bool) -> None:
-        """Show or hide what the keys do."""
+        """Show what the keys of the panel do while it has the focus."""
         super().watch_has_focus(_has_focus)
         self._show_subtitle()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Draw the lesson, which comes with `show_lesson`, if there was no room for it yet."""
+        """Draw the lesson if that was not possible before for lack of room; `show_lesson` sets the lesson."""
         if not self._picture.lines:
             self._redraw()
 
     def show_lesson(self, view: LessonView) -> None:
-        """Show a lesson; a new result or step begins at its first row."""
+        """Show another state of the lesson; a new result or step is shown from its first row."""
         if view == self._content and self._picture.lines:
             return
         before = self._content
@@ -70,7 +70,7 @@ class LessonPanel(LinesPanel, can_focus=True):
             self._first = self._top
         self._redraw()
         if view.hints > before.hints and view.at == before.at:
-            # A new hint is at the end.
+            # A new hint is at the end of the text: scroll there.
             self._first = self._picture.first + self._picture.below
             self._redraw()
 
@@ -96,7 +96,7 @@ class LessonPanel(LinesPanel, can_focus=True):
 
     def _show_subtitle(self) -> None:
         below = self._picture.below
-        # Above a log, the key that hides it does something else.
+        # Beside a log, the key of this panel does something else, so the title does not name it.
         title = _INFO.title if self._is_brief else build_title(self.app, _INFO.id)
         title += f" ↓{below}" if below else ""
         if title != self.border_title:
@@ -110,14 +110,14 @@ class LessonPanel(LinesPanel, can_focus=True):
 
     @property
     def reads_on(self) -> bool:
-        """Whether there is more text above or below."""
+        """Whether the text goes on above or below the visible rows."""
         return self._picture.first > 0 or self._picture.below > 0
 
     def set_typing(self, is_typing: bool, is_low: bool = False) -> None:
-        """Draw the lesson for a user who types in the program, where the page keys are the editor's, or no longer.
+        """Draw the lesson for a user who types in the program, where the page keys are keys of the editor.
 
         Args:
-            is_typing: Whether typing begins.
+            is_typing: Whether the user types; False draws the usual lesson again.
             is_low: Whether there is little room below the editor, so that the title of the step comes first.
         """
         self._is_typing = is_typing
@@ -138,7 +138,7 @@ class LessonPanel(LinesPanel, can_focus=True):
         self._redraw()
 
     def on_click(self) -> None:
-        """Offer the lessons if none is open."""
+        """Show the list of lessons if no lesson is open."""
         if not self._content.lesson:
             self.post_message(Act("lesson-menu"))
 

@@ -1,4 +1,5 @@
-"""The noise panel: sliders for the noise of sensors and motors, which act at once, and the seed of the next run."""
+"""The noise panel: sliders for the noise of sensors and motors, which also change a live run, and the seed of the
+next run."""
 
 from __future__ import annotations
 
@@ -23,19 +24,19 @@ _SEED = list_values(RunSpec)["seed"]
 
 
 class Noise(EntryPanel):
-    """The noise panel: two sliders, which take digits too, and the seed."""
+    """The noise panel: a slider for the noise of the light, one for that of the motors, and the seed."""
 
     USE = "Seed: from the next run"
 
     @dataclass
     class Changed(Message):
-        """Posted when the user sets the noise."""
+        """Posted when the user has set the noise of light or motors."""
 
         noise: NoiseSpec
 
     @dataclass
     class Seeded(Message):
-        """Posted when the user sets the seed."""
+        """Posted when the user has set the seed."""
 
         seed: int
 
@@ -57,11 +58,11 @@ class Noise(EntryPanel):
         yield Static(self.USE, id="message", markup=False)
 
     def begin(self) -> None:
-        """Focus a slider, where letters are still keys of the app and digits set its number."""
+        """Focus a slider: letters are then still keys of the app, and digits set the number."""
         self.query_one("#light", Slider).focus()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show the noise and seed last set, here or elsewhere; for a past instant, its own noise."""
+        """Show the present noise and seed; for a past instant, the noise at that instant."""
         if not self.is_mounted or not self.query(Slider):
             return
         self._past = snapshot.past

@@ -32,7 +32,7 @@ _NONE = "none: + or drag adds one"
 
 
 def label_box(number: int, box: Obstacle) -> str:
-    """Return the list entry of an obstacle."""
+    """Return an obstacle as an entry of the list."""
     return f"{number:>2}  {box.width_mm:g}×{box.height_mm:g} at {box.x_mm:g}, {box.y_mm:g}"
 
 
@@ -48,7 +48,7 @@ def _replace_box(index: int, by: Boxes, boxes: Boxes) -> Boxes:
 
 
 class Obstacles(EntryPanel):
-    """The obstacles panel: the list, the four numbers of the selected box, and the actions."""
+    """The obstacles panel: the list of obstacles, and the four numbers of the selected one."""
 
     USE = "Drag to draw another"
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -65,7 +65,7 @@ class Obstacles(EntryPanel):
 
     @dataclass
     class Marked(Message):
-        """Posted when another obstacle was selected."""
+        """Posted when the user has selected another obstacle."""
 
         index: int | None
 
@@ -91,7 +91,7 @@ class Obstacles(EntryPanel):
         yield Static(self.USE, id="message", markup=False)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Do nothing: this panel shows plans, not moments."""
+        """Do nothing: the panel shows the plan of the next run, not an instant."""
 
     def show_next_run(self, plan: NextRun) -> None:
         """Show the obstacles of the next run."""
@@ -111,12 +111,12 @@ class Obstacles(EntryPanel):
         self.post_message(self.Marked(self.at))
 
     def begin(self) -> None:
-        """Focus the list, where letters are still keys of the app."""
+        """Focus the list, in which letters are still keys of the app."""
         self.query_one(OptionList).focus()
         self.post_message(self.Marked(self.at))
 
     def mark(self, index: int | None) -> None:
-        """Select another obstacle."""
+        """Select another obstacle by its index; None selects none."""
         self.query_one(OptionList).highlighted = index
 
     def _list(self) -> None:
@@ -188,13 +188,13 @@ def _snap_mm(value_mm: float) -> float:
 
 
 def find_box(boxes: Sequence[Obstacle], x_mm: float, y_mm: float, slack_mm: float) -> int | None:
-    """Return the index of the topmost box at a point, None for none.
+    """Return the index of the topmost obstacle at a point of the field; None if there is none.
 
     Args:
-        boxes: Later ones are on top.
+        boxes: The obstacles; later ones are on top.
         x_mm: World x.
         y_mm: World y.
-        slack_mm: Tolerance around a box, which may be thinner than a cell.
+        slack_mm: Tolerance around an obstacle, which may be thinner than a cell.
     """
     for index in reversed(range(len(boxes))):
         box = boxes[index]
@@ -210,7 +210,7 @@ def find_box(boxes: Sequence[Obstacle], x_mm: float, y_mm: float, slack_mm: floa
 
 @dataclass(frozen=True, slots=True)
 class BoxGrip:
-    """A drag in progress, which moves a box or draws a new one."""
+    """A drag of the mouse that moves an obstacle or draws a new one."""
 
     boxes: tuple[Obstacle, ...]
     """The boxes at the start of the drag."""
@@ -220,7 +220,7 @@ class BoxGrip:
     y_mm: float
 
     def drag_boxes(self, x_mm: float, y_mm: float) -> tuple[tuple[Obstacle, ...], int] | None:
-        """Return the boxes with the mouse at a point, and the index of the dragged one; None if nothing has changed."""
+        """Return the obstacles after a drag to a point, and the index of the dragged one; None without any change."""
         if self.index is None:
             box = self._draw_box(x_mm, y_mm)
             return None if box is None else ((*self.boxes, box), len(self.boxes))

@@ -33,25 +33,25 @@ IDLE_WORDS = "What the program prints appears here: {run} runs it"
 
 
 class Answer(Input):
-    """The field that answers `input()`."""
+    """The text field for an answer to `input()`."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+d", "end_of_file", "End of file", show=False, priority=True),
     ]
 
     class EndOfFile(Message):
-        """Posted when the user sends end of file instead of an answer."""
+        """Posted when the user answers `input()` with end of file."""
 
     def action_end_of_file(self) -> None:
         self.post_message(self.EndOfFile())
 
 
 class Output(Vertical):
-    """The output panel."""
+    """The output panel: what the program has printed, and the field for its `input()`."""
 
     @dataclass
     class Answered(Message):
-        """Posted when the user has answered `input()`; None is end of file."""
+        """Posted when the user has answered `input()`; a text of None stands for end of file."""
 
         text: str | None
 
@@ -70,22 +70,24 @@ class Output(Vertical):
         yield self._past_log
 
     def set_program(self, name: str) -> None:
-        """Show the name of the program whose output this is."""
+        """Show the name of the program that has printed the output."""
         if name != self._program_name:
             self._program_name, self.border_title = name, build_title(self.app, _INFO.id, name)
 
     def copy_text(self) -> Copied:
-        """Return the lines of the instant in view, also those above the panel."""
+        """Return the lines of the output at the instant in view, also those scrolled out of the panel."""
         return Copied(_INFO.title, (self._log if self._log.display else self._past_log).text)
 
     def clear(self) -> None:
-        """Remove every line."""
+        """Remove all lines of the output."""
         self._log.clear()
 
     def show_past(self, rows: Sequence[OutputRow] | None, before: int = 0) -> None:
-        """Show the output up to a past instant: its last rows, after `before` others.
+        """Show the output up to a past instant.
 
-        None shows the whole output again.
+        Args:
+            rows: The last rows up to that instant; None shows the whole output again.
+            before: The number of rows before them.
         """
         self._log.display = rows is None
         self._past_log.display = rows is not None
@@ -94,15 +96,20 @@ class Output(Vertical):
             self._past_log.add(rows, before)
 
     def add(self, rows: Sequence[OutputRow], skipped: int = 0) -> None:
-        """Append rows; `skipped` rows before them are only counted."""
+        """Append rows to the output.
+
+        Args:
+            rows: The rows.
+            skipped: Number of rows before them that are not shown, but counted.
+        """
         self._log.add(rows, skipped)
 
     def note(self, text: str) -> None:
-        """Append a line of the app itself."""
+        """Append a line that the app says, not the program."""
         self._log.add([OutputRow(text, 0, 0, 0, Stream.NOTE)])
 
     def ask(self, prompt: str) -> None:
-        """Show the field for an answer, with the program's prompt before it."""
+        """Show the field for an answer to `input()`, with the prompt of the program before it."""
         self.asking = True
         words = replace_controls(prompt).strip() or "The program waits for input"
         answer = Answer(placeholder="Enter sends, ctrl+d ends", compact=True)
@@ -110,7 +117,7 @@ class Output(Vertical):
         answer.focus()
 
     def stop_asking(self) -> None:
-        """Remove the field."""
+        """Remove the field for an answer."""
         self.asking = False
         self.query(".prompt, Answer").remove()
 
@@ -126,7 +133,7 @@ class Output(Vertical):
         self.post_message(self.Answered(None))
 
     def show(self, snapshot: Snapshot) -> None:
-        """Say before the first run what appears here; rows arrive through `add`."""
+        """Before the first run, show what the panel is for; rows arrive through `add`."""
         self._log.say_if_empty(
             fill_keys(self.app, IDLE_WORDS) if snapshot.state is RunPhase.IDLE else ""
         )
@@ -150,18 +157,18 @@ _CARETS = re.compile(r" +[~^]+")
 """A line of a traceback that points at a part of the line above."""
 
 Line = tuple[str, Stream]
-"""Text and stream."""
+"""The text of a line, and its stream."""
 
 
 def replace_controls(text: str) -> str:
-    """Return a text without control characters: tabs become spaces, others a dot."""
+    """Return a text with blanks in place of tabs, and dots in place of other control characters."""
     if text.isprintable():
         return text
     return "".join(char if char.isprintable() else "·" for char in text.expandtabs(4))
 
 
 def split_row(row: OutputRow, width: int) -> list[str]:
-    """Return a row as lines of at most `width` cells, at least one."""
+    """Return an output row as one or more lines of at most `width` cells."""
     text = row.format_line()
     if len(text) > MAX_LINE_CHARS:
         text = (
@@ -179,9 +186,10 @@ def split_row(row: OutputRow, width: int) -> list[str]:
 
 
 def _find_break(text: str, width: int) -> int:
-    """Return where to break a text that is longer than the width.
+    """Return the index at which to break a text that is longer than `width` cells.
 
-    It breaks after a blank or a separator if no half of the row stays empty; else before a word that fits in one row.
+    It is behind a blank or a separator if that leaves less than half of the row empty; else before a word that fits in
+    one row.
     """
     good, fair = (
         max(text.rfind(sign, width // 2, width) for sign in signs) + 1 for signs in _BREAKS
@@ -193,7 +201,7 @@ def _find_break(text: str, width: int) -> int:
 
 
 class Log(Widget, can_focus=True):
-    """The lines; follows the newest unless scrolled up."""
+    """The lines of the output; it shows the newest ones unless it was scrolled up."""
 
     # A ScrollView repaints all rows for each new line; this widget does not resend unchanged rows.
     COMPONENT_CLASSES: ClassVar[set[str]] = {
@@ -226,23 +234,23 @@ class Log(Widget, can_focus=True):
         self._shown: list[tuple[Line, bool]] = []
         """For each row of the screen: its line, and whether the scroll thumb covers it."""
         self._empty_words = ""
-        """What to say while there is no line."""
+        """Words that are shown while there are no lines."""
 
     # Content
 
     def say_if_empty(self, words: str) -> None:
-        """Set what to say while there is no line."""
+        """Set the words to show while there are no lines."""
         if words != self._empty_words:
             self._empty_words = words
             self._update()
 
     @property
     def text(self) -> str:
-        """The rows that are kept, whole."""
+        """The stored output rows as one text, without line breaks of the panel."""
         return "\n".join(replace_controls(row.format_line()) for row in self._rows)
 
     def clear(self) -> None:
-        """Remove every line."""
+        """Remove all lines."""
         self._rows.clear()
         self._lines.clear()
         self._count = 0
@@ -250,7 +258,12 @@ class Log(Widget, can_focus=True):
         self._update()
 
     def add(self, rows: Sequence[OutputRow], skipped: int = 0) -> None:
-        """Append rows; `skipped` rows before them are only counted. Rows that are not text are ignored."""
+        """Append rows to the output; rows that are not text are ignored.
+
+        Args:
+            rows: The rows.
+            skipped: Number of rows before them that are not shown, but counted.
+        """
         texts = [row for row in rows if row.stream in _STYLES]
         self._count += len(texts) + skipped
         newest = texts[-KEPT_LINES:]
@@ -285,7 +298,7 @@ class Log(Widget, can_focus=True):
 
     @property
     def _all(self) -> int:
-        """Return the number of lines to scroll through; the first one may stand for rows no longer kept."""
+        """Return the number of lines to scroll through; the first may only count rows that are not stored any more."""
         return len(self._lines) + (1 if self._count > len(self._rows) else 0)
 
     def _find_line(self, index: int) -> Line:
@@ -327,7 +340,7 @@ class Log(Widget, can_focus=True):
             self.refresh(*changed)
 
     def render_line(self, y: int) -> Strip:
-        """Return one row of the screen."""
+        """Return row `y` of the widget."""
         width = self.size.width
         base = self.rich_style
         if y >= len(self._shown) or width < 2:
@@ -342,10 +355,10 @@ class Log(Widget, can_focus=True):
     # Scrolling
 
     def action_scroll_lines(self, lines: int) -> None:
-        """Scroll down by a number of lines; negative scrolls up."""
+        """Scroll down by a number of lines; a negative number scrolls up."""
         last_top = max(0, self._all - self.size.height)
         top = (last_top if self._top is None else self._top) + lines
-        # Scrolled to the end, the view follows the newest line again.
+        # When the user has scrolled to the end, the view follows the newest line again.
         self._top = None if top >= last_top else max(0, top)
         self._update()
 

@@ -15,7 +15,7 @@ _ON_FLOOR = tuple((START_VALUES[key].low, START_VALUES[key].high) for key in ("x
 
 @dataclass(frozen=True, slots=True)
 class PoseGrip:
-    """A drag in progress: where it began."""
+    """A drag of the mouse that moves or turns the robot, with the pose at which it began."""
 
     pose: Pose
     x_mm: float
@@ -25,7 +25,7 @@ class PoseGrip:
     """Whether it may lead off the field."""
 
     def drag_pose(self, x_mm: float, y_mm: float) -> Pose:
-        """Return the pose with the mouse at a point."""
+        """Return the pose of the robot after a drag to a point of the field."""
         start = self.pose
         if self.turns:
             before = math.atan2(self.y_mm - start.y_mm, self.x_mm - start.x_mm)

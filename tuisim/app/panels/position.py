@@ -26,7 +26,7 @@ _FIELDS = dict(zip(("x", "y", "angle"), START_VALUES.values(), strict=True))
 
 
 def parse_field(field: str, text: str) -> float:
-    """Return the number typed into a field.
+    """Return the number that a text stands for in a field of the panel.
 
     Raises:
         ValueError: the text is no number, or out of range; the message says what is allowed.
@@ -41,9 +41,10 @@ def parse_field(field: str, text: str) -> float:
 
 
 class Positioning(FormPanel, can_focus=True):
-    """The positioning panel: X, Y and angle of the robot.
+    """The positioning panel: fields for x, y and angle of the robot.
 
-    Its key focuses the panel, where letters are still keys of the app; enter or tab then focuses the first field.
+    The panel's key focuses the panel itself, where letters are still keys of the app; enter or tab then focuses the
+    first field.
     """
 
     USE = "Enter: type and place"
@@ -52,7 +53,7 @@ class Positioning(FormPanel, can_focus=True):
 
     @dataclass
     class Applied(Message):
-        """Posted when the user sets the pose."""
+        """Posted when the user has set the pose of the robot."""
 
         pose: Pose
 
@@ -75,7 +76,7 @@ class Positioning(FormPanel, can_focus=True):
         self.query_one("#x", Input).focus()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show the pose in the fields that are not being edited."""
+        """Show the pose of an instant, except in a field that is being edited."""
         pose = snapshot.instant.pose
         values = {"x": pose.x_mm, "y": pose.y_mm, "angle": shown_heading_deg(pose.heading_deg)}
         for field, value in values.items():
@@ -86,7 +87,7 @@ class Positioning(FormPanel, can_focus=True):
                     self._shown[field] = entry.value = text
                     entry.remove_class("wrong")
                     if entry.has_focus:
-                        # What is typed replaces the number, as in a field that gets the focus with it.
+                        # The number is selected, so that typing replaces it, as when a field gets the focus.
                         entry.action_select_all()
 
     def _is_typing(self, entry: Input) -> bool:

@@ -26,7 +26,7 @@ _LINKS = (
 
 
 class Settings(VerticalScroll, can_focus=False):
-    """The settings panel: a scrolled form."""
+    """The settings panel: a form with the settings of the next run, which scrolls."""
 
     FOOTER_KEYS: ClassVar[tuple[KeyWord, ...]] = (("↑ ↓", "fields"), ("← →", "choices"))
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -37,7 +37,7 @@ class Settings(VerticalScroll, can_focus=False):
 
     @dataclass
     class Edited(Message):
-        """Posted when the user has entered a value, or asks for another choice."""
+        """Posted when the user has entered a value, or asks for another choice of a field."""
 
         row: Row
         edit: FormField
@@ -46,7 +46,7 @@ class Settings(VerticalScroll, can_focus=False):
         """Steps to another choice, from the one that is current when the message arrives."""
 
         def apply(self, plan: NextRun) -> NextRun:
-            """Return the plan with this edit.
+            """Return a plan with the new value of the field.
 
             Raises:
                 TuisimError: the value is invalid.
@@ -67,10 +67,10 @@ class Settings(VerticalScroll, can_focus=False):
                     yield Static(action_link(self.app, action, word))
 
     def show(self, snapshot: Snapshot) -> None:
-        """Do nothing: this panel shows plans, not moments."""
+        """Do nothing: the panel shows the plan of the next run, not an instant."""
 
     def show_next_run(self, plan: NextRun) -> None:
-        """Show the plan of the next run."""
+        """Show the settings of the plan of the next run."""
         self._plan = plan
         parts = build_sections(plan)
         edits = {edit.id: edit for part in parts for edit in part.edits}
@@ -83,9 +83,9 @@ class Settings(VerticalScroll, can_focus=False):
                 row.show(edit.read(plan))
 
     async def _rebuild(self, parts: list[FieldGroup]) -> None:
-        """Rebuild the form: another robot may have other sensors, and so other fields.
+        """Replace the fields of the form, because another robot may have other sensors.
 
-        Rows of fields that stay are kept, so that the focus stays, too, and no key is lost.
+        Rows of fields that remain are not replaced: they may have the focus, and no key may be lost.
         """
         field_ids = {edit.id for part in parts for edit in part.edits}
         rows = {row.field: row for row in self.query(Row)}
@@ -105,7 +105,7 @@ class Settings(VerticalScroll, can_focus=False):
             self.begin()
 
     def begin(self) -> None:
-        """Focus a field in which letters are still keys of the app."""
+        """Focus a field of the form in which letters are still keys of the app."""
         choice = next(iter(self.query(Choice)), None)
         self._begins = choice is None
         if choice:

@@ -30,7 +30,7 @@ _PAST, _LATER, _BEYOND = (
 _CURSOR = Style(color=design.GROUND, bgcolor=palette.YELLOW, bold=True)
 _WORDS, _STRONG = Style(color=palette.SOFT), Style(color=palette.YELLOW, bold=True)
 
-# By priority: of several markers in one cell, the first in this order is shown.
+# The order is the priority: of several markers in one cell, the first one is shown.
 _MARKS: Mapping[Mark, tuple[str, Style]] = {
     Mark.ERROR: ("✗", Style(color=design.RED, bold=True)),
     Mark.BREAK: ("●", Style(color=design.BREAKPOINT)),
@@ -46,10 +46,10 @@ _ON_LINE = {("╵", "━"): "┷", ("╵", "─"): "┴", ("╷", "━"): "┯",
 
 @dataclass(frozen=True)
 class BarTimes:
-    """The times that the bar shows."""
+    """The tick in view and the newest tick of a run, from which the time bar computes its columns."""
 
     tick: int
-    """The tick in view."""
+    """Number of the tick in view."""
     newest: int
     tick_hz: int
     past: bool
@@ -58,31 +58,33 @@ class BarTimes:
 
     @cached_property
     def end_s(self) -> float:
-        """Time at the right end: the end of a finished run, else a round time."""
+        """The time in s at the right end of the bar: the end of a finished run, else a round time."""
         now_s = self.newest / self.tick_hz
         return max(now_s, 1 / self.tick_hz) if self.over else _round_end_s(math.ceil(now_s))
 
     def column(self, tick: int, columns: int) -> int:
-        """Return the column of a tick in a bar of that length."""
+        """Return the column of a tick in a bar of `columns` columns."""
         return min(columns - 1, round(tick / self.tick_hz / self.end_s * (columns - 1)))
 
     def find_tick(self, column: int, columns: int) -> int:
-        """Return the tick at a column, at most the newest one."""
+        """Return the tick at a column of a bar of `columns` columns; at most the newest one."""
         share = min(max(column, 0), columns - 1) / max(columns - 1, 1)
         return min(self.newest, round(share * self.end_s * self.tick_hz))
 
 
 @lru_cache(maxsize=1)
 def _round_end_s(now_s: int) -> float:
-    """Return the time at which the bar of a run that goes on ends; it changes at whole seconds only."""
+    """Return the time in s at the right end of the bar during a run; it changes at whole seconds only."""
     return time_limits(now_s)[1]
 
 
 def format_times(times: BarTimes, width: int) -> str:
-    """Return the text beside the bar: as wide in the past as now, so that the columns of the bar keep their times.
+    """Return the times beside the bar: the one in view, and the newest one if there is room.
+
+    The text is as wide in the past as at the newest instant, so that a column of the bar always is the same time.
 
     Args:
-        times: What the bar shows.
+        times: The ticks.
         width: Columns of bar and text.
     """
     time_s, now = (f"{tick / times.tick_hz:.2f}" for tick in (times.tick, times.newest))
@@ -93,7 +95,13 @@ def format_times(times: BarTimes, width: int) -> str:
 
 
 def mark_cells(times: BarTimes, marks: Iterable[tuple[int, Mark]], columns: int) -> dict[int, Run]:
-    """Return the markers by column."""
+    """Return the cells of the bar with markers, by column.
+
+    Args:
+        times: The ticks of the bar.
+        marks: Ticks with the kinds of their markers.
+        columns: Length of the bar.
+    """
     order = list(_MARKS)
     kinds: dict[int, int] = {}
     for tick, kind in marks:
@@ -103,7 +111,7 @@ def mark_cells(times: BarTimes, marks: Iterable[tuple[int, Mark]], columns: int)
 
 
 def build_bar(times: BarTimes, marks: Mapping[int, Run], columns: int) -> list[Run]:
-    """Return the cells of the bar."""
+    """Return the cells of the bar, with the marked ones in place."""
     here = times.column(times.tick, columns)
     now = times.column(times.newest, columns)
     cells: list[Run] = []
@@ -122,13 +130,13 @@ def build_bar(times: BarTimes, marks: Mapping[int, Run], columns: int) -> list[R
 
 
 class TimeBar(LinesView):
-    """The time bar."""
+    """The time bar: one row with the run's time, its markers, and the instant in view."""
 
     DEFAULT_CSS = "TimeBar { height: 1; width: 1fr; }"
 
     @dataclass
     class Scrubbed(Message):
-        """Posted when the user chooses an instant; None is now."""
+        """Posted when the user goes to a tick of the run; None is the newest instant."""
 
         tick: int | None
 
@@ -143,7 +151,7 @@ class TimeBar(LinesView):
         self._dragging = False
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment of a run; before the first run the row is empty, so that the world keeps its size."""
+        """Show an instant of a run; before the first run the row is empty, so that the world keeps its size."""
         if snapshot.state == RunPhase.IDLE or not (snapshot.now_tick > 0 or snapshot.past):
             self._times = None
             self.set_lines([])
@@ -183,7 +191,7 @@ class TimeBar(LinesView):
             self.post_message(self.Scrubbed(None if tick >= self._times.newest else tick))
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Go to the instant at the mouse, and follow it; the text beside the bar returns to now."""
+        """Go to the instant under the mouse, and follow the mouse; a click on the times goes to the newest instant."""
         if event.button != 1 or self._times is None:
             return
         if event.x >= self._columns:
@@ -205,7 +213,7 @@ class TimeBar(LinesView):
             self.release_mouse()
 
     def on_mouse_release(self) -> None:
-        """Stop following the mouse: a dialog has captured it."""
+        """Stop following the mouse, because a dialog has captured it."""
         self._dragging = False
 
 
@@ -213,7 +221,10 @@ _SPANS_S = (5.0, 10.0, 20.0, 30.0, 60.0)
 
 
 def time_limits(end_s: float) -> Limits:
-    """Return limits from 0 to a round time after `end_s`; there are few such times, so that axes seldom change."""
+    """Return limits from 0 to a round time in s after `end_s`.
+
+    There are few such times, so that the axes seldom change.
+    """
     for span_s in _SPANS_S:
         if end_s <= span_s:
             return 0.0, span_s

@@ -21,33 +21,39 @@ _FRAME = 4
 
 
 def build_title(app: App[Any], panel: str, name: str = "") -> str:
-    """Return the title of a panel as markup: its key in an app, its title, and the name of its content unless empty."""
+    """Return the title of a panel as markup.
+
+    Args:
+        app: Decides about the key in the title.
+        panel: Id of the panel.
+        name: Name of the panel's content, shown behind the title; empty for none.
+    """
     info = PANELS[panel]
     actions = app.ACTIONS if isinstance(app, ActionHost) else {}
     action = actions.get(f"panel-{panel}")
     key = action.key_label if action else label_of_key(info.key)
-    # A file name is no markup.
+    # A file name may contain brackets, which must not be read as markup.
     title = escape_markup(f"{info.title}: {name}" if name else info.title)
     return f"[bold $tuisim-yellow]{escape_markup(key)}[/] {title}"
 
 
 def _count_columns(panel: str, width: int) -> int:
-    """Return the columns that a panel's title leaves for the name behind it."""
+    """Return how many columns the title of a panel leaves for a name behind it, in a frame of `width` columns."""
     info = PANELS[panel]
     return width - _FRAME - len(f"{info.key} {info.title}: ")
 
 
 def name_mat(mat: str, layout: str, width: int) -> str:
-    """Return what the title of the world names: the mat, and the layout of the panels if there is room for it."""
+    """Return the words in the title of the world: the mat, and if there is room the preset of the panels."""
     room = _count_columns("world", width)
     wordings = (f"{mat} · {layout}", layout) if layout else ()
     return next((words for words in wordings if cell_len(words) <= room), mat)
 
 
 def name_sensors(now: Snapshot, width: int) -> str:
-    """Return the names of each colour sensor that fit a frame: number, name in the robot, port, name in the program.
+    """Return the names of the colour sensors for a frame: number, name in the robot, port, name in the program.
 
-    Empty if not even the numbers with name and port fit.
+    It is empty if not even the numbers with name and port fit.
     """
     prelude = PRELUDE_TEXTS.get(now.program.prelude, "") if now.program else ""
     predefined = {f"in{port}": name for name, port in _PREDEFINED.findall(prelude)}
@@ -63,7 +69,7 @@ def name_sensors(now: Snapshot, width: int) -> str:
 
 
 def name_setup(now: Snapshot, width: int) -> str:
-    """Return robot, seed, noise and drift in words, as far as they fit a title, without those that are 0."""
+    """Return robot, seed, noise and drift in words, as many as fit a title; noise and drift of 0 are left out."""
     spec = now.spec
     noise = now.instant.noise
     room = _count_columns("instrumentation", width)

@@ -48,14 +48,14 @@ _PAPER = (255, 255, 255)
 _ANY_PEN = PenSpec()
 
 _FRAME = 4
-"""Cells of the frame beside what it says."""
+"""Cells of the frame beside its words."""
 
 _SHOWS_UNTIL_TAKEN = 10
 """Number of updates after which a dropped robot that was not accepted jumps back."""
 
 
 class World(Widget, can_focus=True):
-    """The world panel: a frame around the picture."""
+    """The world panel: the picture of the mat with all objects on it, in a frame."""
 
     DEFAULT_CSS = """
     World { layout: vertical; }
@@ -78,14 +78,14 @@ class World(Widget, can_focus=True):
 
         obstacles: tuple[Obstacle, ...]
         index: int
-        """The one that was moved or drawn."""
+        """Index of the obstacle that was moved or drawn."""
 
     @dataclass
     class ZoomAsked(Message):
-        """Posted when the user zooms with the mouse."""
+        """Posted when the user zooms in or out with the mouse."""
 
         steps: int
-        """How many zoom factors further; negative to see more of the field."""
+        """Number of zoom factors to go further; negative shows more of the field."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -103,7 +103,7 @@ class World(Widget, can_focus=True):
         yield self.time_bar
 
     def edit_boxes(self, on: bool, marked: int | None = None) -> None:
-        """Enable or disable drawing and moving obstacles with the mouse; `marked` is the selected one."""
+        """Set whether the mouse draws and moves obstacles; `marked` is the index of the selected obstacle."""
         self._edits_boxes = on
         self._view.edit_boxes(on, marked)
         self._say_below()
@@ -120,7 +120,7 @@ class World(Widget, can_focus=True):
 
     @property
     def zoom(self) -> int:
-        """Zoom factor: 1, 2 or 4; above 1 the view follows the robot."""
+        """The zoom factor, 1, 2 or 4; above 1 the view follows the robot."""
         return self._view.zoom
 
     @zoom.setter
@@ -135,13 +135,13 @@ class World(Widget, can_focus=True):
         self.border_title = build_title(self.app, "world", name)
 
     def name_layout(self, words: str) -> None:
-        """Name the layout of the panels beside the mat; empty for the standard one."""
+        """Show the name of the panels' layout in the title, behind the mat; an empty name shows nothing."""
         if words != self._layout_words:
             self._layout_words = words
             self._say()
 
     def _say_below(self) -> None:
-        """Say below the picture what the mouse does, where a robot off the field is, or what the other robots are."""
+        """Show in the lower border what the mouse does, where a robot off the field is, or what other robots are."""
         words = "drag to draw or move an obstacle" if self._edits_boxes else ""
         if (now := self._snapshot) is not None and not words:
             room = self.size.width - _FRAME
@@ -154,7 +154,7 @@ class World(Widget, can_focus=True):
         self._say_below()
 
     def cycle_zoom(self) -> None:
-        """Go to the next zoom factor, and from the last to the first."""
+        """Switch to the next zoom factor; after the last comes the first."""
         self.zoom = ZOOMS[(ZOOMS.index(self.zoom) + 1) % len(ZOOMS)]
 
     def on_world_zoom_asked(self, message: World.ZoomAsked) -> None:
@@ -162,30 +162,35 @@ class World(Widget, can_focus=True):
         self.zoom = ZOOMS[min(max(ZOOMS.index(self.zoom) + message.steps, 0), len(ZOOMS) - 1)]
 
     def set_mat(self, pixels: Pixels) -> None:
-        """Set the mat: shape (1143, 2362, 3), one pixel per mm. Until then the panel is blank."""
+        """Set the image of the mat: shape (1143, 2362, 3), one pixel per mm. Until then the panel is blank."""
         self._view.set_mat(pixels)
 
     def extend_trace(
         self, xs_mm: Sequence[float], ys_mm: Sequence[float], pen: PenSpec = _ANY_PEN
     ) -> None:
-        """Add points that a pen drew, joined to the previous ones; NaN lifts the pen."""
+        """Add points to the pen trace, joined to the previous points; NaN lifts the pen."""
         self._view.trace.add(Piece.from_points(np.array(xs_mm), np.array(ys_mm), pen))
 
     def clear_trace(self) -> list[Piece]:
-        """Clear the trace; return its pieces."""
+        """Remove the pen trace from the picture, and return its pieces."""
         pieces = self._view.trace.clear()
         self._view.repaint_scene()
         return pieces
 
     def restore_trace(self, pieces: list[Piece]) -> None:
-        """Put pieces of a cleared trace back, below what has been drawn since."""
+        """Draw the pieces of a cleared pen trace again, below what was drawn since."""
         self._view.trace.put_back(pieces)
         self._view.repaint_scene()
 
     def show_past_trace(
         self, points_mm: tuple[Sequence[float], Sequence[float]] | None, pen: PenSpec = _ANY_PEN
     ) -> None:
-        """Show the trace up to a past instant, x and y, instead of the whole trace; None shows all again."""
+        """Show the pen trace up to a past instant, instead of the whole trace.
+
+        Args:
+            points_mm: x and y of the points; None shows the whole trace again.
+            pen: The pen.
+        """
         past = None
         if points_mm is not None:
             past = PenTrace()
@@ -194,12 +199,12 @@ class World(Widget, can_focus=True):
         self._view.repaint_scene()
 
     def copy_text(self) -> Copied | None:
-        """Return the picture in characters without colours, and the readings below it; None before it is drawn."""
+        """Return the picture as characters, and the readings below it; None before the picture is drawn."""
         rows = self._view.draw_text()
         return describe_world(self._snapshot, self._mat, rows) if self._snapshot else None
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment."""
+        """Show an instant of the run."""
         mat = Path(snapshot.spec.world.background).name
         if mat != self._mat:
             self._mat = mat
@@ -210,7 +215,7 @@ class World(Widget, can_focus=True):
 
 
 class WorldView(PixelView):
-    """The picture in the world panel, and what the mouse does in it; posts the messages of `World`."""
+    """The widget with the picture of the world; it also handles the mouse, and posts the messages of `World`."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -242,20 +247,20 @@ class WorldView(PixelView):
         self.repaint_scene()
 
     def set_mat(self, pixels: Pixels) -> None:
-        """Set the mat, as `World.set_mat` does, and draw it."""
+        """Set the image of the mat, as `World.set_mat` does, and draw it."""
         self._mat = pixels
         self._painter = None
         self.repaint_scene()
 
     def edit_boxes(self, on: bool, marked: int | None) -> None:
-        """Enable or disable drawing and moving obstacles with the mouse."""
+        """Set whether the mouse draws and moves obstacles; `marked` is the index of the selected obstacle."""
         if (on, marked) != (self._edits_boxes, self._marked):
             self._edits_boxes = on
             self._marked = marked
             self.repaint_scene()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment, if it differs from the last one."""
+        """Show an instant of the run; do nothing if it looks like the last one."""
         self._snapshot = snapshot
         if self._held is not None and self._grip is None:
             self._held_shows -= 1
@@ -266,7 +271,7 @@ class WorldView(PixelView):
     def _follow(
         self, width_px: int, height_px: int, pose: Pose, now: Snapshot, cell: CellPoints
     ) -> Viewport:
-        """Return the view; on a floor the whole field, until the robot has driven to its edge."""
+        """Return the view to draw; if there is a floor, it follows a robot that drives off the field."""
         on_floor = now.spec.world.is_open
         previous = self._port
         zoom = self.zoom
@@ -278,7 +283,7 @@ class WorldView(PixelView):
         return follow_robot(width_px, height_px, zoom, pose, previous, cell, on_floor=on_floor)
 
     def repaint_scene(self) -> None:
-        """Redraw unconditionally."""
+        """Draw the picture again, even if nothing has changed."""
         self._scene = None
         self._draw()
 
@@ -298,7 +303,7 @@ class WorldView(PixelView):
         if self._painter is None:
             self._painter = self._make_painter(self._mat, in_cells=graphics is None)
         trace = self.trace if self.past_trace is None else self.past_trace
-        # A run that stands still is drawn finely at once, and not a moment later by itself.
+        # A run at rest is drawn finely from the start; else the picture would be refined a moment later.
         stands = self._snapshot.state in AT_REST and not self._snapshot.past and self._held is None
         is_drawn = scene == self._scene and port == self._port and self._trace_drawn == trace.count
         if is_drawn and not (stands and self.is_coarse):
@@ -312,7 +317,7 @@ class WorldView(PixelView):
             self.set_signs(draw_signs(port, scene))
 
     def _make_painter(self, mat: Pixels, *, in_cells: bool) -> ScenePainter:
-        """Return a painter for the app's glyphs and colours."""
+        """Return a painter of the world for the app's glyphs and colours."""
         mode = self.color_mode
         mono = mode.depth == MONO
         few = {CellSet.ASCII} if mono else {CellSet.ASCII, CellSet.BRAILLE}
@@ -330,7 +335,7 @@ class WorldView(PixelView):
         )
 
     def draw_text(self) -> list[str]:
-        """Return the picture as rows of characters without colours; none before it is drawn."""
+        """Return the picture as rows of characters without colours; empty before it is drawn."""
         now = self._snapshot
         mat = self._mat
         if now is None or mat is None or not self.size:
@@ -347,7 +352,7 @@ class WorldView(PixelView):
         )
 
     def redraw(self) -> None:
-        """Draw the image again: the app's glyphs or colours have changed."""
+        """Draw the picture again, because the app's glyphs or colours have changed."""
         self._painter = None
         self.repaint_scene()
 
@@ -401,11 +406,14 @@ class WorldView(PixelView):
 
     @property
     def _cell_mm(self) -> float:
-        """The width of a cell in mm; 0 before the first drawing."""
+        """The width of a character cell in mm of the field; 0 before the first drawing."""
         return self._port.mm_per_px * self._port.cell.cols if self._port else 0.0
 
     def _locate_mouse(self, event: events.MouseEvent) -> tuple[float, float]:
-        """Return the world position under the mouse: the cell centre, or finer if the terminal supports it."""
+        """Return the point of the field under the mouse, in mm.
+
+        It is the middle of a cell, or more exact if the terminal reports pixels.
+        """
         assert self._port is not None
         col = event.pointer_x
         row = event.pointer_y
@@ -482,7 +490,7 @@ class WorldView(PixelView):
             self.post_message(World.PoseDragged(self._held, done=True))
 
     def on_mouse_release(self) -> None:
-        """Cancel the drag: a dialog has captured the mouse."""
+        """Cancel the drag of the robot or an obstacle, because a dialog has captured the mouse."""
         if self._grip is not None:
             self._grip = None
             self._held_shows = _SHOWS_UNTIL_TAKEN
@@ -511,7 +519,7 @@ class WorldView(PixelView):
         self.post_message(World.ZoomAsked(steps))
 
     def _turn(self, event: events.MouseEvent, angle_deg: float) -> None:
-        """Turn the robot if the mouse is over it or drags it, so that scrolling the page does not turn it."""
+        """Turn the robot by an angle if the mouse is over it or drags it; scrolling elsewhere does not turn it."""
         if self._snapshot is None or self._port is None:
             return
         pose = self._held or self._snapshot.instant.pose

@@ -25,7 +25,7 @@ _FAIR_ROWS = 6
 """A disc is not made lower than this for a second line of text."""
 
 UP_WORDS = "up is up on the mat"
-"""What the frame says where it has no names to say."""
+"""Words in the frame if it shows no names."""
 
 _RINGS_ARE = "in→out"
 _RING_DIGITS = 3
@@ -41,7 +41,7 @@ _LIMIT = Style(color=palette.YELLOW, bold=True)
 
 
 class Arrangement(NamedTuple):
-    """Where the discs and their lines are."""
+    """The sizes of the discs in the sensor arrays panel, and where their lines are."""
 
     across: bool
     """Whether the sensors stand side by side, and not one above the other."""
@@ -54,7 +54,7 @@ class Arrangement(NamedTuple):
 
 
 def arrange_discs(count: int, cols: int, rows: int) -> Arrangement:
-    """Return the arrangement with the largest discs, side by side if there is a choice.
+    """Return the arrangement with the largest discs; the sensors are side by side if there is a choice.
 
     Args:
         count: How many sensors.
@@ -81,7 +81,12 @@ def arrange_discs(count: int, cols: int, rows: int) -> Arrangement:
 
 
 def _count_disc_columns(cols: int, high_cols: int) -> int:
-    """Return the columns of a disc in a place whose height is given in columns, two for each row."""
+    """Return the width of a disc in columns that fits an area.
+
+    Args:
+        cols: Width of the area.
+        high_cols: Height of the area in columns; a row is as high as two columns are wide.
+    """
     side = max(min(cols, high_cols), 0)
     return LARGE_COLS if side >= LARGE_COLS else min(side, FULL_COLS)
 
@@ -97,12 +102,13 @@ _MIN_ROWS = 4
 
 
 def find_asked_lines(now: Snapshot, before: frozenset[int]) -> frozenset[int]:
-    """Return the lines with thresholds that a program asks again and again at a moment; all of them before a run.
+    """Return the lines of the program whose thresholds are compared again and again at an instant; before a run, all.
 
-    While a function runs, the loop that has called it goes on; the text does not tell which one that is.
+    While a function runs, the loop that has called it continues; the text does not say which loop that is.
 
     Args:
-        before: What was returned for the moment shown before.
+        now: The instant.
+        before: The result for the instant shown before.
     """
     if now.program is None:
         return frozenset()
@@ -121,10 +127,10 @@ def find_asked_lines(now: Snapshot, before: frozenset[int]) -> frozenset[int]:
 
 
 def build_face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool) -> list[Line]:
-    """Return the lines of a sensor, the most useful ones if there are few rows.
+    """Return the lines about a sensor beside its disc; if there are few rows, the most useful ones.
 
     Args:
-        face: What is shown of the sensor.
+        face: What the sensor sees.
         width: Columns.
         rows: Most lines.
         has_limits: Whether there is a line for thresholds, those of any sensor.
@@ -157,12 +163,12 @@ def _build_value_line(face: DiscFace, width: int) -> Line:
 
 
 def build_swatch(seen: ColorReading) -> Run:
-    """Return two cells in the colour that a sensor sees, underlined, to be visible on a panel of that colour."""
+    """Return two cells in the colour that a sensor sees, underlined, so that they are visible on that colour, too."""
     return "  ", Style(color=palette.LABEL, bgcolor=Color.from_rgb(*seen.rgb), underline=True)
 
 
 def _scale_line(face: DiscFace, width: int) -> Line:
-    """Return a scale from black to white, filled up to what the program gets, with the thresholds on it."""
+    """Return a scale from black to white that is filled up to the program's reading, with marks at the thresholds."""
     filled = round(min(max(face.share, 0), 1) * width)
     cells = [("━", _FILLED) if column < filled else ("─", _REST) for column in range(width)]
     for share in face.limit_shares:
@@ -171,7 +177,7 @@ def _scale_line(face: DiscFace, width: int) -> Line:
 
 
 def _ring_lines(face: DiscFace, width: int) -> list[Line]:
-    """Return the means of the rings and what they are, on two lines where one is too short for the longest numbers."""
+    """Return the mean values of the rings of a sensor's area with their label, in two lines if one is too short."""
     values: Line = [
         part
         for word in face.ring_words
@@ -186,7 +192,7 @@ def _ring_lines(face: DiscFace, width: int) -> list[Line]:
 
 
 def list_border_names(names: Sequence[str], where: Arrangement, *, has_limits: bool) -> str:
-    """Return the names of the sensors for the frame if the lines do not show them; else which way is up."""
+    """Return the names of the sensors for the frame; if the lines already show them, words for which side is up."""
     if len(names) < 2 or where.text_rows > _MAX_LINES - 2 + has_limits:
         return UP_WORDS
     return (" │ " if where.across else " above ").join(names)

@@ -66,7 +66,7 @@ _DOT_BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], n
 
 @dataclass(frozen=True, slots=True)
 class ButtonBox:
-    """The area of a button: row, first column, column after the last."""
+    """The cells of a button in a picture: its row, its first column, and the column after its last one."""
 
     row: int
     first: int
@@ -76,7 +76,7 @@ class ButtonBox:
 
 @dataclass(frozen=True, slots=True)
 class BrickPicture:
-    """The drawn brick as lines of text, with the areas of its buttons."""
+    """The picture of a brick as lines of text, with the cells of its buttons."""
 
     lines: list[list[Run]]
     buttons: tuple[ButtonBox, ...]
@@ -89,13 +89,13 @@ def draw_brick(
     height: int,
     bumpers: Sequence[str] = (),
 ) -> BrickPicture:
-    """Return the brick for a panel of that inner size.
+    """Return the picture of the EV3 for a panel.
 
     Args:
         face: State of the brick.
         pressed: Buttons that are held down.
-        width: Columns, at least 1.
-        height: Rows, at least 1; the buttons have priority, then the bumpers, the display and the sound.
+        width: Columns inside the border, at least 1.
+        height: Rows inside the border, at least 1; buttons come first, then bumpers, display and sound.
         bumpers: Ports of the touch sensors.
     """
     pad_rows = _PAD_ROWS if height >= 9 and width >= _PAD_COLUMNS + 2 * _LED_COLUMNS else 1
@@ -113,7 +113,7 @@ def draw_brick(
 
 
 def draw_sound(face: BrickState, width: int) -> list[Run]:
-    """Return the row of what the brick plays or says."""
+    """Return the row with the sound that the brick plays, or the text that it says."""
     sound = face.sound
     if sound.startswith("["):
         sound = sound.removeprefix("[").removeprefix("♪ ").removesuffix("]")
@@ -130,7 +130,7 @@ def _draw_screen(face: BrickState, width: int, rows: int) -> list[list[Run]]:
 
 
 def _draw_text_screen(screen: TextScreen, width: int, rows: int) -> list[list[Run]]:
-    """Return the text screen in the terminal's own font; the rest is cut."""
+    """Return the brick's text screen as rows of the terminal, cut to a size in cells."""
     columns = min(width, screen.columns)
     left = (width - columns) // 2
     top = max(0, (rows - screen.rows) // 2)
@@ -206,11 +206,11 @@ def _find_shade(step: int) -> Color:
     )
 
 
-# Lights and buttons
+# The following functions draw lights and buttons.
 
 
 def mix_led_rgb(red: int, green: int) -> Rgb:
-    """Return the colour of a pair of lights with brightness 0 to 255: red and green mix to amber."""
+    """Return the colour of a pair of lights, of which each has brightness 0 to 255; both together are amber."""
     if not red and not green:
         return _DARK_LED_RGB
     # A lamp that is on at all must be visible; the green ones are brighter.
@@ -221,7 +221,7 @@ def mix_led_rgb(red: int, green: int) -> Rgb:
 
 
 def name_led(red: int, green: int) -> str:
-    """Return the name of the colour of a pair of lights."""
+    """Return the name of the colour of a pair of lights with brightness 0 to 255, such as `amber`."""
     if not red and not green:
         return "off"
     if not green:
@@ -246,7 +246,13 @@ def _list_lamps(face: BrickState) -> list[tuple[int, int]]:
 
 
 def _build_lamp(lamp: tuple[int, int], named: bool, columns: int) -> Run:
-    """Return one row of a pair of lights; the word is for terminals and users without colour."""
+    """Return a row with the colour of a pair of lights.
+
+    Args:
+        lamp: Brightness of red and green, 0 to 255.
+        named: Whether to write the name of the colour, for terminals and users without colour.
+        columns: Width of the row.
+    """
     red, green, blue = mix_led_rgb(*lamp)
     ink = palette.BLACK if 3 * red + 6 * green > 1000 else palette.INK
     style = Style(color=ink, bgcolor=Color.from_rgb(red, green, blue))
@@ -285,7 +291,7 @@ def _pad(
 def draw_bumpers(
     ports: Sequence[str], pressed: Collection[str], width: int, row: int
 ) -> tuple[list[Run], tuple[ButtonBox, ...]]:
-    """Return the row of the touch sensors' bumpers, as many as fit, and their areas."""
+    """Return the row with the bumpers of the touch sensors, as many as fit, and the cells of each."""
     labels = {port: f" {port} {_BUMPER} " for port in ports}
     while len(labels) > 1 and len(" ".join(labels.values())) > width:
         labels.popitem()
@@ -297,10 +303,10 @@ def draw_bumpers(
 def draw_keys(
     labels: Mapping[str, str], pressed: Collection[str], first: int, row: int
 ) -> tuple[list[Run], tuple[ButtonBox, ...]]:
-    """Return keys side by side, with a blank between them, and their areas.
+    """Return a row of keys side by side, with a blank between two, and the cells of each.
 
     Args:
-        labels: What stands on the keys, by their names.
+        labels: The words on the keys, by their names.
         pressed: The keys that are held down.
         first, row: The column and the row of the first key.
     """
@@ -316,12 +322,12 @@ def draw_keys(
 def shrink_pixels(
     pixels: npt.NDArray[np.uint8], rows: int, columns: int
 ) -> npt.NDArray[np.float64]:
-    """Return the mean of the pixels in each cell of a coarser grid.
+    """Return the pixels of a picture as means over a coarser grid.
 
     Args:
         pixels: Shape (h, w).
-        rows: Of the coarser grid, at most h.
-        columns: Of the coarser grid, at most w.
+        rows: Rows of the coarser grid, at most h.
+        columns: Columns of the coarser grid, at most w.
 
     Returns:
         Shape (rows, columns).

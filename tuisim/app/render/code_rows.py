@@ -24,16 +24,16 @@ _TEXT_BEGINS, _TEXT_ENDS = (getattr(tokenize, f"FSTRING_{word}", None) for word 
 
 @dataclass(slots=True)
 class _Breaks:
-    """Where a line may be broken."""
+    """The columns at which one line of a program may be broken."""
 
     inside: dict[int, bool] = field(default_factory=dict)
     """The columns at which a row may begin, each with whether it is in brackets."""
     comment: int | None = None
-    """Column of a comment."""
+    """Column at which the line's comment begins; None without one."""
 
 
 def split_rows(program: str, width: int) -> Iterator[str]:
-    """Yield a program as rows of at most `width` cells, unless a word is longer.
+    """Yield a program as rows of at most `width` cells; only a longer word makes a longer row.
 
     Rows are broken between words, in brackets if possible; elsewhere they end in a backslash. A comment behind a long
     line is put above the line. A program that Python cannot read keeps its lines.
@@ -50,7 +50,10 @@ def split_rows(program: str, width: int) -> Iterator[str]:
 
 
 def _find_breaks(program: str) -> Mapping[int, _Breaks]:
-    """Return where the lines may be broken, by number: after a blank or an opening bracket, and before a dot."""
+    """Return the columns at which each line may be broken, by line number from 1.
+
+    A line may be broken after a blank or an opening bracket, and before a dot.
+    """
     breaks: dict[int, _Breaks] = {}
     depth = texts = 0
     before: tokenize.TokenInfo | None = None
@@ -102,9 +105,11 @@ def _split_line(line: str, breaks: _Breaks, width: int) -> Iterator[str]:
 def _end(line: str, start: int, room: int, inside: Mapping[int, bool]) -> int:
     """Return the column at which to break a line: in brackets if possible, before a dot only if nothing else fits.
 
-    If nothing fits, this is the next possible break, or the end of the line.
+    If nothing fits, it is that of the next possible break, or the end of the line.
 
     Args:
+        line: The line.
+        start: The column at which the row begins.
         room: How many characters fit.
         inside: The columns of possible breaks, and whether each is in brackets.
     """

@@ -47,7 +47,7 @@ _KEYS = (
 
 @dataclass(frozen=True, slots=True)
 class DebugView:
-    """The content of the debug panel."""
+    """The content of the debug panel: the pause, its frames and variables, and whether they are being computed."""
 
     state: RunPhase = RunPhase.IDLE
     paused: Paused | None = None
@@ -56,13 +56,13 @@ class DebugView:
     busy: bool = False
     """Whether a past instant is still being computed."""
     source: str = ""
-    """The source line, in a module beside the program, which the code panel does not show."""
+    """The source line at which the program is paused in another module, which the code panel does not show."""
     now: tuple[int, float] | None = None
     """Tick and simulated time of the instant in the other panels."""
 
     @property
     def is_elsewhere(self) -> bool:
-        """Whether the other panels show another instant than the one whose variables are known."""
+        """Whether the other panels show another instant than the one to which the variables belong."""
         return self.now is not None and self.paused is not None and self.now[0] != self.paused.tick
 
 
@@ -88,14 +88,14 @@ def label_reason(reason: PauseReason) -> str:
 
 
 def debug_lines(view: DebugView, width: int) -> list[Line]:
-    """Return the text for a panel of that inner width."""
+    """Return the content of the debug panel as lines of at most `width` cells."""
     if view.paused is None or view.inspected is None:
         if view.busy:
             return _build_text("", ("computing this instant …",), width)
         return _build_hint(view.state, width)
     lines = _known(view, view.paused, view.inspected, width)
     if view.is_elsewhere and view.now:
-        # The known data belongs to another instant: it is dimmed until that of this one has arrived.
+        # The known data belongs to another instant: it is dimmed until that of the present one has arrived.
         tick, time_s = view.now
         head: Line = [(cut(f"{time_s:.2f} s · tick {tick} …", width), _HEAD)]
         return [head, *([(text, _PALE) for text, _ in line] for line in lines[1:])]
@@ -164,7 +164,7 @@ def _known(view: DebugView, paused: Paused, inspected: Inspected, width: int) ->
 
 
 def _build_text(head: str, texts: Sequence[str], width: int) -> list[Line]:
-    """Return a text for an otherwise empty panel; in a narrow one, each key has a line of its own."""
+    """Return a heading and texts as lines for an otherwise empty panel; in a narrow one, each text has its own line."""
     if max(map(len, texts)) > width:
         parts = [part for text in texts for part in re.split(" {3,}", text)]
         texts = [row for part in parts for row in textwrap.wrap(part, width) or [""]]

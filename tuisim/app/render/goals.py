@@ -46,19 +46,19 @@ NO_GOALS = "No goals: o opens a goals file such as square_goals.toml"
 
 @dataclass(frozen=True, slots=True)
 class GoalsView:
-    """The content of the goals panel."""
+    """The content of the goals panel: goals, their judgements, and a hint."""
 
     title: str = ""
-    """The task; may be empty."""
+    """Title of the task; may be empty."""
     goals: tuple[Goal, ...] = ()
-    """Empty: no goals are open."""
+    """The goals; empty if none are open."""
     judgements: tuple[Judgement, ...] = ()
-    """One for each goal; empty while there is no run to judge."""
+    """A judgement for each goal; empty while there is no run to judge."""
     hint: str = ""
     """What to do next; empty if there is a run."""
 
     def states(self, tick: int | None) -> tuple[GoalState, ...]:
-        """Return the state of each goal after a tick; None means now."""
+        """Return the state of each goal at the end of a tick; None stands for the newest instant."""
         if not self.judgements:
             return (GoalState.OPEN,) * len(self.goals)
         return tuple(each.state if tick is None else each.at(tick) for each in self.judgements)
@@ -66,7 +66,7 @@ class GoalsView:
 
 @dataclass(frozen=True, slots=True)
 class GoalsPicture:
-    """The text of the panel."""
+    """The lines of the goals panel, with the goals to which they belong."""
 
     lines: list[Line]
     rows: tuple[int | None, ...] = ()
@@ -78,7 +78,7 @@ class GoalsPicture:
 
 
 def find_current_goal(states: tuple[GoalState, ...]) -> int:
-    """Return the index of the goal to show in detail by default: the first missed one, else the first open one."""
+    """Return the index of the goal whose details are shown by default: the first missed one, else the first open."""
     for state in (GoalState.MISSED, GoalState.OPEN):
         if state in states:
             return states.index(state)
@@ -88,17 +88,17 @@ def find_current_goal(states: tuple[GoalState, ...]) -> int:
 def draw_goals(
     view: GoalsView, states: tuple[GoalState, ...], chosen: int, first: int, width: int, height: int
 ) -> GoalsPicture:
-    """Return the text for a panel of that inner size.
+    """Return the lines of the goals panel.
 
-    The rows of the list depend only on the goals and the size, so that they stay where they are during a run.
+    The rows of the list depend only on the goals and the size, so that they stay in place during a run.
 
     Args:
         view: The goals.
         states: Their states.
-        chosen: Index of the goal that is shown in detail.
-        first: The first row of the detail to show, if it has so many.
-        width: Columns.
-        height: Rows.
+        chosen: Index of the goal whose details are shown.
+        first: First row of the details to show, if there are so many.
+        width: Columns inside the border.
+        height: Rows inside the border.
     """
     if not view.goals:
         return GoalsPicture(list(_wrap_text(NO_GOALS, width, _PALE)))
@@ -143,15 +143,15 @@ def draw_goals(
 def _select_rows(
     listed: list[tuple[Line, int]], chosen: int, max_rows: int
 ) -> list[tuple[Line, int]]:
-    """Return at most `max_rows` lines of a list, with those of the chosen goal."""
+    """Return at most `max_rows` lines of a list, among them those of the chosen goal."""
     begins = next(row for row, (_, index) in enumerate(listed) if index == chosen)
     first = max(0, min(begins - max_rows // 2, len(listed) - max_rows))
     return listed[first : first + max_rows]
 
 
 def _build_header(goal: Goal, state: GoalState, width: int) -> Iterator[Line]:
-    """Yield sign, word, name and points; a long name goes on in further lines."""
-    # A goal that takes points off is best missed.
+    """Yield the sign, the state, the name and the points of a goal; a long name continues in further lines."""
+    # For a goal that takes points off, being missed is the good state.
     good = (
         {GoalState.MET: GoalState.MISSED, GoalState.MISSED: GoalState.MET}
         if goal.points < 0
@@ -170,7 +170,7 @@ def _build_header(goal: Goal, state: GoalState, width: int) -> Iterator[Line]:
 
 
 def _detail(judgement: Judgement, state: GoalState, width: int) -> Iterator[Line]:
-    """Yield the text about one goal, the most useful lines first, for there may be few rows."""
+    """Yield the lines about one goal; the most useful ones come first, as there may be few rows."""
     goal = judgement.goal
     line = f", line {judgement.line}" if judgement.line else ""
     match state:
@@ -194,7 +194,7 @@ def _detail(judgement: Judgement, state: GoalState, width: int) -> Iterator[Line
 
 
 def _describe_moment(judgement: Judgement) -> str:
-    """Return when and where a goal was decided."""
+    """Return in words when and where a goal was decided; empty if it is not decided."""
     if all(part.KIND is ConditionKind.FIXED for part in judgement.goal.parts):
         return "by the program's text"
     if (event := judgement.event) is None:

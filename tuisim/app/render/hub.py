@@ -43,15 +43,15 @@ def draw_hub(
     *,
     has_matrix: bool = True,
 ) -> BrickPicture:
-    """Return the hub for a panel of that inner size.
+    """Return the picture of a hub for a panel.
 
     Args:
         face: What the hub shows.
         pressed: Buttons that are held down.
-        width, height: Columns and rows, at least 1; the buttons have priority, then those of a connected remote control
-            or game controller, the matrix, bumpers and sound.
+        width, height: Columns and rows inside the border, at least 1; the buttons come first, then those of a connected
+            remote control or game controller, the matrix, bumpers and sound.
         bumpers: Ports of the force sensors.
-        has_matrix: Whether it has a matrix, and more than one button.
+        has_matrix: Whether the hub has a matrix, and more than one button.
     """
     keys = [*_draw_controllers(face, pressed, width)][: height - 1]
     matrix = face.matrix if has_matrix else []
@@ -78,7 +78,7 @@ def draw_hub(
 
 
 def _draw_pixels(levels: Sequence[int], width: int) -> list[Run]:
-    """Return one row of the matrix; the shape of a pixel is for terminals and users without colour."""
+    """Return one row of the hub's matrix; lit pixels have another shape, too, for users without colour."""
     line: list[Run] = [(" " * max(0, (width - 3 * len(levels)) // 2), _PLAIN)]
     for level in levels:
         shade = round(_DARK + (_LIT - _DARK) * level / 255)
@@ -90,7 +90,7 @@ def _draw_pixels(levels: Sequence[int], width: int) -> list[Run]:
 def _draw_buttons(
     face: BrickState, pressed: Collection[str], names: Sequence[str], width: int, row: int
 ) -> tuple[list[Run], tuple[ButtonBox, ...]]:
-    """Return the row of the buttons between two pieces of the status light, and their areas."""
+    """Return a row with the hub's buttons between two pieces of its status light, and the cells of each button."""
     light = "   ", _build_light(face.find_light())
     first = max(0, (width - 4 * len(names) - 7) // 2)
     labels = {name: f" {_SYMBOLS[name]} " for name in names}
@@ -100,14 +100,14 @@ def _draw_buttons(
 
 
 def _build_light(levels: Iterable[int]) -> Style:
-    """Return the style of a light from its red, green and blue."""
+    """Return the style of a light from its red, green and blue levels."""
     return Style(bgcolor=Color.from_rgb(*(max(_DARK // 2, level) for level in levels)))
 
 
 def _draw_controllers(
     face: BrickState, pressed: Collection[str], width: int
 ) -> Iterator[tuple[list[Run], tuple[ButtonBox, ...]]]:
-    """Yield rows of keys of the connected controllers, each with the light of the controller, and the keys' areas."""
+    """Yield the rows of the connected controllers: the light and the keys of each, and the cells of the keys."""
     for port, port_keys in CONTROLLERS.items():
         levels = face.find_light(port)
         if not levels:

@@ -46,7 +46,7 @@ _GOAL_MARKS = {
 
 
 class Away(StrEnum):
-    """What has the keys in place of the app: nothing, the editor, or a log."""
+    """What gets the keys while the app does not: nothing, the editor, or a log."""
 
     NO = "no"
     EDITOR = "editor"
@@ -58,10 +58,10 @@ NO_LESSON = "No lesson is open: M opens one"
 
 @dataclass(frozen=True, slots=True)
 class LessonView:
-    """The content of the lesson panel."""
+    """The content of the lesson panel: the lesson, the states of its steps, and the result of the last run."""
 
     lesson: Lesson | None = None
-    """None: no lesson is open."""
+    """The open lesson; None for none."""
     states: tuple[StepState, ...] = ()
     """The state of each step."""
     at: int | None = None
@@ -87,18 +87,18 @@ class LessonView:
 
     @property
     def last_page(self) -> int:
-        """The number of the last page: the steps have one each, and the end of the lesson another."""
+        """The number of the last page; each step has a page, and so has the end of the lesson."""
         return 0 if self.lesson is None else len(self.lesson.steps)
 
     @property
     def page(self) -> int:
-        """The page to show unless the user turns to another."""
+        """The number of the page to show unless the user turns to another one."""
         return self.last_page if self.at is None else self.at
 
 
 @dataclass(frozen=True, slots=True)
 class LessonPicture:
-    """The text of the panel."""
+    """The lines of the lesson panel, and which part of the text they are."""
 
     lines: list[Line]
     first: int = 0
@@ -110,15 +110,15 @@ class LessonPicture:
 def draw_lesson(
     view: LessonView, page: int, first: int, width: int, height: int, away: Away = Away.NO
 ) -> LessonPicture:
-    """Return the text for a panel of that inner size.
+    """Return the lines of the lesson panel.
 
     Args:
         view: The lesson.
         page: The page to show, see `LessonView.page`.
-        first: The first row of the text to show, if it has so many; -1: the title of the step.
-        width: Columns.
-        height: Rows.
-        away: Where the keys go: in the editor and in a log, the app's keys work only after escape.
+        first: First row of the text to show, if there are so many; -1 for the title of the step.
+        width: Columns inside the border.
+        height: Rows inside the border.
+        away: What gets the keys: in the editor and in a log, the app's keys work only after escape.
     """
     if view.lesson is None:
         return LessonPicture(list(_wrap_text(NO_LESSON, width, _PALE)))
@@ -141,7 +141,7 @@ def draw_lesson(
 
 
 def _build_head(view: LessonView, page: int, width: int) -> Line:
-    """Return the title with a mark for each step; the step on the page is underlined."""
+    """Return the title of the lesson with a mark for each step; that of the step on the page is underlined."""
     assert view.lesson is not None
     marks: Line = []
     for index, state in enumerate(view.states):
@@ -152,7 +152,7 @@ def _build_head(view: LessonView, page: int, width: int) -> Line:
 
 
 def _build_page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]:
-    """Yield a step: first what the last run has shown, then the text, the question, and the hints."""
+    """Yield the page of a step: the result of the last run, then the text, the question, and the hints."""
     assert view.lesson is not None
     lesson = view.lesson
     step = view.lesson.steps[page]
@@ -190,7 +190,7 @@ def _build_page(view: LessonView, page: int, width: int, away: Away) -> Iterator
             f"{_escape(away)}Y shows hint {view.hints + 1} of {len(step.hints)}.", width, _PALE
         )
     if page == 0 and not view.judgements and not view.hints:
-        # Last: in a low terminal, the task stays in view.
+        # This comes last, so that a low terminal shows the task.
         yield []
         yield from _wrap_text(f"On a real robot: {lesson.why}", width, _PALE)
 
@@ -207,7 +207,7 @@ def _escape(away: Away) -> str:
 
 
 def _describe_done(step: LessonStep, story: str, width: int, away: Away) -> Iterator[Line]:
-    """Yield that a step has just been done, by what, why that was right, and how to read it again."""
+    """Yield lines about the step before, which was just done: by what, why that was right, and how to read it again."""
     yield from _wrap_text(f"✓ {step.title}", width, _GOOD)
     yield from _wrap_text(story, width, _PALE)
     yield from _wrap_text(step.why, width, _PLAIN)
@@ -222,7 +222,7 @@ def _build_question(question: QuestionCheck, width: int) -> Iterator[Line]:
 
 
 def _build_result(view: LessonView, step: LessonStep, width: int, away: Away) -> Iterator[Line]:
-    """Yield how the last run did on the goals of a step."""
+    """Yield lines about the result of the last run: the goals of a step that it has met and missed."""
     if not isinstance(step.check, RunCheck) or not view.judgements:
         return
     if view.elsewhere and not step.check.anywhere:
@@ -230,12 +230,12 @@ def _build_result(view: LessonView, step: LessonStep, width: int, away: Away) ->
     if view.error:
         yield from _wrap_text(f"The program stopped with an error: {view.error}.", width, _BAD)
     by_name = {each.goal.name: each for each in view.judgements}
-    # What was missed comes first: in a low terminal, the reason is in view.
+    # The missed goals come first, so that a low terminal shows the reason.
     for name in sorted(
         step.check.goals, key=lambda name: by_name[name].state is not GoalState.MISSED
     ):
         judgement = by_name[name]
-        # After an error, missed goals tell nothing: the error has to be mended first.
+        # After an error, missed goals say nothing: the error has to be fixed first.
         is_told = judgement.state is not GoalState.MISSED or not view.error
         mark, style = _GOAL_MARKS[judgement.state if is_told else GoalState.OPEN]
         for index, row in enumerate(textwrap.wrap(judgement.goal.say or name, max(1, width - 2))):
@@ -250,7 +250,7 @@ def _build_result(view: LessonView, step: LessonStep, width: int, away: Away) ->
 
 
 def _describe_task(view: LessonView, step: LessonStep, away: Away) -> str:
-    """Return what the step waits for, or the keys that do it."""
+    """Return in words what the student has to do in a step, with the keys for it."""
     match step.check:
         case RunCheck(times=times, seeds=seeds):
             count = (
@@ -269,7 +269,7 @@ def _describe_task(view: LessonView, step: LessonStep, away: Away) -> str:
 
 
 def _end(view: LessonView, width: int, away: Away) -> Iterator[Line]:
-    """Yield the end of a lesson: what it is good for, and the model answer if every step was done."""
+    """Yield the last page of a lesson: what it is good for, and the model answer if every step was done."""
     assert view.lesson is not None
     skipped = sum(state is StepState.SKIPPED for state in view.states)
     still_open = sum(state is StepState.OPEN for state in view.states)
@@ -288,7 +288,7 @@ def _end(view: LessonView, width: int, away: Away) -> Iterator[Line]:
         if view.next_title
         else "This was the last lesson."
     )
-    # Early: in a low terminal, the way on is in view.
+    # This comes early, so that a low terminal shows how to go on.
     yield from _wrap_text(following, width, _HINT)
     yield []
     if view.done:

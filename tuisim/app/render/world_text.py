@@ -33,7 +33,7 @@ def draw_world_text(
     zoom: int,
     has_floor: bool,
 ) -> list[str]:
-    """Return the rows of the picture.
+    """Return the picture of the world as rows of characters without colours.
 
     Args:
         mat: The mat, shape (height in mm, width in mm, 3).
@@ -62,7 +62,7 @@ def draw_world_text(
 
 
 def build_legend(now: Snapshot, width: int) -> str:
-    """Return words that fit for the other robots in the picture, such as `grey: the earlier run`; empty without any."""
+    """Return as many words as fit about the other robots in the picture, such as `grey: the earlier run`; or ""."""
     drawn = (
         now.now_pose is not None and not describe_off_field(now.now_pose),
         now.earlier_pose is not None,
@@ -84,7 +84,7 @@ def build_legend(now: Snapshot, width: int) -> str:
 
 
 def draw_signs(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
-    """Return the signs that show the robots where there are no colours: cells by row and column."""
+    """Return signs for the robots in a picture without colours: cells by row and column."""
     outline = build_outline(scene.robot)
     reach_mm = outline.front_mm * choose_scale(outline, port)
     now = dict(scene.faint).get(Faint.NOW)
@@ -106,17 +106,17 @@ _AHEAD_CELLS = 2.0
 def draw_pointer(
     view: Viewport, pose: Pose, reach_mm: float, pivot: str
 ) -> dict[tuple[int, int], int]:
-    """Return signs that show place and heading of a robot, by row and column of their cells.
+    """Return signs for the position and the heading of a robot: cells by row and column.
 
     Args:
         view: The visible part of the field.
         pose: Where the robot is.
         reach_mm: How far the drawn robot reaches ahead; the pointer is longer.
-        pivot: The sign for the place of the robot.
+        pivot: The sign at the position of the robot.
     """
     width_mm, height_mm = view.mm_per_px * view.cell.cols, view.mm_per_row * view.cell.rows
     heading = math.radians(pose.heading_deg)
-    # From the middle of a cell, so that it does not change while the robot drives on straight.
+    # The pointer begins in the middle of a cell, so that it does not change while the robot drives straight on.
     col = math.floor((pose.x_mm - view.left_mm) / width_mm) + 0.5
     row = math.floor((view.top_mm - pose.y_mm) / height_mm) + 0.5
     length = reach_mm / width_mm + _AHEAD_CELLS

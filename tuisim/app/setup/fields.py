@@ -45,7 +45,7 @@ MAX_LABEL = 12
 
 @dataclass(frozen=True, slots=True)
 class FormField:
-    """An editable value of the plan."""
+    """One value of the next run's plan that the user can edit in a form."""
 
     id: str
     label: str
@@ -60,14 +60,14 @@ class FormField:
 
 @dataclass(frozen=True, slots=True)
 class FieldGroup:
-    """Fields under one heading."""
+    """The fields of a form under one heading."""
 
     title: str
     edits: tuple[FormField, ...]
 
 
 def build_sections(plan: NextRun) -> list[FieldGroup]:
-    """Return every field of a plan; the fields depend on the sensors of its robot."""
+    """Return the fields of the form for a plan, in groups; which fields there are depends on the robot's sensors."""
     sensors = {
         sensor.name: sensor
         for sensor in (*plan.robot.spec.color_sensors, *plan.robot_choice.spec.color_sensors)
@@ -93,7 +93,7 @@ def build_sections(plan: NextRun) -> list[FieldGroup]:
 
 
 def _parse_value(value: Value, text: str) -> Any:
-    """Return a typed or chosen text as a value; a number may have a comma in place of the point."""
+    """Return the value that a typed or chosen text stands for; a decimal comma is accepted."""
     one_number = isinstance(value, Number) and not isinstance(value, Numbers)
     try:
         return value.parse_text(text.strip().replace(",", ".") if one_number else text.strip())
@@ -101,7 +101,7 @@ def _parse_value(value: Value, text: str) -> Any:
         raise RobotError(error.message, error.hint) from None
 
 
-# The robot. The fields show the robot on its mat, and edit the robot as it was chosen.
+# The following functions build the fields of the robot, which show it on its mat, and edit it as it was chosen.
 
 
 def _build_robot_field(
@@ -121,7 +121,9 @@ def _build_value_field(edit_id: str, value: Value, path: Callable[[RobotSpec], s
     """Return the field of a value of the robot.
 
     Args:
-        path: Returns its path in a robot.
+        edit_id: Id of the field.
+        value: The value.
+        path: Returns the path of the value in a robot.
     """
 
     def change(robot: RobotSpec, text: str) -> RobotSpec:
@@ -136,7 +138,7 @@ def _build_value_field(edit_id: str, value: Value, path: Callable[[RobotSpec], s
 
 
 def _build_motor_port_field(key: str, value: Value) -> FormField:
-    """Return the field for the port of a wheel's motor; a motor that already uses the port gets the freed one."""
+    """Return the field for the port of a wheel motor; if the other one is on the chosen port, the two swap ports."""
     other = "right_port" if key == "left_port" else "left_port"
 
     def change(robot: RobotSpec, port: str) -> RobotSpec:
@@ -176,7 +178,11 @@ def _collect_sensors(robot: RobotSpec) -> dict[str, SensorSpec]:
 
 
 def _find_path(robot: RobotSpec, name: str, key: str) -> str:
-    """Return the path of a value of a sensor."""
+    """Return the path of a sensor's value in the robot.
+
+    Raises:
+        LookupError: the robot has no such sensor.
+    """
     for mount in MOUNTS:
         for sensor in robot.list_sensors(mount):
             if sensor.name == name:
@@ -185,7 +191,7 @@ def _find_path(robot: RobotSpec, name: str, key: str) -> str:
 
 
 def _replace_sensors(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
-    """Return the robot with some sensors replaced, all at once because two may have swapped ports."""
+    """Return a robot with some of its sensors replaced, all in one step because two may have swapped ports."""
     changed = {part.name: part for part in parts}
     by_field: dict[str, Any] = {}
     for mount in MOUNTS:
@@ -195,7 +201,7 @@ def _replace_sensors(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
 
 
 def _build_sensor_fields(part: SensorSpec) -> tuple[FormField, ...]:
-    """Return the fields of a sensor that is mounted."""
+    """Return the fields of a sensor that the robot has."""
 
     def build_field(key: str, value: Value) -> FormField:
         if key == "port":
@@ -210,7 +216,7 @@ def _build_sensor_fields(part: SensorSpec) -> tuple[FormField, ...]:
 
 
 def _build_sensor_port_field(name: str) -> FormField:
-    """Return the field for a sensor's port; a sensor that already uses the port gets the freed one."""
+    """Return the field for the port of a sensor; if another sensor is on the chosen port, the two swap ports."""
 
     def change(robot: RobotSpec, port: str) -> RobotSpec:
         parts = _collect_sensors(robot)
@@ -247,7 +253,7 @@ def _find_free_port(robot: RobotSpec, preferred: str) -> str:
 
 
 def _move_sensor(plan: NextRun, text: str, name: str) -> NextRun:
-    """Change a colour sensor's x; the other sensors stay where the mat has put them."""
+    """Return a plan in which a colour sensor has another x; the positions that the mat gives other sensors stay."""
     on_mat = {sensor.name: sensor for sensor in plan.spec.robot.color_sensors}
     robot = plan.robot_choice.spec
     x_mm = _parse_value(list_values(ColorSensorSpec)["x_mm"], text)
@@ -293,7 +299,7 @@ def _build_color_sensor_fields(
 def _build_single_fields(
     plan: NextRun, field: str, kind: type[SensorSpec]
 ) -> tuple[FormField, ...]:
-    """Return the fields of the ultrasonic sensor or the gyro, the first of which adds or removes it."""
+    """Return the fields of the ultrasonic sensor or the gyro; the first field adds or removes the sensor."""
     mounted: SensorSpec | None = getattr(plan.robot_choice.spec, field)
     fresh: SensorSpec = mounted or getattr(plan.robot.spec, field) or kind()
 
@@ -312,7 +318,7 @@ def _build_single_fields(
 
 
 def _run_field(path: str) -> FormField:
-    """Return the field of a value of the world or the pen, by its path in the settings."""
+    """Return the field of a value of the world or the pen, given by its path in the settings."""
     spec_path, value, _ = RUN_VALUES[path]
     return FormField(
         path,
@@ -364,7 +370,7 @@ def _change_arguments(plan: NextRun, text: str) -> NextRun:
 
 
 def find(plan: NextRun, edit_id: str) -> FormField | None:
-    """Return a field by its id, None if this robot has no such field."""
+    """Return the field with an id; None if the plan's robot has no such field."""
     return next(
         (edit for section in build_sections(plan) for edit in section.edits if edit.id == edit_id),
         None,
@@ -372,7 +378,7 @@ def find(plan: NextRun, edit_id: str) -> FormField | None:
 
 
 def step(edit: FormField, plan: NextRun, by: int) -> str:
-    """Return the choice `by` steps after the current one."""
+    """Return the choice of a field that is `by` steps after its current one in a plan."""
     now = edit.read(plan)
     choices = edit.choices
     return choices[(choices.index(now) + by) % len(choices)] if now in choices else choices[0]

@@ -21,7 +21,7 @@ MatKey = tuple[str, str, frozenset[int], bool]
 
 
 def mat_key(spec: RunSpec) -> MatKey:
-    """Return the key of the mat that a run needs."""
+    """Return the key of the mat for a run; two runs with the same key use the same prepared mat."""
     diameters = frozenset(sensor.diameter_mm for sensor in spec.robot.color_sensors)
     world = spec.world
     return world.background, world.background_fit, diameters, world.is_open
@@ -29,27 +29,27 @@ def mat_key(spec: RunSpec) -> MatKey:
 
 @dataclass(frozen=True, slots=True)
 class Mat:
-    """A mat ready to be read and drawn."""
+    """A prepared mat: its image for the screen, and its readings for the sensors."""
 
     key: MatKey
     field: Field | None
-    """None if the mat is no longer available: then no sensor can be measured."""
+    """The mat as the sensors see it; None if it is no longer available, so that no sensor can be measured."""
     pixels: NDArray[np.uint8]
     """Shape (height, width, 3), rows from the top."""
 
     def serves(self, spec: RunSpec) -> bool:
-        """Return whether this is the mat of a run, prepared for its sensors."""
+        """Return whether this is the mat of a run with a specification, prepared for the run's sensors."""
         *same, diameters, has_floor = mat_key(spec)
         return (*same, has_floor) == (*self.key[:2], self.key[3]) and diameters <= self.key[2]
 
     @property
     def name(self) -> str:
-        """The name in the specification."""
+        """The name of the mat as in a specification."""
         return self.key[0]
 
 
 def prepare_mat(spec: RunSpec) -> Mat:
-    """Prepare the mat of a run. Blocks, long the first time: call it in a thread.
+    """Prepare the mat of a run, and return it. Blocks, long the first time: call it in a thread.
 
     Raises:
         BackgroundError: there is no such mat, or its image cannot be read.
@@ -60,16 +60,16 @@ def prepare_mat(spec: RunSpec) -> Mat:
 
 
 def prepare_stored_mat(run: StoredRun) -> Mat:
-    """Return the exact mat of a stored run; blocks as `prepare_mat` does.
+    """Return the very mat that a stored run had; blocks as `prepare_mat` does.
 
     Raises:
-        LogError: it is no longer available.
+        LogError: the mat is no longer available.
     """
     return _open_mat(mat_key(run.spec), run.find_mat_files())
 
 
 def make_blank_mat(spec: RunSpec) -> Mat:
-    """Return a white sheet in place of a missing mat; sensors have nothing to read on it."""
+    """Return a white mat in place of a missing one; the sensors have no readings on it."""
     return Mat(mat_key(spec), None, np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8))
 
 

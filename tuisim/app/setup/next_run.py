@@ -58,7 +58,7 @@ WORLD_PATHS = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class NextRun:
-    """The plan of the next run."""
+    """The plan of the next run: its settings, its specification, and where they come from."""
 
     settings: Settings
     """The choices. Robot, obstacles and profile are objects, so that no later change depends on a file."""
@@ -72,42 +72,42 @@ class NextRun:
     program_robot: RobotChoice | None = None
     """The robot that the program needs; None for the default one."""
     shown_ports: tuple[str, ...] | None = None
-    """As `Program.shown_ports`, while the robot follows the program."""
+    """The ports that the panels show, as `Program.shown_ports`, while the robot follows the program."""
 
     @property
     def free(self) -> frozenset[str]:
-        """The fields that still follow the program: they are as it has left them."""
+        """The settings that the program has decided and nobody has changed since; another program may change them."""
         return frozenset(
             key for key, value in self.from_program.items() if self.settings[key] == value
         )
 
     @property
     def actions(self) -> tuple[UserAction, ...]:
-        """The user actions that the setting `press` asks for."""
+        """The user actions of the next run, from the setting `press`."""
         return press_actions(self.settings["press"], self.spec.profile.tick_hz)
 
     @property
     def robot_is_edited(self) -> bool:
-        """Whether the robot differs from the chosen one."""
+        """Whether the user has changed parts of the chosen robot."""
         return self.robot_choice != self.robot
 
     @property
     def robot_choice(self) -> RobotChoice:
-        """The robot with its edits, not as modified by the mat."""
+        """The chosen robot with the user's changes, without those that the mat makes."""
         choice = self.settings["robot"]
         assert isinstance(choice, RobotChoice)
         return choice
 
 
 def build_plan(settings: Settings, free: Iterable[str] = ()) -> NextRun:
-    """Return the plan for settings.
+    """Return a plan with some settings.
 
     Args:
-        settings: The choices.
-        free: The fields that nobody has chosen, and that follow the program.
+        settings: The settings.
+        free: The settings that nobody has chosen, so that programs decide about them.
 
     Raises:
-        ConfigError: they name something that does not exist, or an invalid file.
+        ConfigError: a setting names something that does not exist, or an invalid file.
     """
     world, words = _resolve_choices({path: settings[path] for path in WORLD_PATHS})
     settings = settings.changed(world)
@@ -122,8 +122,8 @@ def build_first_plan(
 
     Args:
         spec: The specification of the run.
-        settings: The settings that it was built from; None if they are not known, as for a stored run.
-        decided: The settings among them that the source of the program has decided.
+        settings: The settings from which `spec` was built; None if they are unknown, as for a stored run.
+        decided: Those of the settings that the text of the program has decided.
         program: The program of the run.
     """
     if settings is None:
@@ -133,14 +133,14 @@ def build_first_plan(
 
 
 def plan_spec(spec: RunSpec) -> NextRun:
-    """Return the plan of a run of which nothing else is known."""
+    """Return the plan of a run of which only the specification is known."""
     return replace(build_plan(merge_settings(extract_settings(spec))), spec=spec)
 
 
 def plan_rerun(spec: RunSpec, program: Program | None = None) -> NextRun:
-    """Return the plan for repeating a run with the arguments of its program, and the presses of its first line.
+    """Return the plan for repeating a run, with the arguments of its program and the presses in its magic line.
 
-    The mat may be missing: it has to be found before the start.
+    The mat of the run may be missing; the caller must look for it before the start.
     """
     try:
         plan = plan_spec(spec)
@@ -153,7 +153,7 @@ def plan_rerun(spec: RunSpec, program: Program | None = None) -> NextRun:
 
 
 def read_first_line(program: Program | None) -> Mapping[str, Any]:
-    """Return the settings of the magic line of a program; empty if the line is invalid."""
+    """Return the settings in the magic line of a program; empty without a program, or if that line is invalid."""
     if program is None:
         return {}
     try:
@@ -164,7 +164,7 @@ def read_first_line(program: Program | None) -> Mapping[str, Any]:
 
 
 def _resolve_choices(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return robot, obstacles and profile as objects, and the words that named them."""
+    """Return robot, obstacles and profile as objects, and the words that have named them, both by setting."""
     resolved = dict(choices)
     words = {}
     for key, load in (
@@ -178,7 +178,7 @@ def _resolve_choices(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[s
 
 
 def change_values(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
-    """Return the plan with changed settings, by path, that need no file.
+    """Return a plan with other values of some settings, by path; not for settings that name a file.
 
     Raises:
         ConfigError: the mat is missing, or a value is invalid.
@@ -188,7 +188,7 @@ def change_values(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
 
 
 def apply_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
-    """Return the plan with the choices of a magic line or a world file applied; the rest stays.
+    """Return a plan with the settings of a magic line or a world file; all other settings stay.
 
     Args:
         plan: The current plan.
@@ -225,7 +225,10 @@ def apply_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
 
 
 def follow_program(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
-    """Return the plan with what the source of a program decides where nobody has chosen, and the decision if it is new.
+    """Return a plan with the settings that a program's text decides, as far as nobody has chosen them.
+
+    Returns:
+        The plan, and the settings that the text has decided newly.
 
     Raises:
         ConfigError: the mat is missing.
@@ -256,13 +259,13 @@ def follow_program(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decid
 
 
 def free_settings(plan: NextRun, keys: Iterable[str]) -> NextRun:
-    """Return the plan with settings that nobody chooses any more, so that they follow the program where they can."""
+    """Return a plan in which nobody has chosen some settings, so that programs decide about them."""
     free = {key: plan.settings[key] for key in keys if key in PROGRAM_PATHS}
     return replace(plan, from_program={**plan.from_program, **free})
 
 
 def follow_program_robot(plan: NextRun) -> NextRun:
-    """Return the plan with the robot that the program needs, which follows the program from now on."""
+    """Return a plan with the robot that the program needs, instead of a chosen one; later programs may change it."""
     chosen = plan.program_robot or choose_robot(DEFAULT_ROBOT)
     words = {key: word for key, word in plan.words.items() if key != "robot"}
     following = {**plan.from_program, "robot": chosen}
@@ -272,7 +275,7 @@ def follow_program_robot(plan: NextRun) -> NextRun:
 
 
 def change_mat(plan: NextRun, name: str) -> NextRun:
-    """Return the plan on another mat, with that mat's start pose, obstacles and sensor positions.
+    """Return a plan with another mat, and the start pose, obstacles and sensor positions of that mat.
 
     Raises:
         BackgroundError: there is no such mat.
@@ -281,7 +284,7 @@ def change_mat(plan: NextRun, name: str) -> NextRun:
 
 
 def change_robot(plan: NextRun, word: str) -> NextRun:
-    """Return the plan with another robot, by name or from a file.
+    """Return a plan with another robot, given by its name or file.
 
     Raises:
         RobotError: there is no robot of that name, or the file is invalid.
@@ -290,7 +293,7 @@ def change_robot(plan: NextRun, word: str) -> NextRun:
 
 
 def change_profile(plan: NextRun, word: str) -> NextRun:
-    """Return the plan with another profile, by name or from a file.
+    """Return a plan with another profile, given by its name or file.
 
     Raises:
         ProfileError: there is no profile of that name, or the file is invalid.
@@ -299,16 +302,16 @@ def change_profile(plan: NextRun, word: str) -> NextRun:
 
 
 def undo_robot_edits(plan: NextRun) -> NextRun:
-    """Return the plan with every edit of the robot undone."""
+    """Return a plan with the chosen robot as it is without the user's changes."""
     return change_values(plan, {"robot": plan.robot})
 
 
 def edit_robot(plan: NextRun, robot: RobotSpec, moved: bool = False) -> NextRun:
-    """Return the plan with an edited robot.
+    """Return a plan with a robot that the user has changed.
 
     Args:
         plan: The current plan.
-        robot: The edited `plan.robot_choice.spec`.
+        robot: The changed `plan.robot_choice.spec`.
         moved: Whether a colour sensor was moved: then the mat's sensor positions no longer apply.
 
     Raises:
@@ -321,12 +324,12 @@ def edit_robot(plan: NextRun, robot: RobotSpec, moved: bool = False) -> NextRun:
 
 
 def build_saved_robot(plan: NextRun) -> RobotSpec:
-    """Return the robot as chosen and edited, not as modified by the mat, with the pen of the plan."""
+    """Return the robot to save: the chosen one with the user's changes and the pen, without the changes of the mat."""
     return replace(plan.robot_choice.spec, pen=plan.spec.robot.pen)
 
 
 def change_obstacle_set(plan: NextRun, word: str) -> NextRun:
-    """Return the plan with a set of obstacles, by name or from a file.
+    """Return a plan with another set of obstacles, given by its name or file.
 
     Raises:
         ObstacleError: there is no set of that name, or the file is invalid.
@@ -335,18 +338,19 @@ def change_obstacle_set(plan: NextRun, word: str) -> NextRun:
 
 
 def change_obstacles(plan: NextRun, obstacles: tuple[Obstacle, ...]) -> NextRun:
-    """Return the plan with these obstacles."""
+    """Return the plan with other obstacles."""
     settings = plan.settings.changed({"obstacles": obstacles})
     words = {path: word for path, word in plan.words.items() if path != "obstacles"}
     spec = replace(plan.spec, world=replace(plan.spec.world, obstacles=obstacles))
     return replace(plan, settings=settings, spec=spec, words=words)
 
 
-# These are called many times a second during a drag: the specification is changed, not rebuilt.
+# The following functions are called many times a second during a drag: they change the specification, and do not
+# rebuild it.
 
 
 def _put(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
-    """Return the plan with other values, by path, on which nothing else in the specification depends."""
+    """Return a plan with other values, by path; not for values on which others in the specification depend."""
     spec_values = {RUN_VALUES[path].spec_path: value for path, value in values.items()}
     return replace(
         plan, settings=plan.settings.changed(values), spec=tree.put_all(plan.spec, spec_values)
@@ -359,7 +363,7 @@ def move_start(plan: NextRun, pose: Pose) -> NextRun:
 
 
 def change_noise(plan: NextRun, noise: NoiseSpec) -> NextRun:
-    """Return the plan with other noise."""
+    """Return the plan with other noise of light and motors."""
     # A robot file may set the noise of its motors and sensors: it applies until the user sets the noise.
     before = plan.spec.world.noise
     changed = {"noise.light": noise.light, "noise.motor": noise.motor}
@@ -384,5 +388,5 @@ def change_seed(plan: NextRun, seed: int) -> NextRun:
 
 
 def change_pen(plan: NextRun, down: bool) -> NextRun:
-    """Return the plan with the pen down or up at the start."""
+    """Return the plan with the pen down or up at the start of the run."""
     return _put(plan, {"pen.down": down})

@@ -31,14 +31,14 @@ Corners = Sequence[tuple[float, float]]
 
 
 def choose_random_pose(spec: RunSpec, chance: random.Random) -> Pose | None:
-    """Return a random pose in whole mm and degrees at which the robot's outline is on the field.
+    """Return a random pose in whole mm and degrees at which the whole robot is on the field.
 
     Args:
-        spec: Robot and world; where obstacles are solid, the outline is clear of them.
+        spec: Robot and world; the robot touches no solid obstacle.
         chance: The random number generator.
 
     Returns:
-        None if no free place was found.
+        None if no such pose was found.
     """
     for _ in range(MAX_TRIES):
         x_mm, y_mm = chance.randint(0, FIELD_WIDTH_MM), chance.randint(0, FIELD_HEIGHT_MM)
@@ -49,7 +49,7 @@ def choose_random_pose(spec: RunSpec, chance: random.Random) -> Pose | None:
 
 
 def has_room(spec: RunSpec, pose: Pose) -> bool:
-    """Return whether the robot's outline is on the field, and clear of obstacles where those are solid."""
+    """Return whether the whole robot is on the field at a pose, and touches no solid obstacle."""
     corners = [world_point(pose, x, y) for x, y in build_outline(spec.robot).corners_mm]
     if not all(0 <= x <= FIELD_WIDTH_MM and 0 <= y <= FIELD_HEIGHT_MM for x, y in corners):
         return False
@@ -68,7 +68,7 @@ def has_room(spec: RunSpec, pose: Pose) -> bool:
 
 
 def _overlap(first: Corners, other: Corners, heading_deg: float) -> bool:
-    """Return whether two rectangles overlap: no side of either separates them."""
+    """Return whether two rectangles, of which one is turned by a heading, overlap."""
     heading = math.radians(heading_deg)
     axes = (
         (1.0, 0.0),
@@ -91,7 +91,7 @@ _HEAD = "# Poses saved in tuisim: mm from the lower left corner, degrees counter
 
 
 def find_poses_file() -> Path:
-    """Return the path of the file of saved poses."""
+    """Return the path of the file with the saved poses; the file need not exist."""
     return home_folder() / FILE
 
 
@@ -99,7 +99,7 @@ def load_poses() -> dict[str, Pose]:
     """Return the saved poses by name, in the order in which they were saved.
 
     Raises:
-        ConfigError: their file cannot be read or is invalid.
+        ConfigError: the file of the poses cannot be read or is invalid.
     """
     path = find_poses_file()
     return _parse_poses(read_file(path, ConfigError)) if path.exists() else {}
@@ -115,7 +115,7 @@ def _parse_poses(data: object) -> dict[str, Pose]:
 
 
 def save_pose(name: str, pose: Pose) -> None:
-    """Save a pose, replacing one of the same name.
+    """Save a pose under a name; one with the same name is replaced.
 
     Raises:
         ConfigError: the name is invalid, the file is invalid or cannot be written, or there are too many poses.
@@ -132,7 +132,7 @@ def save_pose(name: str, pose: Pose) -> None:
 
 
 def delete_pose(name: str) -> None:
-    """Delete a saved pose.
+    """Delete a saved pose, given by its name.
 
     Raises:
         ConfigError: the file is invalid or cannot be written.
@@ -155,7 +155,11 @@ def _write(poses: Mapping[str, Pose]) -> None:
 
 
 def parse_pose(data: object, location: Location) -> Pose:
-    """Return a pose; all of its keys are required.
+    """Return the pose in a table of the file; all of its keys are required.
+
+    Args:
+        data: The table.
+        location: File and place of the table, for errors.
 
     Raises:
         ConfigError: a key is missing or unknown, or a value is wrong.

@@ -24,7 +24,7 @@ _MOST_OF_KIND = 3
 
 
 class Kind(StrEnum):
-    """What an entry is."""
+    """The type of a piece of recent work."""
 
     DRAFT = "draft"
     PROGRAM = "program"
@@ -33,7 +33,7 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Recent:
-    """A piece of recent work: an unsaved text, a program or a run."""
+    """A piece of recent work that the user may continue: an unsaved text, a program or a run."""
 
     kind: Kind
     word: str
@@ -43,10 +43,10 @@ class Recent:
 
 
 def list_recent(new_name: str) -> list[Recent]:
-    """Return recent work to continue, the likeliest first. Reads files.
+    """Return recent work that the user may continue, the most likely first. Reads files.
 
     Args:
-        new_name: Name of a program without a file.
+        new_name: Name for a program without a file.
     """
     own_drafts = [draft for draft in list_drafts() if not draft.path or _is_own(draft.path)][
         :_MOST_OF_KIND
@@ -81,20 +81,20 @@ def list_recent(new_name: str) -> list[Recent]:
         if run.ticks
     ]
     texts = [*unsaved, *programs[:_MOST_OF_KIND]]
-    # The last run is always among them.
+    # Room is left for the last run, which is always listed.
     texts = texts[: _MOST - len(replays[:1])]
     return [*texts, *replays[:_MOST_OF_KIND]][:_MOST]
 
 
 def _list_programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
-    """Yield the path of each program of the user that still is there, and when it ran last."""
+    """Yield the path of each of the user's programs that still exists, and the time of its last run."""
     store = RunStore()
     seen = set()
     for run in runs:
         try:
             program = read_run_file(store.folder(run.id)).get("program")
         except LogError:
-            # The run was removed, or is damaged, which the list of runs says.
+            # The run was removed, or is damaged; the list of runs reports that.
             continue
         path = program.get("path") if isinstance(program, dict) else None
         if (
@@ -108,7 +108,7 @@ def _list_programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
 
 
 def _is_own(path: str) -> bool:
-    """Return whether a program is still there, and is not that of a lesson."""
+    """Return whether a program still exists, and is not that of a lesson."""
     try:
         return Path(path).is_file() and not Path(path).is_relative_to(home_folder())
     except (OSError, ValueError):
@@ -116,7 +116,7 @@ def _is_own(path: str) -> bool:
 
 
 def _name_folder(path: str) -> str:
-    """Return in words in which folder a program is, empty for one without a file."""
+    """Return in words the folder of a program; empty for a program without a file."""
     folder = str(Path(path).parent)
     home = str(Path.home())
     short = f"~{folder.removeprefix(home)}" if folder.startswith(home) else folder
@@ -131,7 +131,7 @@ def _describe_run(run: RunInfo) -> str:
 
 
 def _format_time(seconds: float) -> str:
-    """Return a time in seconds since 1970 in words: of today the time only."""
+    """Return a time, in seconds since 1970, as date and time; if it is of today, without the date."""
     then = time.localtime(seconds)
     is_today = then[:3] == time.localtime()[:3]
     return time.strftime("at %H:%M" if is_today else "on %d %b %H:%M", then)

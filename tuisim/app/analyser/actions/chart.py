@@ -34,7 +34,7 @@ def pan_chart(screen: LogScreen, share: float) -> None:
 
 
 def fit(screen: LogScreen) -> None:
-    """Show the whole time range."""
+    """Show the whole time range of the log in the chart."""
     screen.model.limits = None
 
 

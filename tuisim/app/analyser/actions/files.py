@@ -31,21 +31,21 @@ _REPORT = ((".html", "program, world, chart, bands, statistics and notes on one 
 
 
 def copy_value(screen: LogScreen) -> None:
-    """Copy the cell in the row of the cursor and the selected column."""
+    """Copy the value in the row of the cursor and the selected column to the clipboard."""
     rows = screen.model.rows
     row = screen.model.row
     screen.copy(rows.text(row, rows.chosen), f"{rows.chosen} of row {row + 1}")
 
 
 def copy_row(screen: LogScreen) -> None:
-    """Copy the row of the cursor, with tabs between the cells."""
+    """Copy the row of the cursor to the clipboard, with tabs between the cells."""
     rows = screen.model.rows
     row = screen.model.row
     screen.copy("\t".join(rows.text(row, column) for column in rows.columns), f"Row {row + 1}")
 
 
 def copy_pane(screen: LogScreen) -> None:
-    """Copy the pane in view with its heading, tabs between the cells; of the table, the rows that the filter shows."""
+    """Copy the visible pane with its heading, with tabs between the cells; of the table, only the filtered rows."""
     model = screen.model
     name = screen.pane.name_shown
     if name != "table":
@@ -65,7 +65,7 @@ def copy_pane(screen: LogScreen) -> None:
 
 
 def export(screen: LogScreen) -> None:
-    """Ask for the file to export the rows of the pane to; of the table, only the columns shown."""
+    """Ask for a file, and export the rows of the pane to it; of the table, only the shown columns."""
     from tuisim.logs.export import EXPORTERS, LISTED, check_target, describe_files
 
     pane = screen.pane.name_shown
@@ -102,14 +102,14 @@ def _write_rows(model: AnalysisModel, frame: pd.DataFrame | None, target: Path) 
 
 
 def ask_chart_file(screen: LogScreen) -> None:
-    """Ask for the file to save the chart to: with the time range and the variables as shown."""
+    """Ask for a file, and save the chart to it, with the shown time range and variables."""
     from tuisim.analysis.chart import View, build_chart
     from tuisim.pictures.charts.files import CHART_FORMATS, find_format, save_chart
 
     options = screen.chart.options
 
     def save(target: Path) -> None:
-        # Text gets the size of the chart on the screen, if visible; images have their own size.
+        # A text file gets the size of the chart on the screen, if that is visible; images have a size of their own.
         chart_in_view = (
             screen.chart.size if target.suffix.lower() == ".txt" and screen.chart.display else None
         )

@@ -41,7 +41,7 @@ def switch_telemetry(screen: LogScreen) -> None:
 
 
 def choose_runs(screen: LogScreen) -> None:
-    """Ask which runs to open."""
+    """Ask which stored runs to open, and open their logs."""
     from tuisim.app.dialogs.runs import RunsChooser
 
     def handle_choice(ids: str | None) -> None:
@@ -51,11 +51,11 @@ def choose_runs(screen: LogScreen) -> None:
     screen.app.push_screen(RunsChooser(), handle_choice)
 
 
-# Derived variables
+# The following functions add derived variables.
 
 
 def ask_variable(screen: LogScreen) -> None:
-    """Ask for a derived variable."""
+    """Ask for the definition of a derived variable, and add the variable to the log."""
 
     def go(text: str) -> None:
         model = screen.model
@@ -72,7 +72,7 @@ def ask_variable(screen: LogScreen) -> None:
         if model is of:
             model.apply_definition(text, log)
         else:
-            # The log may have grown while it was computed.
+            # The log has grown meanwhile: compute the variable for its present rows.
             model.derive(text)
         screen.redraw_chart()
 
@@ -140,7 +140,7 @@ def delete_note(screen: LogScreen) -> None:
 
 
 def show_differences(screen: LogScreen) -> None:
-    """Show the differences between the first two open runs; with a single run, ask for the other one."""
+    """Show the differences between the first two open runs; if only one is open, ask for the other one."""
     runs = screen.model.opened.runs
     if not runs:
         screen.say("A file has no recording to compare: R opens stored runs")

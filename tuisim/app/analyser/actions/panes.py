@@ -30,7 +30,7 @@ _THRESHOLDS = (
 
 
 def show_events(screen: LogScreen) -> None:
-    """Show the events; ask for thresholds if there are none, or if the events are shown already."""
+    """Show the pane with the events; if it is shown already or has no thresholds, ask for thresholds."""
     model = screen.model
     is_in_view = screen.pane.name_shown == "events" and screen.pane.display
     screen.show_pane("events")
@@ -45,7 +45,7 @@ def _search(screen: LogScreen, text: str) -> None:
     thresholds = parse_events(text, log)
 
     def show_results(result: tuple[Log, tuple[EventChoice, ...], list[Event | CommandRow]]) -> None:
-        # The log may have grown during the search: search again.
+        # If the log has grown during the search, `list_events` finds the events again.
         screen.model.events.set(*result)
         screen.choose(0)
 
@@ -59,7 +59,7 @@ def _search(screen: LogScreen, text: str) -> None:
 
 
 def cycle_sizes(screen: LogScreen) -> None:
-    """Cycle through chart and pane, chart alone, pane alone."""
+    """Switch from chart and pane to the chart alone, then to the pane alone, and then back to both."""
     both = screen.chart.display and screen.pane.display
     screen.lay_out(chart=both or not screen.chart.display, pane=not both)
 
@@ -86,7 +86,7 @@ def choose(screen: LogScreen, step: int) -> None:
 
 
 def sort(screen: LogScreen) -> None:
-    """Sort by the selected column: ascending at first, then descending, then not at all."""
+    """Sort the table by the selected column: ascending, at the next call descending, then no longer."""
     model = screen.model
     rows = screen.model.rows
     if rows.view.sorted_by != rows.chosen:
@@ -115,7 +115,7 @@ def _arrange(screen: LogScreen, model: AnalysisModel, arrangement: TableView) ->
 
 
 def select(screen: LogScreen) -> None:
-    """Ask for conditions, and show only the rows that meet them."""
+    """Ask for conditions, and show only the rows of the table that meet them."""
 
     def keep(text: str) -> None:
         model = screen.model
@@ -139,7 +139,7 @@ def select(screen: LogScreen) -> None:
 
 
 def show_all(screen: LogScreen) -> None:
-    """Show every row and every column, in the order of the log."""
+    """Show all rows and all columns of the table, in the order of the log."""
     screen.give_up()
     screen.model.rows.show_all()
 
@@ -156,7 +156,7 @@ def search(screen: LogScreen) -> None:
 
 
 def find(screen: LogScreen, step: int) -> None:
-    """Go to the next match of the search text (1) or the previous one (-1); ask for the text if there is none.
+    """Go to the next match of the search text (1) or the previous one (-1); without a search text, ask for one.
 
     Raises:
         LogError: there is no match. For a long log, which is searched in the background, the screen shows this error.
@@ -211,7 +211,7 @@ def move_pages(screen: LogScreen, step: int) -> None:
 
 
 def go_to_end(screen: LogScreen, last: bool) -> None:
-    """Go to the first or the last row."""
+    """Go to the first row of the pane, or if `last` to its last row."""
     rows(screen, screen.model.log.rows if last else -screen.model.log.rows)
 
 
@@ -226,7 +226,7 @@ def columns(screen: LogScreen, step: int) -> None:
 
 
 def go_to(screen: LogScreen) -> None:
-    """Ask for a row or a time, and go there."""
+    """Ask for a row or a time of the log, and go there."""
 
     def go(text: str) -> None:
         model = screen.model
@@ -249,7 +249,7 @@ def go_to(screen: LogScreen) -> None:
 
 
 def go_to_event(screen: LogScreen, step: int) -> None:
-    """Go to the next event, or the previous one."""
+    """Move the cursor to the next event (1) or the previous one (-1)."""
     model = screen.model
     events = model.events.list_events(model.log)
     if not events:
