@@ -56,10 +56,10 @@ _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066
 
 
 class Sanitize(LineFilter):
-    """Removes control characters and changes of direction from everything that is drawn."""
+    """A filter that replaces control characters, and those that change the direction of writing, before drawing."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the segments with blanks in place of these characters, so that their width stays."""
+        """Return the segments with a blank in place of each such character, so that their width stays the same."""
         if all(segment.text.isprintable() or segment.control for segment in segments):
             return segments
         return [
@@ -75,14 +75,17 @@ def _blank_match(match: re.Match[str]) -> str:
 
 
 def offer(app: App[Any], *files: Path) -> None:
-    """Let the browser, if there is one, download files that have been written: it may be on another machine."""
+    """Let the browser that shows an app download files; do nothing for an app in a terminal.
+
+    The app may run on another machine than the browser.
+    """
     if app.is_web:
         for file in files:
             app.deliver_binary(file)
 
 
 class BufferedApp(HookedApp):
-    """An app that restores the terminal, even when it is stopped or terminated from outside."""
+    """Base of an app that sends only changed cells to its terminal, and restores the terminal however the app ends."""
 
     def __init__(self, picture_mode: PictureMode | None = None) -> None:
         super().__init__(driver_class=_choose_driver_class())
@@ -100,7 +103,7 @@ class BufferedApp(HookedApp):
         self._input = input_order.InputOrder(self, self._give, self._waits)
 
     async def on_event(self, event: events.Event) -> None:
-        """Handle what the user does in the order of its arrival, each event after the effects of the one before."""
+        """Handle an event; what the user does is handled in order, each event after all effects of the one before."""
         if isinstance(event, (events.InputEvent, events.Paste)):
             if not self._ignores(event):
                 await (self._input.take if SUPPORTED and not event.is_forwarded else self._give)(
@@ -110,25 +113,25 @@ class BufferedApp(HookedApp):
         await super().on_event(event)
 
     async def _give(self, event: events.Event) -> None:
-        """Handle an event of the user, which may have waited for the events before it."""
+        """Handle an event of the user whose turn has come, unless it is to be ignored."""
         if not self._ignores(event):
             await super().on_event(event)
 
     def _waits(self, event: events.Event) -> bool:
-        """Return whether an event of the user has to wait, because its target is not there yet."""
+        """Return whether an event of the user has to wait, because the widget that it is for is not there yet."""
         return False
 
     def _ignores(self, event: events.Event) -> bool:
-        """Return whether to ignore an event of the user: nothing can handle it."""
+        """Return whether to ignore an event of the user, because nothing can handle it."""
         return is_leaving(self)
 
     @property
     def is_typed_into(self) -> bool:
-        """Whether every letter is typed into the widget that has the focus."""
+        """Whether the focused widget takes every letter as text."""
         return self.focused is not None and input_order.takes_letters(self.focused)
 
     def show_update(self, screen: Screen[Any], update: object) -> None:
-        """Send only the cells that have changed; if none has, send nothing."""
+        """Send the cells that differ from those on the terminal; if none does, send nothing."""
         codes: str | None = None
         if (
             isinstance(update, CompositorUpdate)
@@ -143,43 +146,43 @@ class BufferedApp(HookedApp):
             self.handle_painted(len(codes))
 
     def choose_cells(self, chosen: str) -> None:
-        """Draw every picture with another set of glyphs; `AUTO` or the name of a set."""
+        """Set the glyphs with which pictures are drawn: the name of a set, or `AUTO`; draw all pictures again."""
         self.picture_mode.choose(chosen)
         self._choose_graphics()
         self.redraw_pictures()
 
     def choose_pixels(self, pixels: str) -> None:
-        """Draw every picture with real pixels or with glyphs; one of `PIXELS`."""
+        """Set whether pictures are drawn with pixels or with glyphs, one of `PIXELS`; draw all pictures again."""
         self.pixels = pixels
         self._left_pixels = None
         self._choose_graphics()
 
     @property
     def has_pixels(self) -> bool:
-        """Whether pictures are drawn with pixels, or were until the user switched to characters."""
+        """Whether pictures are drawn with pixels, or were until the user switched to characters in this session."""
         return self.picture_mode.graphics is not None or self._left_pixels is not None
 
     def handle_painted(self, size: int) -> None:
-        """Called with the number of characters after an update was sent to the terminal."""
+        """Handle that an update of `size` characters was sent to the terminal; here, do nothing."""
 
     @property
     def text_mode(self) -> TextMode:
-        """What the terminal supports."""
+        """What the terminal supports: colours, italics and glyphs."""
         is_ascii = self.picture_mode.cells is CellSet.ASCII
         return TextMode(find_color_depth(self), is_ascii, has_italics=self._has_italics)
 
     @on(events.DescendantFocus)
     def stop_blinking(self, event: events.DescendantFocus) -> None:
-        """Stop the cursor from blinking: an idle app sends nothing."""
+        """Stop the blinking of a cursor in the focused widget, because an idle app sends nothing."""
         if hasattr(event.widget, "cursor_blink"):
             event.widget.cursor_blink = False
 
     def on_resize(self, event: events.Resize) -> None:
-        """Send everything again: a resized terminal has cut or moved its content."""
+        """Send the whole screen again, because a resized terminal has cut or moved its content."""
         self.frame_buffer.forget()
         self._choose_graphics()
         if self.terminal_facts.attributes and self.own_driver is not None:
-            # Zooming changes the size of the cells, too: ask for it again.
+            # Zooming also changes the size of the cells, so the terminal is asked for that again.
             AnswerParser.is_asked = True
             self.own_driver.write(CELL_SIZE_QUERY + ATTRIBUTES_QUERY)
 
@@ -188,13 +191,13 @@ class BufferedApp(HookedApp):
             return
         loop = asyncio.get_running_loop()
         for number in (signal.SIGTERM, signal.SIGHUP):
-            # The exit code that a shell shows for a program ended by the signal.
+            # The app exits with the code that a shell shows for a program ended by the signal.
             loop.add_signal_handler(number, partial(self.exit, return_code=SIGNALLED + number))
         if isinstance(self.own_driver, TerminalDriver):
             loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
 
     def on_terminal_answered(self, event: TerminalAnswered) -> None:
-        """Draw with pixels if the terminal can; ask a terminal that may know kitty's protocol for it."""
+        """Switch to pixels if the terminal's answers allow it; if it may know kitty's protocol, ask whether it does."""
         if event.facts.asks_for_kitty and self.own_driver is not None:
             AnswerParser.is_asked = True
             self.own_driver.write(KITTY_QUESTIONS)
@@ -224,17 +227,17 @@ class BufferedApp(HookedApp):
             self.call_after_refresh(self.handle_situation_change)
 
     def handle_situation_change(self) -> None:
-        """Called when other keys may be available."""
+        """Handle that other keys may be available now; here, do nothing."""
 
     def redraw_pictures(self) -> None:
-        """Draw all pictures again: with pixels or glyphs, as `picture_mode` says now."""
+        """Draw all pictures again, with pixels or glyphs as `picture_mode` says now."""
         for screen in self.screen_stack:
             for view in screen.query(RowsView):
                 view.redraw()
 
     @on(Driver.SignalResume)
     def action_redraw(self) -> None:
-        """Redraw the whole screen: something else has written over it, such as the shell while the app was stopped."""
+        """Send the whole screen again, because something else has written over it, such as a shell."""
         self.frame_buffer.forget()
         self.refresh(layout=True)
 
@@ -251,7 +254,10 @@ class BufferedApp(HookedApp):
             super().action_suspend_process()
 
     def lend_terminal(self, command: Sequence[str]) -> bool:
-        """Give the terminal to another program until it ends. Return whether there is one to give, unlike in a browser.
+        """Run another program in the terminal until it ends.
+
+        Returns:
+            False, without running it, if the app is in a browser, which has no terminal to give.
 
         Raises:
             OSError: the program cannot start.
@@ -267,17 +273,17 @@ class BufferedApp(HookedApp):
         """Send a message to the server that shows the app in a browser; in a terminal, do nothing."""
         if not is_in_browser():
             return
-        # Imported on demand: most apps run in a terminal.
+        # This is imported on demand, since most apps run in a terminal.
         from tuisim.terminal.browser_driver import BrowserDriver
 
         if isinstance(self.own_driver, BrowserDriver):
             self.own_driver.write_meta({"type": "tell", "what": what, **details})
 
     def prepare_suspension(self) -> None:
-        """Called before the app stops, or gives its terminal away."""
+        """Prepare for a stop of the app, or for another program in its terminal; here, do nothing."""
 
     def is_harmless(self, error: Exception) -> bool:
-        """Return whether an error only comes from the shutdown.
+        """Return whether an error only comes from the shutdown of the app, and can be ignored.
 
         During the shutdown nothing can be mounted, widgets are removed while they are being mounted, and at its end
         there is no screen.
@@ -292,12 +298,12 @@ repair_textual(input_order.end_messages)
 
 
 def _choose_driver_class() -> type[Driver] | None:
-    """Return the driver for a browser or a terminal, whichever shows the app; None for Textual's own."""
+    """Return the driver for the browser or the terminal in which the app runs; None for Textual's own driver."""
     if not SUPPORTED:
         return None
     if not is_in_browser():
         return TerminalDriver
-    # Imported on demand: most apps run in a terminal.
+    # This is imported on demand, since most apps run in a terminal.
     from tuisim.terminal.browser_driver import BrowserDriver
 
     return BrowserDriver

@@ -21,7 +21,7 @@ _MODES = "\x1b[?1049h\x1b[?25l\x1b[?1000h\x1b[?1003h\x1b[?1015h\x1b[?1006h\x1b[?
 
 
 class BrowserDriver(WebDriver):
-    """Connects the app with the server that shows it in a browser."""
+    """Textual's driver of an app in a browser; it exchanges messages with the server that shows the app."""
 
     def __init__(
         self,
@@ -37,7 +37,7 @@ class BrowserDriver(WebDriver):
         self._server_is_gone = False
 
     def _write_all(self, data: bytes) -> int:
-        """Write all of the data, which a signal may interrupt; drop it once the server is gone.
+        """Write all of the data and return its length, even if a signal interrupts this; drop it if the server is gone.
 
         Drawing and downloads write from different threads, and packets must not be mixed.
         """
@@ -51,30 +51,30 @@ class BrowserDriver(WebDriver):
         return len(data)
 
     def start_application_mode(self) -> None:
-        """Take the page over, and ask what it can do."""
+        """Begin to draw on the page's terminal, and ask the page what it can do."""
         super().start_application_mode()
         self.write(QUESTIONS)
 
     def write(self, data: str) -> None:
-        """Write to the page's terminal."""
+        """Write codes to the terminal of the page."""
         super().write(kitty.wrap_page(data))
 
     def process_message(self, message: Message) -> None:
-        """Pass on what the page sends, but not a size in pixels, which is for the mouse: the server tells the size."""
+        """Pass on a message of the page's terminal, except a size: the server reports the size."""
         if not isinstance(message, events.Resize):
             super().process_message(message)
 
     def run_input_thread(self) -> None:
-        """Pass on input until the app ends, or end it because the server has ended."""
+        """Pass on input until the app ends; if the server ends first, end the app."""
         super().run_input_thread()
         if not self.exit_event.is_set():
             find_app(self).post_message(messages.ExitApp())
 
     def on_meta(self, packet_type: str, payload: dict[str, object]) -> None:
-        """Handle a message of the server.
+        """Handle a message of the server, such as another size of the page, or another page that shows the app.
 
-        Another terminal that shows the app gets everything that the first one got. Size and focus wait for what the app
-        itself has queued: at the start it queues those of the beginning, which would override an early report.
+        Another page gets everything that the first one got. Size and focus wait for what the app itself has queued: at
+        the start it queues those of the beginning, which would override an early report.
         """
         match packet_type:
             case "focus" | "blur":

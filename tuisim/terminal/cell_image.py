@@ -31,12 +31,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """The style of a cell."""
+    """The style of a cell: its colours and attributes."""
 
     ink: Rgb = (216, 222, 230)
     """Colour of the character."""
     ground: Rgb = (18, 18, 18)
-    """Colour behind it."""
+    """Colour behind the character."""
     bold: bool = False
     italic: bool = False
     underline: bool = False
@@ -54,7 +54,7 @@ CellGrid = Sequence[Sequence[Cell]]
 CELL_PX = (10, 20)
 """Width and height of a cell."""
 _BASELINE = 15
-"""Row on which the letters stand."""
+"""Row of pixels on which the letters stand."""
 _FONT_PX = CELL_PX[0] / 0.602
 """Size of the font: the width of its letters is 0.602 of it."""
 
@@ -68,7 +68,7 @@ _DIM = 0.5
 
 
 def split_cells(runs: Iterable[tuple[str, Style | None]], width: int) -> list[Cell]:
-    """Return pieces of styled text as cells, cut or padded to a width."""
+    """Return pieces of styled text as `width` cells: longer text is cut, shorter text padded."""
     row: list[Cell] = []
     for text, style in runs:
         look = _look(style) if style else PLAIN
@@ -106,7 +106,7 @@ Mask = npt.NDArray[np.uint8]
 
 
 def draw_cells(grid: CellGrid) -> Image:
-    """Return the picture of cells, `CELL_PX` each."""
+    """Return the picture of rows of cells; each cell has the size `CELL_PX`."""
     from PIL import Image
 
     rows, columns = len(grid), len(grid[0]) if grid else 0
@@ -128,7 +128,7 @@ def draw_cells(grid: CellGrid) -> Image:
             colors[:, y, x] = look.ink, look.ground
     if not masks:
         return Image.new("RGB", (1, 1))
-    # Shape (rows, height, columns, width), as the pixels of the picture lie.
+    # The shape is (rows, height, columns, width), which is the order of the pixels in the picture.
     shares = np.stack(masks)[numbers].transpose(0, 2, 1, 3)[..., None].astype(np.uint16)
     ink, ground = colors[:, :, None, :, None].astype(np.uint16)
     pixels = (ink * shares + ground * (255 - shares) + 127) // 255
@@ -137,7 +137,10 @@ def draw_cells(grid: CellGrid) -> Image:
 
 @lru_cache(maxsize=4096)
 def _draw_mask(text: str, bold: bool, italic: bool, underline: bool, strike: bool) -> Mask:
-    """Return the share of each pixel of a cell that a character covers; after a NUL, that of its right half."""
+    """Return how much of each pixel of a cell a character covers, 0 to 255.
+
+    After a NUL, it is the mask of the right half of a wide character.
+    """
     width, height = CELL_PX
     right = text.startswith("\0")
     text = text.removeprefix("\0")
@@ -188,7 +191,7 @@ def _load_font() -> FreeTypeFont:
 
 
 def _write_character(text: str, bold: bool, italic: bool) -> Mask:
-    """Return the mask of a character in two cells, of which a narrow one fills the left."""
+    """Return how much of each pixel of two cells a character covers, 0 to 255; a narrow one is in the left cell."""
     from PIL import Image, ImageDraw
 
     width, height = CELL_PX
@@ -206,7 +209,7 @@ def _write_character(text: str, bold: bool, italic: bool) -> Mask:
 
 
 def draw_cells_svg(grid: CellGrid, title: str) -> str:
-    """Return the picture of cells as an SVG file with text."""
+    """Return the picture of rows of cells as the content of an SVG file, in which text stays text."""
     rows, columns = len(grid), len(grid[0]) if grid else 0
     width, height = columns * CELL_PX[0], rows * CELL_PX[1]
     size = f'viewBox="0 0 {width} {height}" width="{width}" height="{height}"'
@@ -229,7 +232,7 @@ def _format_hex(rgb: Rgb) -> str:
 
 
 def _draw_svg_grounds(grid: CellGrid) -> Iterator[str]:
-    """Yield a path for each background colour."""
+    """Yield an SVG path for each background colour of the cells."""
     paths: dict[Rgb, list[str]] = {}
     for y, row in enumerate(grid):
         x = 0
@@ -249,7 +252,7 @@ def _draw_svg_area(area: GlyphArea, x: float, y: float) -> str:
 
 
 def _draw_svg_shapes(grid: CellGrid) -> Iterator[str]:
-    """Yield a path for each colour and opacity, and an element for each dot and line."""
+    """Yield an SVG path for each colour and opacity of shapes, and an element for each dot and line."""
     paths: dict[tuple[Rgb, float], list[str]] = {}
     for y, row in enumerate(grid):
         for x, (text, look) in enumerate(row):
@@ -278,7 +281,7 @@ def _draw_svg_shapes(grid: CellGrid) -> Iterator[str]:
 
 
 def _draw_svg_texts(grid: CellGrid) -> Iterator[str]:
-    """Yield the text of each row, in pieces of one style; every character has its own place."""
+    """Yield the text of each row in pieces of one style; each character has a position of its own."""
     width, height = CELL_PX
     for y, row in enumerate(grid):
         column = 0
@@ -296,7 +299,7 @@ def _draw_svg_texts(grid: CellGrid) -> Iterator[str]:
 
 
 def _draw_svg_text(written: Sequence[tuple[int, str]], y: int, look: Look) -> str:
-    # One position for each character: a combining one stands where its letter does.
+    # Each character has a position; a combining one has that of its letter.
     places = " ".join(str(x * CELL_PX[0]) for x, text in written for _ in text)
     text = escape("".join(text for _, text in written))
     style = ' font-weight="bold"' * look.bold + ' font-style="italic"' * look.italic

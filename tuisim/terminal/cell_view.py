@@ -49,7 +49,7 @@ _TEXT_GAP = 8
 
 
 class RowsView(Widget):
-    """A widget that stores its own rows."""
+    """Base of widgets that store the rows that they show, and repaint only parts of them."""
 
     ALLOW_SELECT = False
 
@@ -60,17 +60,17 @@ class RowsView(Widget):
 
     @property
     def ground_rgb(self) -> tuple[int, int, int]:
-        """Background colour of the widget."""
+        """Background colour of the widget as red, green and blue."""
         own = self.background_colors[1].rgb
         theme = self.picture_mode.theme
         return theme.rgb(own) if theme else own
 
     def redraw(self) -> None:
-        """Draw again: the app's glyphs or colours have changed."""
+        """Draw the content again, because the app's glyphs or colours have changed."""
         self.refresh()
 
     def render_lines(self, crop: Region) -> list[Strip]:
-        """Return the rows of a region, bypassing Textual's cache, which would rebuild whole rows."""
+        """Return the rows of a region of the widget, without Textual's cache, which would rebuild whole rows."""
         return _cut(
             [self.render_line(y) for y in crop.line_range], crop, self.size.width, self.rich_style
         )
@@ -83,7 +83,7 @@ QUICKLY_REFINED_CELLS = 400
 
 
 class PixelView(RowsView):
-    """Shows an image in cells of two colours."""
+    """A widget that shows an image, with pixels of the terminal, or as cells with a glyph in two colours."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -94,7 +94,7 @@ class PixelView(RowsView):
         """The cells that are drawn as half blocks, to be refined."""
         self._glyphs = build_glyph_set(CellSet.HALF)
         self._tiles: TilePicture | None = None
-        """The image, while it is drawn with pixels."""
+        """The image while it is drawn with pixels; else None."""
         self._sharpness = Sharpness(self, self._refine_cells)
         self._strips: list[Strip | None] = []
         self._signs: Mapping[tuple[int, int], int] = {}
@@ -107,16 +107,16 @@ class PixelView(RowsView):
 
     @property
     def cell_set(self) -> CellSet:
-        """The glyphs of the app."""
+        """The set of glyphs with which the app draws images."""
         return self.picture_mode.cells
 
     @property
     def graphics(self) -> Graphics | None:
-        """How pixels are drawn; None for cells."""
+        """How the image is drawn with pixels; None for glyphs."""
         return self.picture_mode.graphics
 
     def choose_cell(self, graphics: Graphics | None) -> CellPoints:
-        """Return the points of an image in a cell; `graphics` is None for the app's glyphs."""
+        """Return how many points of an image are in a cell; `graphics` is None for the app's glyphs."""
         if graphics is not None:
             width_px, height_px = graphics.cell_px
             return CellPoints(*graphics.cell_points, height_px / width_px)
@@ -126,12 +126,12 @@ class PixelView(RowsView):
     def set_fine_picture(
         self, picture: Pixels, graphics: Graphics | None = None, *, stands: bool = False
     ) -> None:
-        """Show an image with the points of `choose_cell(graphics)`; only cells that differ are repainted.
+        """Show an image with as many points in a cell as `choose_cell(graphics)`; only changed cells are repainted.
 
         Args:
             picture: The image.
             graphics: How its pixels are drawn; None for the app's glyphs.
-            stands: Whether the image will stand still, so that its glyphs are drawn finely also on a slow link.
+            stands: Whether the image will not change soon, so that its glyphs are drawn finely also on a slow link.
         """
         if graphics is not None:
             self._show_pixels(picture, graphics)
@@ -140,7 +140,7 @@ class PixelView(RowsView):
 
     @property
     def is_coarse(self) -> bool:
-        """Whether glyphs are drawn as half blocks, to be refined."""
+        """Whether some cells are drawn as half blocks until there is time for finer glyphs."""
         return bool(self._coarse.any())
 
     def _show_pixels(self, picture: Pixels, graphics: Graphics) -> None:
@@ -157,7 +157,7 @@ class PixelView(RowsView):
             self._refresh_runs(runs)
 
     def _refresh_runs(self, runs: Iterable[CellRun]) -> None:
-        """Draw some cells anew."""
+        """Repaint some runs of cells."""
         regions = []
         for row, col, length in runs:
             self._strips[row] = None
@@ -214,7 +214,7 @@ class PixelView(RowsView):
         self._refresh_runs(runs)
 
     def _refine_cells(self) -> bool:
-        """Draw some of the coarse cells fine; return whether more are coarse."""
+        """Draw some of the coarse cells finely. Return whether more are coarse."""
         count = REFINED_CELLS if self.picture_mode.is_slow() else QUICKLY_REFINED_CELLS
         if self._tiles is not None:
             self._refresh_runs(self._tiles.refine(count))
@@ -231,26 +231,26 @@ class PixelView(RowsView):
         self._put(cells)
 
     def redraw(self) -> None:
-        """Draw the image again: the app's glyphs or colours have changed."""
+        """Draw the image again, because the app's glyphs or colours have changed."""
         self._raw = None
         self.draw_picture()
 
     def on_resize(self) -> None:
-        """Draw the image for the new size."""
+        """Draw the image again for the new size."""
         self.draw_picture()
 
     def draw_picture(self) -> None:
-        """Draw the image of the widget, if it knows one, for its size, glyphs and colours."""
+        """Draw the image for the present size, glyphs and colours; subclasses that make their image override this."""
 
     def clear_picture(self) -> None:
-        """Clear the image."""
+        """Remove the image, so that the widget is blank."""
         if self._strips:
             self._raw = self._tiles = None
             self._forget_cells()
             self.refresh()
 
     def _reduce(self, picture: Pixels, mode: ColorMode) -> None:
-        """Dither an image where the terminal has few colours, if it differs from the last one."""
+        """Store an image in the colours of the terminal: if these are few, dither the points that have changed."""
         if not mode.dithers:
             self._raw = self._shown = picture
             return
@@ -265,7 +265,7 @@ class PixelView(RowsView):
         self._raw = picture
 
     def render_line(self, y: int) -> Strip:
-        """Return one row."""
+        """Return row `y` of the widget."""
         if y >= len(self._strips):
             return self._draw_blank()
         strip = self._strips[y]
@@ -286,7 +286,7 @@ class PixelView(RowsView):
         return cells
 
     def set_signs(self, signs: Mapping[tuple[int, int], int]) -> None:
-        """Show other cells in place of those of the image, by row and column; not in place of pixels."""
+        """Set cells that are shown in place of those of the image, by row and column; pixels are not replaced."""
         rows, cols = self._cells.shape
         changed = {place for place, _ in self._signs.items() ^ signs.items()}
         self._signs = signs
@@ -303,7 +303,7 @@ class PixelView(RowsView):
 
 
 class LinesView(RowsView):
-    """Shows lines of styled text; only characters that differ are repainted."""
+    """A widget that shows lines of styled text; only characters that differ are repainted."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -311,7 +311,7 @@ class LinesView(RowsView):
         self._text_strips: list[Strip | None] = []
 
     def set_lines(self, lines: Sequence[Sequence[Run]]) -> None:
-        """Show lines from the top; a line that is too long ends in an ellipsis."""
+        """Show lines from the top of the widget; a line that is too long ends in an ellipsis."""
         width = self.size.width
         old = self._lines
         self._lines = [cut_line(line, width) if width else line for line in lines]
@@ -328,17 +328,17 @@ class LinesView(RowsView):
             self.refresh(*regions)
 
     def notify_style_update(self) -> None:
-        """Drop the rows when colours change."""
+        """Drop the stored rows, because their colours may have changed."""
         super().notify_style_update()
         self._text_strips = [None] * len(self._lines)
 
     def redraw(self) -> None:
-        """Draw again: the app's colours have changed."""
+        """Draw the lines again, because the app's colours have changed."""
         self._text_strips = [None] * len(self._lines)
         self.refresh()
 
     def render_line(self, y: int) -> Strip:
-        """Return one row."""
+        """Return row `y` of the widget."""
         if y >= len(self._text_strips):
             return self.draw_strip([])
         strip = self._text_strips[y]
@@ -351,14 +351,14 @@ class LinesView(RowsView):
         base = self.rich_style
         whole = Strip([Segment(text, base + style) for text, style in line if text])
         segments = list(whole.adjust_cell_length(self.size.width, base))
-        # Code that bypasses Textual's style cache has to apply its filters itself.
+        # These rows bypass Textual's style cache, which would apply the filters.
         for line_filter in self.app.get_line_filters():
             segments = line_filter.apply(segments, self.background_colors[1])
         return Strip(segments, self.size.width)
 
 
 class LinesPanel(Widget):
-    """A widget whose content is lines of text, drawn again for each size."""
+    """Base of panels whose content is lines of text, which are made again for each size."""
 
     DEFAULT_CSS = "LinesPanel > LinesView { width: 1fr; height: 1fr; }"
 
@@ -373,10 +373,10 @@ class LinesPanel(Widget):
         self.call_after_refresh(self._redraw)
 
     def _redraw(self) -> None:
-        """Draw the lines for the current size."""
+        """Make and draw the lines for the current size of the panel."""
 
     def find_cell(self, event: MouseEvent) -> tuple[int, int]:
-        """Return column and row of the mouse in the text."""
+        """Return the column and the row of the text at which the mouse is."""
         origin = self._text.region
         return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
 
@@ -396,7 +396,7 @@ def _spread(line: Sequence[Run]) -> list[tuple[str, Style]]:
 
 
 def _find_changes(before: Sequence[Run], now: Sequence[Run]) -> list[tuple[int, int]]:
-    """Return the columns at which two lines differ, as (first, length)."""
+    """Return the ranges of columns in which two lines differ, as (first column, length)."""
     old, new = _spread(before), _spread(now)
     blank = (" ", Style.null())
     width = max(len(old), len(new))
@@ -421,7 +421,7 @@ def _build_segment(cell: int) -> Segment:
 
 
 class LazyStrip(MadeOnDemand):
-    """A row whose segments are created only on demand."""
+    """A strip whose segments are made only if Textual needs them; cutting it needs none."""
 
     __slots__ = []
 
@@ -432,17 +432,17 @@ class LazyStrip(MadeOnDemand):
         return bool(self.cell_length)
 
     def crop(self, start: int, end: int | None = None) -> Strip:
-        """Return the part from `start` up to `end`."""
+        """Return the columns from `start` up to `end` as a strip."""
         length = self.cell_length
         start, end = max(0, start), length if end is None else min(length, end)
         return self if start == 0 and end == length else self._part(start, max(start, end))
 
     @abstractmethod
     def _part(self, start: int, end: int) -> LazyStrip:
-        """Return the part from `start` up to `end`, both inside it."""
+        """Return the columns from `start` up to `end`, both inside the strip, as a strip."""
 
     def divide(self, cuts: Iterable[int]) -> Sequence[Strip]:
-        """Return the strips between the cuts, the first one from column 0."""
+        """Return the strip cut at some columns: the parts up to each cut."""
         pieces = []
         start = 0
         for cut in cuts:
@@ -452,7 +452,7 @@ class LazyStrip(MadeOnDemand):
         return pieces
 
     def adjust_cell_length(self, cell_length: int, style: Style | None = None) -> Strip:
-        """Return the strip cropped or padded to a length."""
+        """Return the strip cut or padded to a number of cells."""
         return (
             self
             if cell_length == self.cell_length
@@ -460,7 +460,7 @@ class LazyStrip(MadeOnDemand):
         )
 
     def crop_extend(self, start: int, end: int, style: Style | None) -> Strip:
-        """Return the strip between two columns, padded where it is too short."""
+        """Return the part of the strip between two columns, padded to that width if the strip is too short."""
         return (
             self.crop(start, end)
             if end <= self.cell_length
@@ -468,23 +468,23 @@ class LazyStrip(MadeOnDemand):
         )
 
     def apply_filter(self, filter: LineFilter, background: TextualColor) -> Strip:  # noqa: A002  # the base class's name
-        """Return the strip with a filter of Textual applied."""
+        """Return the strip after a filter of Textual has changed its segments."""
         return self._render_plain().apply_filter(filter, background)
 
     def apply_style(self, style: Style) -> Strip:
-        """Return the strip with a style laid over it."""
+        """Return the strip with a style applied over its own styles."""
         return self._render_plain().apply_style(style)
 
     def apply_offsets(self, x: int, y: int) -> Strip:
-        """Return the strip unchanged: a picture cannot be selected as text."""
+        """Return the strip unchanged, because a picture cannot be selected as text."""
         return self
 
 
 class JoinedStrip(LazyStrip):
-    """A row of several strips, each of which stays what it is.
+    """A strip that consists of other strips, each of which keeps its class.
 
     Args:
-        parts: From left to right.
+        parts: The strips, from left to right.
     """
 
     __slots__ = ["parts"]
@@ -494,14 +494,14 @@ class JoinedStrip(LazyStrip):
         self.begin(sum(part.cell_length for part in self.parts))
 
     def make(self) -> list[Segment]:
-        """Return its segments."""
+        """Return the segments of all parts."""
         return [segment for part in self.parts for segment in part]
 
     def _part(self, start: int, end: int) -> JoinedStrip:
         return JoinedStrip(self._cut(start, end))
 
     def _cut(self, start: int, end: int) -> list[Strip]:
-        """Return the parts between two columns."""
+        """Return the parts of the strip between two columns."""
         cut = []
         offset = 0
         for part in self.parts:
@@ -513,7 +513,7 @@ class JoinedStrip(LazyStrip):
 
 
 class CellStrip(LazyStrip):
-    """A row of half-block cells, see `terminal.fitted_cells.Cells`.
+    """A strip of half-block cells, each a number as in `terminal.fitted_cells.Cells`.
 
     Args:
         cells: One number per cell.
@@ -523,11 +523,11 @@ class CellStrip(LazyStrip):
 
     def __init__(self, cells: Sequence[int]) -> None:
         self.cells = cells
-        """One number per cell."""
+        """The cells, one number each."""
         self.begin(len(cells))
 
     def make(self) -> list[Segment]:
-        """Return its segments."""
+        """Return the segments of the cells."""
         return [_build_segment(cell) for cell in self.cells]
 
     def _part(self, start: int, end: int) -> CellStrip:
@@ -535,7 +535,7 @@ class CellStrip(LazyStrip):
 
 
 class PictureStrip(CellStrip):
-    """A row of cells that are parts of a picture.
+    """A strip of cells that are parts of a picture of pixels.
 
     Args:
         parts: The parts, of one row of one picture.
@@ -549,7 +549,7 @@ class PictureStrip(CellStrip):
 
     @property
     def cells(self) -> Sequence[int]:  # type: ignore[override]  # a slot of the base class
-        """The cells as half blocks."""
+        """The half blocks that stand for the parts where pixels cannot be shown."""
         if not self.parts:
             return ()
         first = self.parts[0]

@@ -23,17 +23,17 @@ from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import CellPoints, Pixels, pack_rgb, unpack_rgb
 
 CellRun: TypeAlias = tuple[int, int, int]
-"""Row, first column and number of some cells; several are in order from the top left."""
+"""A run of cells in a row: row, first column and number of cells; several are in order from the top left."""
 
 MERGE_GAP = 3
 """Unchanged cells between two runs that are cheaper to send again than to jump over."""
 
 
 def find_changed_cells(old: Pixels, new: Pixels, glyphs: GlyphSet) -> CellIndex:
-    """Return the cells in which two pictures of the same shape differ."""
+    """Return the rows and columns of the cells in which two pictures of the same shape differ."""
     cols = new.shape[1] // glyphs.cols
     row_bytes = new.shape[1] * 3
-    # Four bytes at a time; a word may belong to two cells.
+    # The bytes are compared four at a time; such a word may belong to two cells.
     word = np.uint32 if new.nbytes % 4 == 0 else np.uint16
     first = np.flatnonzero(_view_words(new, word) != _view_words(old, word)) * word().itemsize
     changed = np.zeros((len(new) // glyphs.rows, cols), bool)
@@ -58,7 +58,10 @@ def find_changed_runs(old: Cells, new: Cells) -> list[CellRun]:
 
 
 def find_runs(changed: npt.NDArray[np.bool_], gap: int = 1) -> list[CellRun]:
-    """Return the runs of some cells, shape (rows, columns), joining runs with fewer than `gap` cells between them."""
+    """Return the runs of the true cells in an array of shape (rows, columns).
+
+    Runs with fewer than `gap` cells between them are joined.
+    """
     rows, cols = np.nonzero(changed)
     if not len(rows):
         return []
@@ -105,20 +108,20 @@ _LUMA = np.array([0.299, 0.587, 0.114], np.float32)
 
 @dataclass(frozen=True, slots=True)
 class ColorMode:
-    """The colours that the terminal supports."""
+    """The colours of a terminal: how many there are, and whether they are to be used."""
 
     depth: int = TRUECOLOR
     grey: bool = False
-    """Colours are unwanted (NO_COLOR)."""
+    """Whether only greys are to be used (NO_COLOR)."""
 
     @property
     def dithers(self) -> bool:
-        """Whether there are so few colours that shades between them are dithered."""
+        """Whether the colours are so few that shades between them are shown as patterns of dots."""
         return MONO < self.depth < PALETTE_256
 
 
 def reduce_cells(cells: Cells, mode: ColorMode) -> Cells:
-    """Return cells in colours that the terminal supports."""
+    """Return cells in which each colour is replaced by one that the terminal has."""
     if mode.depth == MONO or (mode.depth >= TRUECOLOR and not mode.grey):
         return cells
     colors = np.stack((cells >> 24, cells), axis=-1)[..., None] >> np.array([16, 8, 0]) & 255
@@ -136,7 +139,7 @@ def _convert_greys(pixels: Pixels, mode: ColorMode) -> Pixels:
 
 
 def _find_nearest(pixels: Pixels, depth: int) -> Pixels:
-    """Return the nearest colours of a palette."""
+    """Return the nearest colour of the terminal for each pixel; `depth` is its number of colours."""
     if depth >= TRUECOLOR:
         return pixels
     if depth >= PALETTE_256:
@@ -147,14 +150,14 @@ def _find_nearest(pixels: Pixels, depth: int) -> Pixels:
 def reduce_pixels(
     pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[np.intp], mode: ColorMode
 ) -> Pixels:
-    """Return pixels in colours that the terminal supports.
+    """Return pixels in which each colour is replaced by one that the terminal has.
 
     With 16 colours, shades between them are dithered, so that a pale band on white does not vanish.
 
     Args:
         pixels: Shape (n, 3).
-        rows: The picture row of each, shape (n,); the dither pattern depends on it.
-        cols: The picture column of each, shape (n,).
+        rows: The row of each pixel in the picture, shape (n,); the dither pattern depends on it.
+        cols: The column of each pixel in the picture, shape (n,).
         mode: The colours that the terminal supports.
 
     Returns:
@@ -179,7 +182,13 @@ panel, gets no dots."""
 def _mix_pale_8(
     pixels: Pixels, thresholds: npt.NDArray[np.float64], paleness: npt.NDArray[np.float32]
 ) -> Pixels:
-    """Return pale pixels as black and white, with another share of white for each grey; others as the nearest."""
+    """Return pixels in the colours of a terminal with eight: pale ones as black or white, others as the nearest.
+
+    Args:
+        pixels: Shape (n, 3).
+        thresholds: The dither pattern: the share of white above which a pixel is white, shape (n,).
+        paleness: 1 for grey, 0 for a full colour, shape (n,).
+    """
     white = np.interp(pixels @ _LUMA, *_SHARES_8) > thresholds
     dithered = np.where(white[:, None], _STANDARD[7], _STANDARD[0])
     return np.where((paleness > 0.75)[:, None], dithered, _find_nearest(pixels, PALETTE_8)).astype(
@@ -189,20 +198,20 @@ def _mix_pale_8(
 
 @lru_cache(maxsize=8192)
 def build_color_codes(rgb: int, depth: int) -> tuple[str, str]:
-    """Return the codes that set a colour, 0xRRGGBB, as foreground and as background."""
+    """Return the codes that set a colour 0xRRGGBB as foreground and as background, for a number of colours."""
     if depth >= TRUECOLOR:
         channels = "{};{};{}".format(*unpack_rgb(rgb))
         return f"38;2;{channels}", f"48;2;{channels}"
     number = find_sgr_index(rgb, depth)
     if depth >= PALETTE_256:
         return f"38;5;{number}", f"48;5;{number}"
-    # The bright ones are 90 to 97 and 100 to 107.
+    # The codes of the bright colours are 90 to 97 and 100 to 107.
     shade = number if number < PALETTE_8 else number + 52
     return str(30 + shade), str(40 + shade)
 
 
 def find_sgr_index(rgb: int, depth: int) -> int:
-    """Return the palette number nearest to 0xRRGGBB: 16 to 255, or 0 to 15 for a depth of 16."""
+    """Return the number of the palette's colour nearest to 0xRRGGBB: 16 to 255, or 0 to 15 for a depth of 16."""
     color = np.array([unpack_rgb(rgb)], np.int32)
     return int(
         (_find_nearest_256(color) if depth >= PALETTE_256 else _find_nearest_16(color, depth))[0]
@@ -211,7 +220,7 @@ def find_sgr_index(rgb: int, depth: int) -> int:
 
 @lru_cache(maxsize=1)
 def _build_palette() -> Pixels:
-    """Return the 256 colours; the first 16 are never used."""
+    """Return the 256 colours of a terminal, shape (256, 3); the first 16 are not used."""
     cube = [(red, green, blue) for red in _CUBE for green in _CUBE for blue in _CUBE]
     return np.array([(0, 0, 0)] * 16 + cube + [(grey,) * 3 for grey in _GREYS], np.uint8)
 
@@ -249,7 +258,11 @@ _INK_ON_PAPER = 0xFFFFFF << 24
 
 
 def measure_darkness(points: npt.NDArray[np.uint8]) -> Covered:
-    """Return how dark colours are, shape (…, 3), from 0 for white to 1 for black."""
+    """Return how dark colours are, from 0 for white to 1 for black.
+
+    Args:
+        points: The colours, shape (…, 3).
+    """
     shares: Covered = np.interp(points @ _LUMA, _INK_GREYS, _DARKNESS).astype(np.float32)
     return shares
 
@@ -257,7 +270,7 @@ def measure_darkness(points: npt.NDArray[np.uint8]) -> Covered:
 def draw_mono_cells(
     picture: Pixels, glyphs: GlyphSet, places: CellIndex, cell_set: CellSet
 ) -> Cells:
-    """Return some cells of a picture as dots or signs, shape (n,)."""
+    """Return some cells of a picture without colours: as braille dots or ASCII signs, shape (n,)."""
     rows = len(picture) // glyphs.rows
     cols = picture.shape[1] // glyphs.cols
     points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(0, 2, 1, 3, 4)[
@@ -278,13 +291,13 @@ def draw_mono_cells(
 
 
 def find_cell_points(cell_set: CellSet) -> CellPoints:
-    """Return how many points of an image a cell has with a set of glyphs."""
+    """Return how many points across and down an image has in a cell that is drawn with a set of glyphs."""
     glyphs = build_glyph_set(cell_set)
     return CellPoints(glyphs.cols, glyphs.rows)
 
 
 def draw_mono_rows(picture: Pixels, cell_set: CellSet) -> list[str]:
-    """Return an image as rows of glyphs without colours; each cell of it has the points of these glyphs."""
+    """Return an image as rows of glyphs without colours; it must have as many points in a cell as the set."""
     glyphs = build_glyph_set(cell_set)
     shape = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
     cells = draw_mono_cells(picture, glyphs, list_cells(*shape), cell_set).reshape(shape)
@@ -292,5 +305,5 @@ def draw_mono_rows(picture: Pixels, cell_set: CellSet) -> list[str]:
 
 
 def sign_cell(sign: str) -> int:
-    """Return the cell that shows a sign."""
+    """Return the number of a cell that shows an ASCII sign."""
     return sign_number(sign) << 48 | _INK_ON_PAPER

@@ -33,7 +33,7 @@ _LOST = SIGNALLED + signal.SIGHUP
 
 
 class ResilientOutput:
-    """Terminal output that accepts writes even after the terminal is gone, for example after a lost connection.
+    """The output to a terminal; if the terminal is lost, as after a lost connection, it drops what is written.
 
     Textual writes from a thread of its own. That thread would end at the first failed write, and the app, which has to
     write a little more before it can shut down, would wait for it for ever.
@@ -48,7 +48,7 @@ class ResilientOutput:
         """Whether a write has failed; later output is dropped."""
 
     def write(self, text: str) -> int:
-        """Write a text, or drop it. Return its length."""
+        """Write a text, or drop it if the terminal is lost. Return its length."""
         if not self.gone:
             try:
                 self._file.write(text)
@@ -57,7 +57,7 @@ class ResilientOutput:
         return len(text)
 
     def flush(self) -> None:
-        """Flush the output."""
+        """Flush the output, unless the terminal is lost."""
         if not self.gone:
             try:
                 self._file.flush()
@@ -72,21 +72,21 @@ class ResilientOutput:
         self.gone = True
 
     def fileno(self) -> int:
-        """Return the file descriptor."""
+        """Return the file descriptor of the output."""
         return self._file.fileno()
 
 
 class InputDecoder(utf_8.IncrementalDecoder):
-    """Decodes what the terminal sends: bytes that are no UTF-8, as from a faulty line, must not end the app."""
+    """Decodes the bytes from the terminal; bytes that are not UTF-8, as from a bad line, do not end the app."""
 
     def __init__(self) -> None:
         super().__init__("replace")
 
     def decode(self, data: bytes, final: bool = False) -> str:  # type: ignore[override]
-        """Return the characters that are complete.
+        """Return the characters of which all bytes have arrived.
 
         Raises:
-            EOFError: the terminal is gone; it would be read again and again, in vain.
+            EOFError: the terminal is lost, so that no more bytes will come.
         """
         if not data and not final and not sys.stdin.isatty():
             raise EOFError
@@ -94,10 +94,10 @@ class InputDecoder(utf_8.IncrementalDecoder):
 
 
 def run_in_foreground(command: Sequence[str]) -> None:
-    """Run a program in this terminal until it ends.
+    """Run a program in this terminal, and wait until it ends.
 
     Raises:
-        OSError: it cannot start.
+        OSError: the program cannot start.
     """
     program = subprocess.Popen(command)
     # The keys that interrupt the program also send a signal to this process.
@@ -112,7 +112,7 @@ def run_in_foreground(command: Sequence[str]) -> None:
 
 
 class TerminalDriver(HookedLinuxDriver):
-    """Textual's driver with an output that survives the loss of its terminal, and asks what the terminal can do."""
+    """Textual's driver of a terminal; it also survives the loss of the terminal, and asks what the terminal can do."""
 
     def __init__(
         self,
@@ -125,12 +125,12 @@ class TerminalDriver(HookedLinuxDriver):
         super().__init__(app, debug=debug, mouse=mouse, size=size)
         self.wrap_output(ResilientOutput)
         self._is_lent = False
-        """Whether the terminal belongs to the shell or another program."""
+        """Whether the shell or another program has the terminal now."""
         self._was_continued = False
         """Whether the process has been continued since it was last stopped."""
 
     def run_input_thread(self) -> None:
-        """Take in what is typed; end the app when the terminal is gone."""
+        """Read the user's input until the app ends; if the terminal is lost, end the app."""
         try:
             for message in AnswerParser().feed(take_typed()):
                 self.process_message(message)
@@ -140,14 +140,14 @@ class TerminalDriver(HookedLinuxDriver):
             find_app(self).call_later(find_app(self).exit, return_code=_LOST)
 
     def start_application_mode(self) -> None:
-        """Take the terminal over, and ask what it can do."""
+        """Begin to draw on the terminal, and ask it what it can do."""
         super().start_application_mode()  # type: ignore[no-untyped-call]
         if os.environ.get("TERM", "") not in SILENT:
             self.write(QUESTIONS)
             self.flush()
 
     def stop_application_mode(self) -> None:
-        """Leave the terminal, and delete the images in its memory."""
+        """Restore the terminal, and delete the images that it has stored for the app."""
         graphics = find_picture_mode(find_app(self)).graphics
         if graphics is not None and graphics.protocol is Protocol.KITTY:
             self.write(kitty.wrap_tmux(kitty.DELETE_ALL) if graphics.in_tmux else kitty.DELETE_ALL)
@@ -155,7 +155,7 @@ class TerminalDriver(HookedLinuxDriver):
 
     @contextmanager
     def lend(self) -> Iterator[None]:
-        """Give the terminal back for a while: to the shell while the app is stopped, or to another program."""
+        """In a `with` block, leave the terminal to the shell or to another program, and take it back at the end."""
         # If this process is stopped and continued meanwhile, it must not take the terminal away from them.
         self._is_lent = True
         self.suspend_application_mode()
@@ -172,7 +172,7 @@ class TerminalDriver(HookedLinuxDriver):
                 find_app(self).exit(return_code=_LOST)
 
     def stop_as_job(self) -> bool:
-        """Restore the terminal and stop the whole process group; resume when the shell says so.
+        """Restore the terminal, and stop the process group of the app until the shell resumes it.
 
         Textual stops with a signal that cannot be ignored, even without a shell that could resume the app. The signal
         for job control is dropped in that case.
@@ -186,7 +186,7 @@ class TerminalDriver(HookedLinuxDriver):
             return self._was_continued
 
     def handle_continuation(self) -> None:
-        """Take the terminal over again after a stop, unless it is lent; called from the handler of the signal."""
+        """After a stop of the process, take the terminal back unless it is lent; called by the signal's handler."""
         if self._is_lent:
             self._was_continued = True
         elif self.resumes:

@@ -29,13 +29,13 @@ CellIndex = tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]
 
 
 def list_cells(rows: int, cols: int) -> CellIndex:
-    """Return every cell of a picture."""
+    """Return the index of every cell of a picture with this number of rows and columns of cells."""
     at_rows, at_cols = np.indices((rows, cols)).reshape(2, -1)
     return at_rows, at_cols
 
 
 def fit_cells(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> Cells:
-    """Return the glyphs and colours that show some cells of a picture best, whatever was there before.
+    """Return the glyphs and colours that show some cells of a picture best.
 
     Args:
         picture: A whole number of cells, each with the points of the glyphs.
@@ -54,7 +54,7 @@ def fit_cells(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> Cells:
 
 
 def is_flat(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> npt.NDArray[np.bool_]:
-    """Return whether some cells are of one colour, so that no glyph shows more of them than another.
+    """Return for some cells whether all points of a cell have one colour, so that any glyph shows it as well.
 
     Args:
         picture, glyphs, places: As for `fit_cells`.
@@ -66,7 +66,7 @@ def is_flat(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> npt.NDArray
 
 
 def _read_points(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> npt.NDArray[np.uint8]:
-    """Return the points of some cells, shape (3, points of a cell, n)."""
+    """Return the points of some cells of a picture, shape (3, points of a cell, n)."""
     rows = len(picture) // glyphs.rows
     cols = picture.shape[1] // glyphs.cols
     points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(4, 1, 3, 0, 2)
@@ -79,10 +79,10 @@ def _is_one_color(points: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
 
 
 def _fit_points(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
-    """Return the cells for points of shape (3, points of a cell, n)."""
+    """Return the cells that show points best; the points have shape (3, points of a cell, n)."""
     packed = pack_rgb(points.astype(np.int64))
     if len(packed) == 2:
-        # The two points are the two colours.
+        # A cell of two points needs no search: the points are its two colours.
         halves: Cells = packed[0] << 24 | packed[1]
         return halves
     if len(glyphs.numbers) == 1:
@@ -97,7 +97,7 @@ def _fit_points(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
 
 
 def _draw_half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
-    """Return cells of the half block alone, in the mean colours of two of their rows of points.
+    """Return cells with half blocks; the colour of each half is the mean of two of its rows of points.
 
     A thin line is in one of the two points of a row: the colour of one point would lose the line, or the ground.
     """
@@ -113,10 +113,11 @@ def _draw_half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
 def _find_typical(
     lab: npt.NDArray[np.float32], covered: npt.NDArray[np.float32]
 ) -> list[npt.NDArray[np.intp]]:
-    """Return for each of the two groups of each cell the point nearest to the group's mean; of two, the darker one.
+    """Return for each cell the typical point of the covered points, and that of the others.
 
-    The point has a colour of the picture; the mean of three colours often is none of them, and looks blurred. With the
-    lighter one, the ground would be a notch in the edge of a band beside a robot's corner.
+    It is the point nearest to the mean of its group, of two the darker one. The point has a colour of the picture; the
+    mean of three colours often is none of them, and looks blurred. With the lighter one, the ground would be a notch in
+    the edge of a band beside a robot's corner.
     """
     points: list[npt.NDArray[np.intp]] = []
     for share in (covered, 1 - covered):
@@ -127,13 +128,13 @@ def _find_typical(
 
 
 def _find_best_glyphs(lab: npt.NDArray[np.float32], glyphs: GlyphSet) -> npt.NDArray[np.intp]:
-    """Return which glyph splits the points of each cell into the two most even groups.
+    """Return for each cell the index of the glyph that splits its points into the two most even groups.
 
     The search is exhaustive: with the points relative to their mean, the sum of those that a glyph covers gives the
     variance that the split explains.
     """
     size = lab.shape[1]
-    # One product for each channel: they are too small for the library to start threads.
+    # There is one product for each channel: they are too small for the library to start threads.
     sums = np.matmul(glyphs.covered, lab - lab.mean(axis=1, keepdims=True))
     count = glyphs.covered.sum(axis=1)[:, None]
     explained = np.square(sums, out=sums).sum(axis=0) * (1 / count + 1 / (size - count))
@@ -143,7 +144,7 @@ def _find_best_glyphs(lab: npt.NDArray[np.float32], glyphs: GlyphSet) -> npt.NDA
 
 @lru_cache(maxsize=1)
 def _build_linear() -> npt.NDArray[np.float32]:
-    """Return the light of each sRGB value."""
+    """Return the linear light, 0 to 1, of each of the 256 sRGB values."""
     value = np.arange(256) / 255
     return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4).astype(
         np.float32
@@ -159,7 +160,7 @@ _FROM_ROOTS = np.array([[0, 116, 0], [500, -500, 0], [0, 200, -200]], np.float32
 
 
 def _convert_lab(points: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
-    """Return colours of shape (3, …) in CIE L*a*b*, where distances are about as large as they look."""
+    """Return colours of shape (3, …) in CIE L*a*b*, in which distances are as large as differences look."""
     xyz = _XYZ @ _build_linear()[points].reshape(3, -1)
     root = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16 / 116)
     lab: npt.NDArray[np.float32] = (_FROM_ROOTS @ root).reshape(points.shape)

@@ -51,12 +51,12 @@ _SYSTEMS = {
 
 
 class TextMode(NamedTuple):
-    """What a terminal supports."""
+    """What a terminal supports: colours, italics and glyphs."""
 
     depth: int = TRUECOLOR
-    """Number of colours."""
+    """Number of colours that the terminal has."""
     is_ascii: bool = False
-    """Whether it shows ASCII only."""
+    """Whether the terminal shows ASCII only."""
     has_italics: bool = True
     """Whether the code for italics means italics."""
 
@@ -66,7 +66,7 @@ class CellLook(NamedTuple):
 
     attributes: tuple[str, ...] = ()
     foreground: str = "39"
-    """Empty where it is invisible."""
+    """Code of the foreground colour; empty where the colour is invisible."""
     background: str = "49"
     link: str = ""
 
@@ -79,7 +79,7 @@ _Row = Sequence[Cell | None]
 
 
 class FrameBuffer:
-    """The screen, cell by cell, as it was sent to the terminal."""
+    """The content of the terminal's screen, cell by cell, as it was sent; finds what an update changes."""
 
     def __init__(self) -> None:
         self._rows: dict[int, list[Cell | None]] = {}
@@ -91,13 +91,13 @@ class FrameBuffer:
         """Functions that return the codes to delete pictures that are no longer in use."""
 
     def forget(self) -> None:
-        """Assume nothing about the terminal's content: the next update is sent completely."""
+        """Treat the terminal's content as unknown, so that the next update is sent completely."""
         self._rows.clear()
         for picture in self._pictures:
             picture.forget()
 
     def encode_update(self, update: object, mode: TextMode) -> str | None:
-        """Return the codes that update the terminal, empty if it shows the update already.
+        """Return the codes that make the terminal show an update; empty if it shows the update already.
 
         Args:
             update: The update from Textual.
@@ -137,7 +137,7 @@ class FrameBuffer:
         return "".join(codes() for codes in gone)
 
     def _is_showing(self, picture: TilePicture, y: int, x: int) -> bool:
-        """Return whether a cell of the screen is a part of a picture."""
+        """Return whether the cell at a row and column of the screen is a part of a picture."""
         row = self._rows.get(y, ())
         cell = row[x] if x < len(row) else None
         return cell is not None and isinstance(cell[1], PictureCell) and cell[1].picture is picture
@@ -145,7 +145,14 @@ class FrameBuffer:
     def _put(
         self, pen: _Pen, y: int, first: int, cells: Sequence[Cell]
     ) -> Iterator[tuple[int, PictureCell]]:
-        """Write cells that differ; yield the column and the cell of those that are a part of a picture."""
+        """Write the cells of a row that differ; yield column and cell of those that are parts of a picture.
+
+        Args:
+            pen: Writes the cells.
+            y: The row.
+            first: Column of the first cell.
+            cells: The cells.
+        """
         row = self._rows.setdefault(y, [])
         if (lacking := first + len(cells) - len(row)) > 0:
             row += [None] * lacking
@@ -160,7 +167,7 @@ class FrameBuffer:
 
 
 def _split_layout(update: LayoutUpdate) -> Iterator[tuple[int, int, Strip]]:
-    """Yield row, column and strip of the whole screen."""
+    """Yield row, column and strip of each part of an update of the whole screen."""
     for y, strips in enumerate(update.strips, update.region.y):
         x = update.region.x
         for strip in strips:
@@ -169,7 +176,7 @@ def _split_layout(update: LayoutUpdate) -> Iterator[tuple[int, int, Strip]]:
 
 
 def _split_chops(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
-    """Yield row, column and strip of the parts that may have changed."""
+    """Yield row, column and strip of each part of an update that may have changed the screen."""
     for y, first, last in update.spans:
         for end, (x, strip) in zip(update.chop_ends[y], update.chops[y].items(), strict=False):
             if strip is None or x >= last or end <= first:
@@ -178,7 +185,7 @@ def _split_chops(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
                 left, right = max(x, first), min(end, last)
                 yield y, left, strip.crop(left - x, right - x)
             else:
-                # To the end of the row: a part could begin or end in the middle of a wide character.
+                # The row is sent to its end, since a part could begin or end in the middle of a wide character.
                 yield y, x, strip.crop(0, end - x)
 
 
@@ -217,7 +224,7 @@ def _build_image_cell(cell: int, depth: int) -> Cell:
 
 
 def _is_same(fore: str, back: str) -> bool:
-    """Return whether the codes of a foreground and a background are those of one color."""
+    """Return whether the codes of a foreground and of a background set the same colour."""
     return fore[1:] == back[1:] if ";" in fore else fore.isdigit() and str(int(fore) + 10) == back
 
 
@@ -238,7 +245,7 @@ def _split_text(text: str, style: Style | None, mode: TextMode) -> tuple[Cell, .
 
 
 def _simplify_cell(text: str, look: CellLook) -> Cell:
-    """Return the cell that looks the same with the fewest codes."""
+    """Return a cell that looks the same as another one, and needs the fewest codes."""
     if text == _UPPER_HALF and _is_same(look.foreground, look.background) and not look.attributes:
         text = " "
     if text == " " and _SEEN_ON_BLANKS.isdisjoint(look.attributes):
@@ -267,7 +274,7 @@ _ITALIC = "3"
 
 
 def _strip_colors(attributes: tuple[str, ...], style: Style) -> tuple[str, ...]:
-    """Return the attributes of a style, and reverse video where only its background makes it stand out."""
+    """Return the attributes of a style without colours; reverse video stands for a background that stands out."""
     background = style.bgcolor.triplet if style.bgcolor else None
     if background is None or _REVERSE in attributes:
         return attributes
@@ -287,7 +294,7 @@ def _build_color_codes(color: Color | None, depth: int) -> tuple[str, str]:
         number = find_sgr_index(int.from_bytes(color.triplet, "big"), depth) or 7
         return str(30 + number), build_color_codes(int.from_bytes(color.triplet, "big"), depth)[1]
     if color.triplet is not None and depth in (PALETTE_8, PALETTE_256):
-        # The same reduction as in images; otherwise an image under a dialog would be resent in nearly identical
+        # The colour is reduced as in images: otherwise an image under a dialog would be resent in nearly identical
         # colours.
         return build_color_codes(int.from_bytes(color.triplet, "big"), depth)
     system_color = color.downgrade(_SYSTEMS[depth])
@@ -302,7 +309,7 @@ line draw the whole screen one colour after another."""
 
 
 class _LookRun:
-    """Cells beside each other that need no change of the style."""
+    """Cells side by side that can be written in one style."""
 
     __slots__ = ("cells", "look", "row", "x", "y")
 
@@ -317,7 +324,10 @@ class _LookRun:
 
 
 def _join_looks(first: CellLook, second: CellLook) -> CellLook | None:
-    """Return the style in which cells of two styles can be written, blanks in any colour; None if there is none."""
+    """Return a style in which cells of both styles look right; None if there is none.
+
+    A style without a foreground is that of blanks, which look right in any foreground.
+    """
     if first == second:
         return first
     if (first.background, first.link) != (second.background, second.link):
@@ -330,9 +340,9 @@ def _join_looks(first: CellLook, second: CellLook) -> CellLook | None:
 
 
 class _Pen:
-    """Writes cells, and tracks the terminal's cursor and current style.
+    """Collects the codes that write cells; it knows the terminal's cursor and current style.
 
-    Begins and ends with the terminal's default style.
+    It begins and ends with the terminal's default style.
     """
 
     def __init__(self) -> None:
@@ -340,12 +350,19 @@ class _Pen:
         self._look = CellLook()
         self._x = self._y = -1
         self._first_row = 0
-        """First row of the block whose runs wait."""
+        """First row of the block whose runs are not written yet."""
         self._runs: list[_LookRun] = []
-        """Runs that wait for the others of their block: those of one style are written together."""
+        """Runs that are not written yet: those of one style in a block of rows are written together."""
 
     def take(self, x: int, y: int, text: str, look: CellLook, row: Sequence[Cell | None]) -> None:
-        """Take a cell of a row, to be written when the other cells of the row are final."""
+        """Collect a cell of a row, which is written when the other cells of the row are known.
+
+        Args:
+            x, y: Column and row of the cell.
+            text: Its character.
+            look: Its style.
+            row: All cells of the row, which may still change.
+        """
         if not 0 <= y - self._first_row < _ROWS_OF_BLOCK:
             self._write_runs()
             self._first_row = y
@@ -361,7 +378,7 @@ class _Pen:
             last.look = joined
 
     def _write_runs(self) -> None:
-        """Write the waiting runs, with as few changes of the style as there are styles."""
+        """Write the collected runs, style by style, so that the style changes as rarely as possible."""
         grounds: dict[tuple[str, str], dict[CellLook, list[_LookRun]]] = {}
         for run in self._runs:
             of_ground = grounds.setdefault((run.look.background, run.look.link), {})
@@ -373,9 +390,9 @@ class _Pen:
         self._runs = []
 
     def write(self, x: int, y: int, text: str, look: CellLook, row: Sequence[Cell | None]) -> None:
-        """Write a cell of a row whose other cells are final."""
+        """Write a cell of a row whose other cells are known; arguments as for `take`."""
         if not text:
-            # The left half of the character covers it.
+            # An empty text is the right half of a wide character, which the left half draws.
             return
         if (x, y) != (self._x, self._y):
             self._go(x, y, row)
@@ -396,13 +413,13 @@ class _Pen:
             self._parts.append(f"\x1b[{x - self._x}C")
 
     def _can_write(self, cell: Cell | None) -> bool:
-        """Return whether a cell can be written without a code."""
+        """Return whether a cell can be written in the current style, without codes and in one column."""
         if cell is None or isinstance(cell[1], PictureCell) or not cell[0]:
             return False
         return cell[0].isascii() and not any(self._switch_look(cell[1]))
 
     def _switch_look(self, look: CellLook) -> Iterable[str]:
-        """Yield the codes that switch to a style."""
+        """Yield the codes that switch from the current style to another one."""
         now = self._look
         common: tuple[str, ...] = now.attributes
         if not look.foreground:
@@ -437,7 +454,7 @@ class _Pen:
         self._look = CellLook(attributes, foreground, look.background, look.link)
 
     def finish(self) -> str:
-        """Return everything that was written."""
+        """Return all codes, the last of which restore the terminal's default style."""
         self._write_runs()
         if self._look.link:
             self._parts.append("\x1b]8;;\x1b\\")
@@ -510,7 +527,7 @@ _BY_DOTS = " .':;+*#@"
 
 
 def convert_ascii(text: str) -> str:
-    """Return a text of the same width in ASCII."""
+    """Return a text of the same width with ASCII characters in place of all others."""
     return text if text.isascii() else "".join(map(_convert_character, _ELLIPSIS.sub("...", text)))
 
 
@@ -532,7 +549,7 @@ def _convert_character(char: str) -> str:
 
 
 def _convert_frame_line(name: str) -> str:
-    """Return the sign for a line of a frame."""
+    """Return the ASCII sign for a box drawing character, given by its Unicode name."""
     if "DIAGONAL" in name:
         if "CROSS" in name:
             return "X"

@@ -18,7 +18,7 @@ from tuisim.terminal.glyphs import block_patterns
 
 @dataclass(frozen=True, slots=True)
 class GlyphArea:
-    """A rectangle, in pixels from the upper left corner of the cell."""
+    """A filled rectangle of a glyph, in pixels from the upper left corner of the cell."""
 
     left: float
     top: float
@@ -29,7 +29,7 @@ class GlyphArea:
 
 @dataclass(frozen=True, slots=True)
 class GlyphDot:
-    """A disc."""
+    """A filled disc of a glyph, in pixels from the upper left corner of the cell."""
 
     x: float
     y: float
@@ -38,7 +38,7 @@ class GlyphDot:
 
 @dataclass(frozen=True, slots=True)
 class Bend:
-    """A line through points."""
+    """A line of a glyph through points, in pixels from the upper left corner of the cell."""
 
     points: tuple[tuple[float, float], ...]
     width: float
@@ -64,7 +64,7 @@ _ARC_POINTS = 9
 
 @lru_cache(maxsize=4096)
 def draw_character(char: str, width: int, height: int) -> tuple[GlyphShape, ...] | None:
-    """Return what a character draws in a cell of some pixels; None for characters that a font draws."""
+    """Return the shapes that a character has in a cell of a size in pixels; None for one that a font draws."""
     if len(char) != 1:
         return None
     if eighths := _EIGHTHS.get(char):
@@ -97,10 +97,10 @@ def draw_character(char: str, width: int, height: int) -> tuple[GlyphShape, ...]
 def _place_area(
     left: float, top: float, right: float, bottom: float, width: int, height: int
 ) -> GlyphArea:
-    """Return a rectangle, given in shares of the cell, on whole pixels."""
+    """Return a rectangle of whole pixels; its edges are given as shares of the cell's width and height."""
     x = [math.floor(share * width + 0.5) for share in (left, right)]
     y = [math.floor(share * height + 0.5) for share in (top, bottom)]
-    # An eighth of a small cell is at least a pixel.
+    # In a small cell, an eighth may be less than a pixel: draw at least one.
     if x[0] == x[1]:
         x = [x[0], x[0] + 1] if left < 0.5 else [x[0] - 1, x[0]]
     if y[0] == y[1]:
@@ -128,7 +128,7 @@ def _choose_thickness(width: int) -> int:
 
 
 def _draw_box(words: list[str], width: int, height: int) -> Iterator[GlyphShape]:
-    """Yield the shapes of a box drawing character by the words of its name."""
+    """Yield the shapes of a box drawing character, given by the words of its Unicode name."""
     thick = _choose_thickness(width)
     if "DIAGONAL" in words:
         rising = ((0.0, float(height)), (float(width), 0.0))
@@ -153,7 +153,7 @@ def _draw_box(words: list[str], width: int, height: int) -> Iterator[GlyphShape]
 
 
 def _parse_arms(words: list[str]) -> dict[str, str]:
-    """Return the weight of each arm."""
+    """Return the weight of each arm of a box drawing character, by the arm's direction."""
     arms: dict[str, str] = {}
     weight = ""
     parts = " ".join(words).split(" AND ")
@@ -165,7 +165,13 @@ def _parse_arms(words: list[str]) -> dict[str, str]:
 
 
 def _draw_arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> Iterator[GlyphArea]:
-    """Yield the arms of lines that meet in the middle of the cell."""
+    """Yield the lines of a box drawing character, which meet in the middle of the cell.
+
+    Args:
+        arms: The weight of each arm, by its direction.
+        width, height: Size of the cell in pixels.
+        thick: Thickness of a light line in pixels.
+    """
     middle = {"x": (width - thick) // 2, "y": (height - thick) // 2}
     # A double line is two light ones, the width of one apart.
     strips = {
@@ -175,7 +181,7 @@ def _draw_arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> 
     }
 
     def find_edges(sides: tuple[str, str], axis: str) -> tuple[int, int]:
-        """Return the start and the end of the lines of two opposite arms, across these lines."""
+        """Return across two opposite arms where their lines start and end, in pixels of the cell."""
         lines = [strip for side in sides if side in arms for strip in strips[arms[side]]] or [
             (0, thick)
         ]

@@ -31,7 +31,10 @@ _BRAILLE_BITS = (0, 3, 1, 4, 2, 5, 6, 7)
 
 
 def _list_octants() -> list[str]:
-    """Return the glyphs of all 256 patterns: from U+1CD00 on in the order of the patterns, without `_ELSEWHERE`."""
+    """Return the glyphs of all 256 patterns of octants, in the order of the patterns.
+
+    They are the characters from U+1CD00 on; the patterns of `_ELSEWHERE` have other characters.
+    """
     following = iter(range(0x1CD00, 0x1CDE6))
     return [_ELSEWHERE.get(pattern) or chr(next(following)) for pattern in range(256)]
 
@@ -66,7 +69,10 @@ GLYPHS: tuple[str, ...] = (
 
 @cache
 def block_patterns() -> dict[str, tuple[int, int]]:
-    """Return for each block glyph the number of rows of two points, and which it covers; bit 0 is the upper left."""
+    """Return for each block glyph how many rows of two points it has, and as bits which points it covers.
+
+    Bit 0 is the upper left point.
+    """
     octants = {char: (4, pattern) for pattern, char in enumerate(_list_octants())}
     return {char: (3, pattern) for pattern, char in enumerate(_list_sextants())} | octants
 
@@ -90,7 +96,7 @@ SIGNS = tuple(_INK)
 
 @cache
 def sign_ink() -> Covered:
-    """Return how dark each point of each of `SIGNS` is, shape (signs, 8), 0 to 1."""
+    """Return how dark each point of each of `SIGNS` is, 0 to 1, shape (signs, 8)."""
     return np.array([[int(digit) / 9 for digit in ink] for ink in _INK.values()], np.float32)
 
 
@@ -100,11 +106,11 @@ def sign_number(sign: str) -> int:
 
 
 def find_nearest_signs(ink: Covered, letters: bool = True) -> npt.NDArray[np.int64]:
-    """Return the numbers of the characters that look most like points of some darkness, shape (n, 8), 0 to 1.
+    """Return for each cell the number of the ASCII character that looks most like its points.
 
     Args:
-        ink: How dark each point is.
-        letters: Whether letters may be among them.
+        ink: How dark each point is, 0 to 1, shape (n, 8).
+        letters: Whether letters may be among the characters.
     """
     table = sign_ink()
     away = np.square(table).sum(axis=1) - 2 * ink @ table.T
@@ -117,12 +123,12 @@ def find_nearest_signs(ink: Covered, letters: bool = True) -> npt.NDArray[np.int
 
 @dataclass(frozen=True, slots=True)
 class GlyphSet:
-    """A grid of points in a cell, and the glyphs that cover some of them."""
+    """The glyphs of a set, with the grid of points in a cell and the points that each glyph covers."""
 
     cols: int
     rows: int
     covered: Covered
-    """Shape (glyphs, cols × rows)."""
+    """For each glyph the share of each point that it covers, shape (glyphs, cols × rows)."""
     numbers: npt.NDArray[np.int64]
     """Number of each glyph in `GLYPHS`; ascending, except for ASCII, where several patterns have the same glyph."""
 
@@ -133,7 +139,7 @@ def _unpack_bits(patterns: list[int], points: int) -> Covered:
 
 @cache
 def build_glyph_set(cells: CellSet) -> GlyphSet:
-    """Return the glyphs of a set.
+    """Return the glyphs of a set, with the points that they cover.
 
     Of a pattern and its inverse, a set of blocks has the one with the upper left point: exchanging the two colours
     gives the other. Braille has the pattern with fewer dots, which leave most of their cell to the background.
@@ -165,7 +171,7 @@ def build_glyph_set(cells: CellSet) -> GlyphSet:
 
 @cache
 def build_half_block(cells: CellSet) -> GlyphSet:
-    """Return the half block alone, with the points of a finer set."""
+    """Return a set with only the half block, in a cell with as many points as another set has."""
     fine = build_glyph_set(cells)
     upper = np.clip(fine.rows / 2 - np.arange(fine.rows), 0, 1).astype(np.float32)
     return GlyphSet(fine.cols, fine.rows, np.repeat(upper, fine.cols)[None], np.array([0]))

@@ -1,4 +1,4 @@
-"""Input in the order of its arrival: the next key is given out when everything that the last one has caused is done.
+"""Input in the order of its arrival: the next key is handled when everything that the last one has caused is done.
 
 Textual hands a key to the widget with the focus. The widget takes letters at once; every other key goes on through the
 queue of each parent up to the app, which looks up its binding there. So a letter that arrives in the same burst is
@@ -38,7 +38,7 @@ from tuisim.terminal.textual_internals import (
 )
 
 _PATIENCE_S = 1.0
-"""A turn in which nothing has happened for so long is over: what it still waits for may never come."""
+"""Seconds without any step after which a turn is over: what it still waits for may never come."""
 _ASK_AGAIN_S = 0.1
 """Seconds between two checks whether the target of a waiting key is there, for a target that does not say so."""
 _POINTER = (events.MouseMove, events.MouseScrollDown, events.MouseScrollUp)
@@ -48,10 +48,10 @@ _TURN = "_turn"
 
 
 class Turn:
-    """Everything that follows from one key.
+    """The messages and callbacks that follow from one key; it ends when all of them have been handled.
 
     Args:
-        ended: Called once, when all of it is done.
+        ended: Called once, at the end.
     """
 
     def __init__(self, ended: Callable[[], None]) -> None:
@@ -61,13 +61,13 @@ class Turn:
         self._thread_id = threading.get_ident()
         self.is_over = False
         self.steps = 0
-        """Number of times that something of the turn was done."""
+        """Number of messages and callbacks of the turn that were handled."""
         _live.add(self)
         _follow_turns()
 
     @contextmanager
     def step(self, pump: MessagePump) -> Iterator[None]:
-        """Handle a message or callback that was added to the turn; whatever it causes is added, too."""
+        """In a `with` block, handle a message or callback of the turn; what it causes is added to the turn."""
         token = _current.set(self)
         try:
             yield
@@ -76,11 +76,16 @@ class Turn:
             self.drop(pump, 1)
 
     def add(self, pump: MessagePump) -> None:
-        """Add a message or callback that a pump has to handle before the turn ends."""
+        """Add a message or callback, which its message pump has to handle before the turn ends."""
         self._left[pump] += 1
 
     def drop(self, pump: MessagePump, count: int | None = None) -> None:
-        """Count messages and callbacks of a pump as handled; None for all: the pump is gone, and never handles them."""
+        """Remove messages and callbacks of a message pump from the turn; end the turn if none is left.
+
+        Args:
+            pump: The message pump.
+            count: How many it has handled; None removes all, because the pump is gone and never handles them.
+        """
         self.steps += 1
         self._left[pump] -= self._left[pump] if count is None else count
         if self._left[pump] <= 0:
@@ -89,7 +94,7 @@ class Turn:
             self.end()
 
     def end(self) -> None:
-        """End the turn, so that the next key has its own."""
+        """End the turn, so that the next key can begin its own."""
         if not self.is_over:
             self.is_over = True
             self._left.clear()
@@ -98,7 +103,7 @@ class Turn:
             self._ended()
 
     def delay(self, pump: MessagePump, callback: Callable[[], Any]) -> Callable[[], Awaitable[Any]]:
-        """Add a callback to the turn, and return one that calls it within the turn."""
+        """Add a callback to the turn; return a function that calls it as a step of the turn."""
         self.add(pump)
 
         async def call() -> Any:
@@ -109,12 +114,13 @@ class Turn:
 
     @property
     def is_here(self) -> bool:
-        """Whether it still goes on, in this thread."""
+        """Whether the turn still goes on, and belongs to this thread."""
         return not self.is_over and threading.get_ident() == self._thread_id
 
 
 _current: ContextVar[Turn | None] = ContextVar("turn", default=None)
-"""The turn that what is being handled belongs to. Tasks and threads inherit it, also for longer than it lasts."""
+"""The turn to which the message or callback belongs that is being handled. Tasks and threads inherit it, also for
+longer than it lasts."""
 _live: WeakSet[Turn] = WeakSet()
 
 
@@ -124,7 +130,10 @@ def _turn() -> Turn | None:
 
 
 def post_message(pump: MessagePump, message: Message) -> bool:
-    """Post a message. It belongs to the turn, unless a later one of its kind may replace it, as one about drawing."""
+    """Post a message, as a part of the current turn, and return whether it was posted.
+
+    A message that a later one of its class may replace, such as one about drawing, is no part of the turn.
+    """
     turn = _turn()
     if turn is None or type(message).can_replace is not Message.can_replace:
         return POST(pump, message)
@@ -137,7 +146,7 @@ def post_message(pump: MessagePump, message: Message) -> bool:
 
 
 def dispatch_message(pump: MessagePump, message: Message) -> Awaitable[None]:
-    """Handle a message, within the turn that it belongs to."""
+    """Handle a message as a step of the turn to which it belongs."""
     turn: Turn | None = getattr(message, _TURN, None)
     # Nobody posts the events of a new widget: they belong to the turn in which it was made.
     if turn is None and (
@@ -160,7 +169,7 @@ async def _dispatch_message(turn: Turn | None, pump: MessagePump, message: Messa
 
 
 async def end_messages(widget: Widget) -> None:
-    """Clean up after the last message of a widget; messages that are left belong to no turn any more."""
+    """Clean up after the last message of a removed widget, and remove its unhandled messages from their turns."""
     try:
         await END(widget)
     finally:
@@ -169,7 +178,7 @@ async def end_messages(widget: Widget) -> None:
 
 
 def call_next(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> None:
-    """Call something after the current message, within the turn."""
+    """Call a function after the current message, as a part of the current turn."""
     if turn := _turn():
         CALL_NEXT(pump, turn.delay(pump, partial(callback, *args, **kwargs)))
     else:
@@ -179,7 +188,10 @@ def call_next(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwa
 def call_after_refresh(
     pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any
 ) -> bool:
-    """Call something after the next refresh, within the turn; Textual's own callbacks only scroll, and may lag."""
+    """Call a function after the next refresh, as a part of the current turn; return whether it will be called.
+
+    Textual's own callbacks only scroll, and are no part of the turn.
+    """
     turn = _turn()
     if turn is None or _find_module(callback).startswith("textual."):
         return CALL_LATER(pump, callback, *args, **kwargs)
@@ -190,7 +202,10 @@ def call_after_refresh(
 
 
 def _follow_turns() -> None:
-    """Let Textual call these functions while there is a turn, and else its own: most messages are about drawing."""
+    """Let Textual call the functions of this module while there is a turn, else its own.
+
+    Most messages are about drawing, and Textual's own functions are quicker.
+    """
     if _live:
         route_messages(post_message, dispatch_message, call_next, call_after_refresh)
     else:
@@ -198,7 +213,7 @@ def _follow_turns() -> None:
 
 
 def takes_letters(widget: Widget) -> bool:
-    """Return whether every letter is typed into a widget: its attribute of this name, else whether it is a field."""
+    """Return whether a widget takes every letter as text: its attribute of this name, else whether it is a field."""
     return bool(getattr(widget, "takes_letters", isinstance(widget, Input)))
 
 
@@ -209,7 +224,7 @@ def _find_module(callback: Callable[..., Any]) -> str:
 
 
 class InputOrder:
-    """Handles keys, and other input of the user, one after another.
+    """Handles the keys and other input of the user in order: the next one after everything that one has caused.
 
     Args:
         app: The app.
@@ -235,11 +250,11 @@ class InputOrder:
 
     @property
     def is_idle(self) -> bool:
-        """Whether all that was taken has been handled."""
+        """Whether all events were handled, and no turn goes on."""
         return not self._held and self._turn is None
 
     async def take(self, event: events.Event) -> None:
-        """Handle an event, or hold it until the events before it have had their turn."""
+        """Handle an event after those before it; if they are not all handled yet, store it until then."""
         if (
             self._held
             and isinstance(event, events.MouseMove)
@@ -250,7 +265,7 @@ class InputOrder:
         await self.release_inputs()
 
     async def release_inputs(self) -> None:
-        """Give out the events that need not wait any longer."""
+        """Handle the stored events that need not wait any longer."""
         while self._held and not self._waits(self._held[0]):
             into = self._find_field(self._held[0])
             if self._turn is not None and (into is None or into is not self._typed_into):
@@ -267,14 +282,14 @@ class InputOrder:
         await self.release_inputs()
 
     def _find_field(self, event: events.Event) -> Widget | None:
-        """Return the field that takes a letter at once, and does nothing else with it."""
+        """Return the focused field if an event is a letter that is typed into it; else None."""
         if not (isinstance(event, events.Key) and event.is_printable and self._app.screen_stack):
             return None
         focused = self._app.focused
         return focused if focused is not None and takes_letters(focused) else None
 
     async def _give_turn(self, event: events.Event) -> None:
-        """Give out an event as a new turn, or as more of the one that goes on: letters are typed in a row."""
+        """Handle an event as the first step of a new turn, or as a further step of the turn that goes on."""
         turn = self._turn
         is_new = self._turn is None
         if turn is None:

@@ -27,7 +27,8 @@ TERMINALS: Mapping[str, str] = {
 """Terminals that have placeholders, by name, and where that is written."""
 PLACEHOLDER = "\U0010eeee"
 DIACRITICS = "\u0305\u030d\u030e\u0310\u0312\u033d\u033e\u033f"
-"""They follow a placeholder, and say which row and column of the image it shows; the first ones of the protocol."""
+"""Characters that follow a placeholder, and say which row and column of the image it shows; the first ones of the
+protocol."""
 MAX_CELLS = len(DIACRITICS)
 """Most rows and columns of an image."""
 QUERY_IMAGE = 31
@@ -47,11 +48,11 @@ _PLACEHOLDERS = re.compile(f"(?:{PLACEHOLDER}..)+")
 def encode(
     picture: Pixels, image: int, cols: int, rows: int, *, answers_errors: bool = True
 ) -> str:
-    """Return the codes that send a picture to the terminal, which shows it at its placeholders.
+    """Return the codes that send a picture to the terminal, which shows it where its placeholders are.
 
     Args:
         picture: Shape (height, width, 3).
-        image: Its number, from 1 to 0xFFFFFF; an image that had this number is gone.
+        image: Its number, from 1 to 0xFFFFFF; it replaces an image with this number.
         cols: Number of cells across, at most `MAX_CELLS`.
         rows: Number of cells from top to bottom, at most `MAX_CELLS`.
         answers_errors: Whether the terminal answers if it cannot show the picture.
@@ -78,14 +79,17 @@ def delete(image: int) -> str:
 
 
 def build_placeholder(col: int, row: int) -> str:
-    """Return the text of a cell that shows a part of an image; its foreground colour is the number of the image."""
+    """Return the text of a cell in whose place the terminal shows the part of an image at a column and row.
+
+    The foreground colour of the cell is the number of the image.
+    """
     return PLACEHOLDER + DIACRITICS[row] + DIACRITICS[col]
 
 
 def wrap_page(codes: str) -> str:
-    """Return codes as a page of a browser takes them.
+    """Return codes in the form in which the page of a browser reads them.
 
-    Its terminal, xterm.js, ignores commands of this kind, and would draw a placeholder as a character.
+    The page's terminal, xterm.js, ignores commands of this kind, and would draw a placeholder as a character.
     """
     return _PLACEHOLDERS.sub(
         "\x1b[8m\\g<0>\x1b[28m", codes.replace("\x1b_G", f"\x1b]{_PAGE_COMMAND};G")
@@ -93,5 +97,5 @@ def wrap_page(codes: str) -> str:
 
 
 def wrap_tmux(codes: str) -> str:
-    """Return codes that tmux passes on to its terminal, if it is allowed to."""
+    """Return codes in the form in which tmux passes them on to its own terminal, if its settings allow that."""
     return "\x1bPtmux;" + codes.replace("\x1b", "\x1b\x1b") + "\x1b\\"

@@ -12,10 +12,10 @@ from textual.widget import Widget
 
 
 class Throttle:
-    """Calls a function at most once per period.
+    """Calls a function at most once in a period.
 
     Args:
-        widget: Provides the timers; while it is not mounted, nothing is called.
+        widget: Provides the timers; while it is not mounted, the function is not called.
         period_s: Minimum time between two calls, in wall-clock seconds.
         do: The function.
     """
@@ -28,7 +28,11 @@ class Throttle:
         self._timer: Timer | None = None
 
     def ask(self, at_once: bool = False) -> None:
-        """Call the function if the last call is at least a period ago, or `at_once`; else at the end of the period."""
+        """Call the function if its last call was at least a period ago; else call it at the end of the period.
+
+        Args:
+            at_once: Call it without any delay.
+        """
         if at_once:
             self.call_now()
             return
@@ -41,7 +45,7 @@ class Throttle:
             self.call_now()
 
     def call_now(self) -> None:
-        """Call the function at once."""
+        """Call the function without any delay."""
         if self._timer is not None:
             self._timer.stop()
             self._timer = None
@@ -76,7 +80,7 @@ MAX_SLOW_S = 16.0
 
 
 class Pacer:
-    """Decides when a frame may be drawn, and whether the link is too slow for fine ones.
+    """Decides when a frame may be drawn, and whether the link to the terminal is too slow for fine pictures.
 
     Args:
         fps: Maximum frames per second.
@@ -99,7 +103,7 @@ class Pacer:
         self._asked: deque[tuple[float, int]] = deque(maxlen=_REMEMBERED)
         """When each unanswered query was sent, and the bytes since the query before."""
         self._heard_s = 0.0
-        """When the last answer arrived, or when no query was open."""
+        """When the last answer arrived, or when a query was sent while none was open."""
         self._proof_s: float | None = None
         """When a terminal without an answer is assumed never to answer."""
         self._loose_bytes = 0
@@ -111,7 +115,7 @@ class Pacer:
         self._queued_s: float | None = None
         """When a frame was last found to have queued on the link."""
         self._slow_s = SLOW_S
-        """For how long the link counts as slow after that."""
+        """Seconds for which the link counts as slow after that."""
         self._begun_s = 0.0
         """When the terminal or page that shows the app now first answered; earlier queries waited for it to begin."""
         self.answers = False
@@ -119,7 +123,7 @@ class Pacer:
 
     @property
     def is_slow(self) -> bool:
-        """Whether the link is too slow for fine frames now, or not known yet."""
+        """Whether the link to the terminal is too slow for fine frames, or its speed is not known yet."""
         if not self.asks:
             return False
         now = self._clock()
@@ -129,13 +133,16 @@ class Pacer:
 
     @property
     def is_idle(self) -> bool:
-        """Whether the terminal has shown everything that was sent."""
+        """Whether the terminal has shown everything that was sent, or could at least take another frame."""
         return not self._asked or self.ready()
 
     def ready(self) -> bool:
-        """Return whether a frame may be drawn now."""
+        """Return whether a frame may be drawn now.
+
+        It may not be too soon after the last frame, or while too much is still on its way to the terminal.
+        """
         now = self._clock()
-        # A tolerance of a tenth of the gap: a timer that fires slightly early would otherwise halve the rate.
+        # The gap may be a tenth shorter: a timer that fires slightly early would otherwise halve the rate.
         if now - self._last_s < 0.9 * self._gap_s:
             return False
         if not self._asked:
@@ -151,12 +158,12 @@ class Pacer:
         return not self._asked or (len(self._asked) < self._allowed and way_bytes < FULL_BYTES)
 
     def drawn(self) -> None:
-        """Note that a frame was drawn; it is in transit once it has been painted."""
+        """Record that a frame was drawn; `record_painted` records that it was sent."""
         self._last_s = self._clock()
         self._frame_is_new = True
 
     def record_painted(self, size: int) -> bool:
-        """Note that `size` bytes were sent. Return whether to query the terminal now."""
+        """Record that `size` bytes were sent. Return whether the caller must query the terminal now."""
         self._loose_bytes += size
         if not self.asks or not (self._frame_is_new or self._loose_bytes >= LARGE_BYTES):
             return False
@@ -171,13 +178,13 @@ class Pacer:
         return True
 
     def record_interruption(self) -> None:
-        """Note that what was sent is not answered any more: another program, or page, had the terminal."""
+        """Record that queries will not be answered any more, because another program or page had the terminal."""
         self._asked.clear()
         self._queued_s = None
         self._begun_s = inf
 
     def record_answer(self) -> None:
-        """Note an answer of the terminal."""
+        """Record that the terminal has answered the oldest open query."""
         self._heard_s = self._clock()
         first = not self.answers
         self.answers = True
@@ -186,7 +193,7 @@ class Pacer:
         asked_s, _ = self._asked.popleft()
         self._begun_s = min(self._begun_s, self._heard_s)
         took_s = self._heard_s - asked_s
-        # Falls at once, rises slowly: a backlog must not be taken for latency.
+        # The estimate falls at once and rises slowly, so that a backlog is not taken for latency.
         self._round_trip_s = took_s if first else min(took_s, self._round_trip_s + 0.001)
         queued_s = took_s - self._round_trip_s
         if queued_s > self._most_queued_s and asked_s >= self._begun_s:
@@ -194,7 +201,7 @@ class Pacer:
         if queued_s > 2 * self._gap_s:
             self._allowed = 1
         else:
-            # At least two, or an answer that arrives just after a frame timer would cost the next frame.
+            # At least two frames are allowed: else an answer just after a frame timer would cost the next frame.
             self._allowed = min(
                 self._allowed + 1, MAX_ON_THE_WAY, 2 + int(self._round_trip_s / self._gap_s)
             )
@@ -204,6 +211,6 @@ class Pacer:
         if rested_s >= 2 * self._slow_s:
             self._slow_s = SLOW_S
         elif rested_s >= self._slow_s:
-            # Fine frames were too much for it as soon as they were drawn again.
+            # The link was too slow again as soon as fine frames were drawn: wait longer before the next ones.
             self._slow_s = min(2 * self._slow_s, MAX_SLOW_S)
         self._queued_s = now

@@ -24,11 +24,11 @@ MAX_PAGE_POINTS = 32
 
 @dataclass(frozen=True, slots=True)
 class Graphics:
-    """How to draw pixels in this terminal."""
+    """The protocol and the sizes with which pixels are drawn in a terminal."""
 
     protocol: Protocol
     cell_px: tuple[int, int]
-    """Width and height of a cell."""
+    """Width and height of a cell in pixels."""
     in_tmux: bool = False
     """Whether tmux has to pass codes on."""
     most_points: int = MAX_POINTS
@@ -36,12 +36,12 @@ class Graphics:
 
     @property
     def scale(self) -> int:
-        """How many pixels of the terminal, across and down, are one point of a picture; finer ones take too long."""
+        """The width and height of a point of a picture in pixels of the terminal; more points would take too long."""
         return max(1, -(-self.cell_px[0] // self.most_points))
 
     @property
     def cell_points(self) -> tuple[int, int]:
-        """How many points of a picture a cell has across and from top to bottom."""
+        """How many points of a picture a cell has, across and down."""
         width_px, height_px = self.cell_px
         if self.protocol is Protocol.SIXEL and (width_px % self.scale or height_px % self.scale):
             # The terminal cannot scale such a picture.
@@ -50,19 +50,20 @@ class Graphics:
 
 
 class PictureCell(NamedTuple):
-    """A part of a picture, as large as a cell. Two are equal if they look the same."""
+    """A part of a picture of the size of a cell. Two parts are equal if they look the same."""
 
     picture: TilePicture
     row: int
     col: int
     version: int
-    """Number of its last change."""
+    """Number of the last change of the part."""
     half_block: int | None = None
-    """What is drawn in place of its pixels, see `fitted_cells.Cells`: on a slow link it has far fewer bytes."""
+    """The half block that is drawn in place of the pixels, see `fitted_cells.Cells`: on a slow link it has far
+    fewer bytes."""
 
 
 class Rectangle(NamedTuple):
-    """Some cells of a picture; `bottom` and `right` are behind the last ones."""
+    """A rectangle of cells of a picture; `bottom` and `right` are one more than the last row and column."""
 
     top: int
     left: int
@@ -71,11 +72,11 @@ class Rectangle(NamedTuple):
 
     @property
     def area(self) -> int:
-        """The number of cells."""
+        """The number of cells in the rectangle."""
         return (self.bottom - self.top) * (self.right - self.left)
 
     def join(self, other: Rectangle) -> Rectangle:
-        """Return the smallest rectangle around both."""
+        """Return the smallest rectangle that contains this one and another one."""
         return Rectangle(
             min(self.top, other.top),
             min(self.left, other.left),
@@ -85,7 +86,7 @@ class Rectangle(NamedTuple):
 
 
 class TilePicture:
-    """A picture that changes.
+    """A picture of pixels whose content changes; it is sent to the terminal in tiles of some cells.
 
     Args:
         graphics: How it is drawn.
@@ -103,17 +104,17 @@ class TilePicture:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Its rows and columns of cells."""
+        """The number of rows and columns of cells of the picture."""
         rows, cols = self._versions.shape
         return rows, cols
 
     @property
     def is_coarse(self) -> bool:
-        """Whether cells are drawn as half blocks, to be refined."""
+        """Whether some cells are drawn as half blocks until `refine` is called."""
         return bool(self._coarse.any())
 
     def put(self, points: Pixels, coarse: bool = False) -> list[CellRun]:
-        """Show other points.
+        """Replace the content of the picture.
 
         Args:
             points: `Graphics.cell_points` for each cell.
@@ -140,7 +141,7 @@ class TilePicture:
         return find_runs(differs)
 
     def refine(self, cells: int) -> list[CellRun]:
-        """Draw the pixels of about `cells` cells that are half blocks now.
+        """Draw about `cells` of the cells with pixels that are half blocks now.
 
         Returns:
             Runs of changed cells: row, first column, number of cells.
@@ -154,7 +155,7 @@ class TilePicture:
         return find_runs(some)
 
     def draw_half_blocks(self, row: int) -> list[int]:
-        """Return the cells of a row as half blocks (see `fitted_cells.Cells`), for use where pixels cannot be shown."""
+        """Return a row of the picture as half blocks, see `fitted_cells.Cells`, for places without pixels."""
         width, height = self.graphics.cell_points
         points = self._points[row * height : (row + 1) * height].astype(np.float32)
         upper, lower = (
@@ -166,16 +167,16 @@ class TilePicture:
         return cells
 
     def forget(self) -> None:
-        """Assume that the terminal shows nothing of the picture; it may still have images under the tiles' numbers."""
+        """Treat all cells as not shown by the terminal, which may still have the images of the tiles."""
         for tile, (_, image) in self._tiles.items():
             self._tiles[tile] = _NEVER, image
 
     def build_deletion(self) -> Callable[[], str]:
-        """Return a function that returns the codes to delete all tiles in the terminal, even after this object."""
+        """Return a function that returns the codes to delete all tiles in the terminal, even without this object."""
         return partial(_delete_tiles, self.graphics, self._tiles)
 
     def row(self, row: int) -> list[PictureCell]:
-        """Return the cells of a row."""
+        """Return the cells of one row of the picture."""
         versions = self._versions[row].tolist()
         coarse = self._coarse[row]
         blocks = self.draw_half_blocks(row) if coarse.any() else []
@@ -187,7 +188,7 @@ class TilePicture:
     def draw(
         self, places: Sequence[tuple[int, int, PictureCell]], is_shown: Callable[[int, int], bool]
     ) -> str:
-        """Return the codes that draw some cells.
+        """Return the codes that draw some cells of the picture on the screen.
 
         Args:
             places: Row and column of the screen, and the cell.
@@ -246,7 +247,13 @@ class TilePicture:
     # Kitty
 
     def _draw_placeholders(self, down: int, right: int, cells: Sequence[PictureCell]) -> str:
-        """Return the codes that send the tiles of some cells, and draw the placeholders of those that changed."""
+        """Return the codes that send the changed tiles of some cells, and write the placeholders of these tiles.
+
+        Args:
+            down: Row of the screen of the picture's first row.
+            right: Column of the screen of the picture's first column.
+            cells: The cells.
+        """
         tiles = {
             (cell.row // _TILE_ROWS * _TILE_ROWS, cell.col // _TILE_COLS * _TILE_COLS)
             for cell in cells
@@ -275,7 +282,7 @@ class TilePicture:
         return "".join(parts) + self._drop_tiles()
 
     def _send(self, tile: tuple[int, int]) -> tuple[str, list[int]]:
-        """Return the codes that send a tile if the terminal does not have it, and images that are no longer needed."""
+        """Return the codes that send a tile, empty if the terminal has it, and the numbers of images to delete."""
         top, left = tile
         some = Rectangle(
             top, left, min(top + _TILE_ROWS, self.size[0]), min(left + _TILE_COLS, self.size[1])
@@ -284,7 +291,7 @@ class TilePicture:
         had = self._tiles.get(tile)
         if had is not None and had[0] == version:
             return "", []
-        # Two images in turn: the old one is seen until its placeholders have been replaced.
+        # A tile has two image numbers in turn, so that the old image stays until its placeholders have been replaced.
         number = self._first_image + 2 * (top // _TILE_ROWS * _MAX_TILES + left // _TILE_COLS)
         image = number + 1 if had is not None and had[1] == number else number
         self._tiles[tile] = version, image
@@ -297,7 +304,7 @@ class TilePicture:
         return self._wrap_codes(codes), [had[1]] if had is not None else []
 
     def _drop_tiles(self) -> str:
-        """Return the codes that delete the tiles beyond its size."""
+        """Return the codes that delete the tiles outside the picture's present size."""
         rows, cols = self.size
         beyond = {
             tile: image for tile, image in self._tiles.items() if tile[0] >= rows or tile[1] >= cols
@@ -323,11 +330,11 @@ _COMPRESSION = 1
 
 
 def _encode_inline(picture: Pixels, cols: int, rows: int) -> str:
-    """Return the codes of iTerm2, and WezTerm, that draw a picture at the cursor, scaled to some columns and rows.
+    """Return the codes that draw a picture at the cursor in iTerm2 and WezTerm, scaled to some columns and rows.
 
     Reference: https://iterm2.com/documentation-images.html
     """
-    # Imported on demand: few terminals need it.
+    # This is imported on demand, since few terminals need it.
     from PIL import Image
 
     file = BytesIO()
@@ -353,7 +360,7 @@ _JOIN_CELLS = 6
 
 
 def _fill_tiles(changed: Mask) -> Mask:
-    """Return all cells of the tiles in which a cell has changed: each gets the number of a new image."""
+    """Return which cells are in a tile with a changed cell: a changed tile is a new image, so all of them change."""
     rows, cols = changed.shape
     filled = np.pad(changed, ((0, -rows % _TILE_ROWS), (0, -cols % _TILE_COLS)))
     tiles = filled.reshape(filled.shape[0] // _TILE_ROWS, _TILE_ROWS, -1, _TILE_COLS).any(

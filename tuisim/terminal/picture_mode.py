@@ -1,4 +1,4 @@
-"""How pictures are drawn on the terminal: with which glyphs, colours or pixels, and how fine at the moment."""
+"""How pictures are drawn on the terminal: with which glyphs, colours or pixels, and how finely at present."""
 
 from __future__ import annotations
 
@@ -41,22 +41,22 @@ BLOCKS = frozenset({CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCT
 
 
 class Recoloring(TypingProtocol):
-    """Colours in place of an app's own ones, as of a theme."""
+    """Replaces an app's own colours by others, such as those of a theme."""
 
     def rgb(self, own: Rgb) -> Rgb:
-        """Return the colour in place of one of the app's own; any other is returned as it is."""
+        """Return the colour in place of one of the app's own; any other colour is returned as it is."""
 
     def choose_text_rgb(self, own: Rgb) -> Rgb:
-        """Return the colour of text or lines in one of the app's own colours: it can be read on the background."""
+        """Return the colour for text or lines in place of one of the app's own; it is legible on the background."""
 
 
 @dataclass(slots=True)
 class PictureMode:
-    """How an app draws pictures."""
+    """How an app draws pictures: the set of glyphs, the colours, and pixels if the terminal has them."""
 
     cells: CellSet = CellSet.HALF
     chosen: str = AUTO
-    """What the user has chosen: `AUTO`, or the name of a set."""
+    """The user's choice of glyphs: `AUTO`, or the name of a set."""
     best: CellSet = CellSet.HALF
     """The finest set that the terminal is known to show."""
     graphics: Graphics | None = None
@@ -71,12 +71,16 @@ class PictureMode:
     """Whether the terminal has shown everything that was sent."""
 
     def choose(self, chosen: str) -> None:
-        """Switch to a set, or to the best one for `AUTO`."""
+        """Switch to a set of glyphs, given by its name; `AUTO` is the best one for the terminal."""
         self.chosen, self.cells = chosen, self.best if chosen == AUTO else CellSet(chosen)
 
 
 def choose_colors(colors: str) -> int:
-    """Set the colour depth of the terminal; `auto` leaves the choice to Textual. Return the most colours to use."""
+    """Set the colour depth of the terminal; `auto` lets Textual choose it.
+
+    Returns:
+        The largest number of colours to use.
+    """
     if colors == "auto":
         colors = read_colors(os.environ)
     system = {"truecolor": "truecolor", "256": "256", "16": "standard", "8": "standard"}.get(colors)
@@ -89,11 +93,11 @@ def choose_colors(colors: str) -> int:
 
 
 def choose_picture_mode(argument: str | None, stored: str) -> PictureMode:
-    """Return how an app that starts draws pictures.
+    """Return how a starting app draws pictures.
 
     Args:
-        argument: The set, or `AUTO`, that the user asks for now, if any.
-        stored: What the user has asked for before, perhaps on another terminal.
+        argument: The set of glyphs, or `AUTO`, that the user requests now; None for no request.
+        stored: The set that the user has chosen before, perhaps on another terminal.
     """
     chosen = argument or stored
     # Textual decides in the same way whether there are colours.
@@ -115,9 +119,9 @@ _DEPTHS = {"standard": PALETTE_16, "windows": PALETTE_16, "256": PALETTE_256}
 
 
 def find_color_depth(app: App[Any]) -> int:
-    """Return the number of colours that an app draws with; full colour if the terminal does not say.
+    """Return the number of colours with which an app draws; full colour if the terminal does not say.
 
-    Blocks without colours are drawn in greys; dots and signs need none at all.
+    Blocks without colours are drawn in greys; dots and signs need no colours at all.
     """
     picture_mode = find_picture_mode(app)
     if app.no_color and picture_mode.cells not in BLOCKS:
@@ -126,7 +130,7 @@ def find_color_depth(app: App[Any]) -> int:
 
 
 def is_ascii(app: App[Any]) -> bool:
-    """Return whether an app draws with ASCII only."""
+    """Return whether an app draws with ASCII characters only."""
     return find_picture_mode(app).cells is CellSet.ASCII
 
 
@@ -152,12 +156,12 @@ DEFAULT_CELL_PX = (8, 16)
 def choose_graphics(
     facts: TerminalFacts, choice: str, cell_px: tuple[int, int] | None
 ) -> Graphics | None:
-    """Return how a terminal is drawn with pixels; None if it cannot, does not tell, or should not.
+    """Return how pixels are drawn in a terminal; None if it cannot or should not show pixels, or does not say.
 
     Args:
         facts: What the terminal has answered.
         choice: One of `PIXELS`.
-        cell_px: Width and height of a cell as the kernel knows them.
+        cell_px: Width and height of a cell in pixels, as the kernel knows them.
     """
     if choice == NO_PIXELS:
         return None
@@ -175,22 +179,22 @@ def choose_graphics(
 
 @dataclass(frozen=True, slots=True)
 class TerminalReport:
-    """What a terminal shows, by its environment and its answers."""
+    """What a terminal can show, according to its environment and its answers."""
 
     name: str
-    """What it calls itself; empty if it does not tell."""
+    """Name of the terminal by its own answer; empty without an answer."""
     colors: str
-    """One of `COLOR_DEPTHS` other than `auto`."""
+    """Colour depth of the terminal, one of `COLOR_DEPTHS` other than `auto`."""
     has_colors: bool
-    """Whether TERM and NO_COLOR leave it any colours."""
+    """Whether the terminal has colours according to TERM and NO_COLOR."""
     has_fixed_colors: bool
-    """Whether TERM or NO_COLOR decides on its colours, whatever else is set."""
+    """Whether TERM or NO_COLOR alone decides on the colours."""
     cells: CellSet
-    """The finest set that it is known to show."""
+    """The finest set of glyphs that the terminal is known to show."""
     is_limited: bool
     """Whether TERM alone limits that set."""
     protocol: str
-    """How it is drawn with pixels; empty if it is not."""
+    """Protocol with which pixels are drawn; empty if none are."""
     is_asked: bool
     latency_s: float | None
     """The shortest time that an answer took; None if there was none."""
@@ -199,7 +203,7 @@ class TerminalReport:
 
 
 def describe_terminal(fd: int, environment: Mapping[str, str]) -> TerminalReport | None:
-    """Return what a terminal shows, after it was asked all that the app asks; None if it is gone.
+    """Ask a terminal what it can show, and return that; None if the terminal is lost.
 
     Args:
         fd: The terminal, open for reading and writing.
@@ -212,7 +216,7 @@ def describe_terminal(fd: int, environment: Mapping[str, str]) -> TerminalReport
         answers = ask_everything(fd) if is_asked else Answers()
     except (OSError, termios.error):
         return None
-    # Textual takes an empty variable as well.
+    # Textual draws without colours even if the variable is empty.
     colors = "none" if "NO_COLOR" in environment else read_colors(environment)
     has_colors = colors != "none"
     cells = read_cells({**first, "TERM": term}, has_colors=has_colors)
@@ -256,12 +260,12 @@ _STILL_S = 0.3
 
 
 class Sharpness:
-    """Draws the picture of a widget more finely as soon as that is possible.
+    """Draws a coarse picture of a widget more finely when the link has time for that.
 
     Args:
         widget: Provides the timer.
         refine: Draws some of the picture more finely; returns whether more is to be done.
-        still_s: A picture that has not changed for this long stands still.
+        still_s: A picture that has not changed for this long counts as still.
     """
 
     def __init__(
@@ -276,11 +280,11 @@ class Sharpness:
 
     @property
     def is_still(self) -> bool:
-        """Whether the picture stands still."""
+        """Whether the picture has not changed for `still_s`."""
         return time.monotonic() - self._changed_s >= self._still_s
 
     def record_change(self, *, is_coarse: bool = False) -> None:
-        """Note that the picture was drawn; `is_coarse` if it is to be drawn more finely as soon as that is possible."""
+        """Record that the picture was drawn; `is_coarse` if it is to be drawn more finely later."""
         self._changed_s = time.monotonic()
         self._is_coarse = is_coarse
         if is_coarse and self._timer is None:
@@ -293,7 +297,7 @@ class Sharpness:
         if self._is_coarse:
             self._is_coarse = False
             has_more = self._refine()
-            # The refined picture may be coarse again.
+            # The function may have drawn the picture, and so noted that it is coarse again.
             self._is_coarse = self._is_coarse or has_more
         if not self._is_coarse and self._timer is not None:
             self._timer.stop()

@@ -1,4 +1,4 @@
-"""How a terminal shows pictures: the glyphs and the ways to draw pixels that one can choose."""
+"""The options of how a terminal shows pictures: the sets of glyphs, and the protocols for pixels."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import StrEnum
 
 
 class CellSet(StrEnum):
-    """The glyphs that pictures are drawn with, by the points in a cell (columns × rows)."""
+    """A set of glyphs with which pictures are drawn, named by the points in a cell (columns × rows)."""
 
     HALF = "half"
     """1 × 2"""
@@ -26,7 +26,7 @@ AUTO = "auto"
 
 
 class Protocol(StrEnum):
-    """How a terminal is told to draw pixels."""
+    """The protocol with which a terminal draws pixels."""
 
     KITTY = "kitty"
     ITERM = "iterm"

@@ -14,18 +14,18 @@ Rgb: TypeAlias = tuple[int, int, int]
 
 
 def unpack_rgb(packed: int) -> Rgb:
-    """Return red, green and blue of 0xRRGGBB."""
+    """Return the red, green and blue values, 0 to 255, of a colour 0xRRGGBB."""
     return packed >> 16 & 255, packed >> 8 & 255, packed & 255
 
 
 def pack_rgb(colors: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
-    """Return 0xRRGGBB of colours of shape (3, …)."""
+    """Return colours of shape (3, …) as numbers 0xRRGGBB."""
     packed: npt.NDArray[np.int64] = colors[0] << 16 | colors[1] << 8 | colors[2]
     return packed
 
 
 class CellPoints(NamedTuple):
-    """The pixels of a picture in a character cell."""
+    """How many pixels of a picture a character cell has, across and down."""
 
     cols: int = 1
     rows: int = 2

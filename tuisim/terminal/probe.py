@@ -1,4 +1,4 @@
-"""The terminal while no app draws on it: what it shows, by its environment and its answers, and its usual state.
+"""The terminal while no app draws on it: what it can show, by its environment and its answers, and how to restore it.
 
 No terminal tells whether its font has a glyph. One that does not know a character drops it, as tmux 3.3a does, or draws
 a box. So fine glyphs are taken only from terminals that are known to draw them themselves, without a font.
@@ -50,7 +50,7 @@ Version = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """The versions since which a terminal draws sextants and octants itself, without a font."""
+    """From which versions on a terminal draws sextants and octants itself, without a font."""
 
     sextants: Version
     octants: Version | None
@@ -64,15 +64,15 @@ TERMINALS: Mapping[str, Drawn] = {
     "WezTerm": Drawn((20220319,), None, "https://wezterm.org/changelog.html"),
     "VTE": Drawn((6600,), None, "https://gitlab.gnome.org/GNOME/vte/-/blob/master/src/minifont.cc"),
 }
-"""By the name that a terminal answers to XTVERSION. A version that is missing here gets quadrants; `--cells`, or the
-test card in the app, chooses any other set."""
+"""Terminals by the name that they answer to XTVERSION. A version that is missing here gets quadrants; `--cells`, or
+the test card in the app, chooses any other set."""
 
 
 def find_cells(name: str, octant_cols: int | None) -> CellSet:
-    """Return the finest set that a terminal with UTF-8 is known to show.
+    """Return the finest set of glyphs that a terminal with UTF-8 is known to show.
 
     Args:
-        name: What it answered to XTVERSION, see `name_around`; empty if nothing.
+        name: Its answer to XTVERSION, see `name_around`; empty without an answer.
         octant_cols: By how many columns an octant moved its cursor; None if it did not answer.
     """
     match = _NAME_AND_VERSION.match(name)
@@ -86,7 +86,7 @@ def find_cells(name: str, octant_cols: int | None) -> CellSet:
 
 
 def read_cells(environment: Mapping[str, str], *, has_colors: bool = True) -> CellSet | None:
-    """Return the set that the environment decides; None if the terminal has to be asked.
+    """Return the set of glyphs that the environment decides on; None if the terminal must be asked.
 
     Args:
         environment: As it was when the process started: Python changes the locale C to UTF-8.
@@ -102,7 +102,7 @@ def read_cells(environment: Mapping[str, str], *, has_colors: bool = True) -> Ce
 
 
 def read_colors(environment: Mapping[str, str]) -> str:
-    """Return the colours that the terminal is known to have by its environment; `auto` if Textual knows better."""
+    """Return the colour depth that the environment gives for the terminal; `auto` lets Textual find it."""
     terminal = environment.get("TERM", "")
     if is_multiplexer(terminal):
         around = find_colors(terminal.partition(".")[2] or terminal)
@@ -115,7 +115,7 @@ def read_colors(environment: Mapping[str, str]) -> str:
 
 
 def find_colors(terminal: str) -> str:
-    """Return the colours that a kind of terminal, as in TERM, is known to have; `auto` if that does not tell."""
+    """Return the colour depth of a kind of terminal, as in TERM; `auto` if the kind does not determine it."""
     if terminal in _PLAIN or terminal.startswith(("vt1", "vt2", "vt3")):
         return "none"
     if terminal in ("linux", "ansi"):
@@ -125,9 +125,9 @@ def find_colors(terminal: str) -> str:
 
 
 def has_terminfo_colors(terminal: str) -> bool:
-    """Return whether terminfo gives a kind of terminal colours; True for a kind that it does not know.
+    """Return whether a kind of terminal has colours according to terminfo; True for an unknown kind.
 
-    curses reads one entry a process: the first kind that is asked for decides.
+    curses reads one entry in a process: later calls return the result for the kind of the first call.
     """
     try:
         curses.setupterm(terminal, sys.__stdout__.fileno() if sys.__stdout__ else -1)
@@ -137,14 +137,14 @@ def has_terminfo_colors(terminal: str) -> bool:
 
 
 _MULTIPLEXER = "screen"
-"""What TERM begins with in GNU screen, and in tmux unless it is told otherwise."""
+"""The beginning of TERM in GNU screen, and in tmux unless its settings say otherwise."""
 _TMUX_ANSWER_S = 1.0
 _ALL_COLORS = "RGB"
 """The feature of a terminal with all colours, as tmux calls it."""
 
 
 def is_multiplexer(terminal: str) -> bool:
-    """Return whether a kind of terminal, as in TERM, is GNU screen, or tmux under that name.
+    """Return whether a kind of terminal, as in TERM, is GNU screen, or tmux that calls itself so.
 
     Such a program takes the code for italics for that of reverse video.
     """
@@ -152,17 +152,17 @@ def is_multiplexer(terminal: str) -> bool:
 
 
 def has_all_colors(environment: Mapping[str, str]) -> bool:
-    """Return whether the multiplexer says that it shows all colours.
+    """Return whether the environment of a multiplexer says that it shows all colours.
 
-    COLORTERM is no answer: it was inherited from the terminal around it. GNU screen before version 5 takes the numbers
-    of such a colour for blinking, underlined and coloured text, and has no way to be asked. tmux has; inside GNU screen
-    (STY) it may be the one around it.
+    COLORTERM does not say so: it was inherited from the terminal around it. GNU screen before version 5 takes the
+    numbers of such a colour for blinking, underlined and coloured text, and cannot be asked. tmux can; inside GNU
+    screen (STY) it may be the one around it.
     """
     return _ALL_COLORS in _ask_tmux("client_termfeatures", environment).split(",")
 
 
 def name_around(name: str, environment: Mapping[str, str]) -> str:
-    """Return the name that a terminal answered; for tmux, if it tells, the name of the terminal around it.
+    """Return the name that a terminal answered; for tmux, the name of the terminal around it if tmux knows that.
 
     tmux passes glyphs on, and the terminal around it draws them.
     """
@@ -170,7 +170,10 @@ def name_around(name: str, environment: Mapping[str, str]) -> str:
 
 
 def _ask_tmux(what: str, environment: Mapping[str, str]) -> str:
-    """Return what tmux knows of the terminal around it; empty if it is not the innermost program, or says nothing."""
+    """Return a property of the terminal around tmux, such as its name.
+
+    It is empty if tmux does not know it, or is not the innermost program.
+    """
     if "TMUX" not in environment or "STY" in environment:
         return ""
     command = ["tmux", "display-message", "-p", f"#{{{what}}}"]
@@ -198,7 +201,7 @@ def is_in_browser() -> bool:
 
 
 def _may_be_utf8(environment: Mapping[str, str]) -> bool:
-    """Return whether the locale is UTF-8, or not set at all, as in many containers."""
+    """Return whether the locale is UTF-8, or is not set, as in many containers."""
     locale = next(
         (value for name in ("LC_ALL", "LC_CTYPE", "LANG") if (value := environment.get(name))), ""
     )
@@ -206,7 +209,7 @@ def _may_be_utf8(environment: Mapping[str, str]) -> bool:
 
 
 def read_first_environment() -> Mapping[str, str]:
-    """Return the environment that this process was started with; the present one if the system does not tell."""
+    """Return the environment with which this process was started; if the system does not know it, the present one."""
     try:
         entries = Path("/proc/self/environ").read_bytes().split(b"\0")
     except OSError:
@@ -216,7 +219,12 @@ def read_first_environment() -> Mapping[str, str]:
 
 
 def choose_cells(*, ask: bool = True, has_colors: bool = True) -> CellSet:
-    """Return the finest set that this terminal is known to show; `ask` it if the environment does not decide."""
+    """Return the finest set of glyphs that this terminal is known to show.
+
+    Args:
+        ask: Whether to ask the terminal if the environment does not decide.
+        has_colors: Whether colours are used.
+    """
     environment = {**read_first_environment(), "TERM": os.environ.get("TERM", "")}
     decided = read_cells(environment, has_colors=has_colors)
     if decided is not None or not ask:
@@ -234,7 +242,7 @@ _ROUND_TRIPS = 3
 
 @dataclass(frozen=True, slots=True)
 class Answers:
-    """What a terminal has answered to every question."""
+    """The answers of a terminal to all questions of the app."""
 
     facts: TerminalFacts = field(default_factory=TerminalFacts)
     octant_cols: int | None = None
@@ -246,13 +254,13 @@ class Answers:
 
 
 def ask_everything(fd: int) -> Answers:
-    """Ask a terminal everything that the app asks, and measure how long it takes to answer.
+    """Ask a terminal all questions of the app, and measure how long it takes to answer.
 
     Args:
         fd: The terminal, open for reading and writing.
 
     Raises:
-        OSError, termios.error: it is no terminal, or gone.
+        OSError, termios.error: it is no terminal, or lost.
     """
     before = termios.tcgetattr(fd)
     try:
@@ -286,14 +294,14 @@ def _measure_latency_s(fd: int) -> float | None:
 
 
 def _ask_width(fd: int, output: int | None = None) -> bytes:
-    """Print an octant, and return what is read with the position of the cursor after it."""
+    """Print an octant, and return the terminal's answer with the position of the cursor after it."""
     answer = _ask(fd, WIDTH_QUERY, _POSITION.search, output)
     _write(_CLEAR, output)
     return answer
 
 
 def _parse_cols(answer: bytes) -> int | None:
-    """Return by how many columns an octant moved the cursor, if that was answered."""
+    """Return by how many columns an octant has moved the cursor, from a terminal's answer; None without an answer."""
     position = _POSITION.search(answer)
     return int(position[1]) - 1 if position else None
 
@@ -303,10 +311,10 @@ def _has_attributes(answer: bytes) -> bool:
 
 
 def _ask_terminal() -> CellSet:
-    """Return the finest set that the terminal of the standard input and output is known to show; ask it.
+    """Return the finest set of glyphs that the terminal of standard input and output shows, by asking it.
 
     The name is asked for only once an octant has moved the cursor: an answer that comes too late would be taken for
-    keys, so a terminal that answers nothing is asked for as little as possible.
+    keys, so a terminal that answers nothing is asked as little as possible.
     """
     fd = sys.stdin.fileno()
     before = termios.tcgetattr(fd)
@@ -332,7 +340,7 @@ _typed: list[bytes] = []
 
 
 def take_typed() -> str:
-    """Return what the user has typed while the terminal was asked, once."""
+    """Return what the user has typed while the terminal was being asked; later calls return an empty text."""
     typed = b"".join(_typed).decode(errors="replace")
     _typed.clear()
     return typed
@@ -372,14 +380,14 @@ RESTORING = f"\x1b[<u{_OFF}\x1b[?1049l\x1b[?7h\x1b[?25h\x1b[0m\x1b(B\x0f\r"
 
 
 def restore_terminal(fd: int, term: str) -> None:
-    """Undo the settings that the app, or another program that was killed, has left in a terminal.
+    """Undo the settings of a terminal that an app, or another program, has left when it was killed.
 
     Args:
         fd: The terminal, open for reading and writing.
         term: The variable TERM.
 
     Raises:
-        OSError: the terminal is gone.
+        OSError: the terminal is lost.
     """
     # Images are deleted only where the codes are not shown as text: most terminals ignore codes that they do not know.
     os.write(fd, (RESTORING if term in SILENT else RESTORING + kitty.DELETE_ALL).encode())
@@ -390,7 +398,7 @@ def restore_terminal(fd: int, term: str) -> None:
 
 
 def _build_sane_modes(iflag: int, oflag: int, cflag: int, lflag: int) -> list[int]:
-    """Return the modes of a terminal with what `stty sane` switches on, as far as apps change it."""
+    """Return the modes of a terminal in which those that apps change are as `stty sane` sets them."""
     iflag = (iflag | termios.BRKINT | termios.ICRNL | termios.IXON | termios.IMAXBEL) & ~(
         termios.INLCR | termios.IGNCR
     )

@@ -1,4 +1,4 @@
-"""What an app asks the terminal, and its answers among the keys: taken out, and told to the app.
+"""The questions of an app to its terminal; the answers, which come among the keys, are removed and passed to the app.
 
 Reference: https://invisible-island.net/xterm/ctlseqs/ctlseqs.html (XTVERSION, primary device attributes, window
 operations); for the query of kitty see `kitty.py`.
@@ -23,7 +23,8 @@ from tuisim.terminal.textual_internals import XTermParser
 NAME_QUERY = "\x1b[>0q"
 CELL_SIZE_QUERY = "\x1b[16t"
 ATTRIBUTES_QUERY = "\x1b[c"
-"""Every terminal answers it, so it comes last: what has not been answered by then will not be."""
+"""Asks for the attributes, which every terminal answers, so it comes last: other questions are not answered after
+that."""
 QUESTIONS = f"{NAME_QUERY}{CELL_SIZE_QUERY}{ATTRIBUTES_QUERY}"
 KITTY_QUESTIONS = f"{kitty.QUERY}{ATTRIBUTES_QUERY}"
 """Questions for a terminal that has answered the others, if `asks_for_kitty` is true then."""
@@ -38,38 +39,39 @@ _SIXEL = "4"
 """Number of sixel graphics among the attributes of a terminal."""
 _PROGRAM = re.compile(r"[A-Za-z0-9]+")
 _MIN_CELL_PX, _MAX_CELL_PX = (2, 4), (300, 300)
-"""Width and height; terminals have told sizes of 1 pixel, and none at all."""
+"""Smallest and largest width and height of a cell; terminals have reported sizes of 1 pixel, and none at all."""
 
 
 @dataclass(frozen=True, slots=True)
 class TerminalFacts:
-    """What a terminal has answered so far."""
+    """What is known of a terminal from its answers so far."""
 
     name: str = ""
-    """Its name and version, such as `kitty(0.36.4)`; empty if it does not tell."""
+    """Name and version of the terminal, such as `kitty(0.36.4)`; empty if it does not say."""
     attributes: frozenset[str] = frozenset()
-    """The numbers of its features; empty if it has not answered at all."""
+    """The numbers of the terminal's features; empty if it has not answered at all."""
     has_kitty_graphics: bool | None = None
-    """Whether it draws pictures at placeholders; None if it has not been asked, False once it has reported an error."""
+    """Whether the terminal draws pictures at placeholders; None if it has not been asked, False once it has
+    reported an error."""
     kitty_error: str = ""
-    """The error that it has last reported, such as `ENOSPC:No space left`."""
+    """The error that the terminal has last reported, such as `ENOSPC:No space left`."""
     cell_px: tuple[int, int] | None = None
     """Width and height of a cell in pixels."""
 
     @property
     def program(self) -> str:
-        """Its name without its version; empty if it does not tell."""
+        """The name of the terminal without its version; empty if it does not say."""
         match = _PROGRAM.match(self.name)
         return match[0] if match else ""
 
     @property
     def asks_for_kitty(self) -> bool:
-        """Whether it may draw kitty's graphics, and has not answered yet."""
+        """Whether the terminal may know kitty's protocol, and has not answered yet whether it does."""
         return self.has_kitty_graphics is None and self.program in kitty.TERMINALS
 
     @property
     def without_refusal(self) -> TerminalFacts:
-        """The facts, as if a question for kitty's protocol without an answer had not been asked."""
+        """The facts in which kitty's protocol is unknown again, unless the terminal has answered about it."""
         return (
             self
             if self.has_kitty_graphics or self.kitty_error
@@ -78,11 +80,11 @@ class TerminalFacts:
 
     @property
     def has_sixel(self) -> bool:
-        """Whether it draws sixel graphics."""
+        """Whether the terminal draws sixel graphics."""
         return _SIXEL in self.attributes
 
     def add_answer(self, match: re.Match[str]) -> TerminalFacts:
-        """Return the facts with an answer of the terminal."""
+        """Return the facts with a further answer of the terminal, given as a match of its pattern."""
         groups = match.groupdict()
         if groups["name"] is not None:
             # A name means that all questions are asked again, perhaps by another page: one for kitty's protocol that is
@@ -109,7 +111,7 @@ def _is_possible(cell_px: tuple[int, int]) -> bool:
 
 
 def parse_facts(text: str) -> TerminalFacts:
-    """Return what the answers in a text tell; anything else in it is ignored."""
+    """Return the facts from all answers in a text; anything else in it is ignored."""
     facts = TerminalFacts()
     for match in ANSWER.finditer(text):
         facts = facts.add_answer(match)
@@ -117,7 +119,7 @@ def parse_facts(text: str) -> TerminalFacts:
 
 
 def read_cell_size_px(fd: int) -> tuple[int, int] | None:
-    """Return width and height of a cell as the kernel knows them, also over SSH; None if it does not."""
+    """Return width and height of a cell in pixels, as the kernel knows them, also over SSH; None if it does not."""
     try:
         rows, cols, width, height = struct.unpack(
             "HHHH", fcntl.ioctl(fd, termios.TIOCGWINSZ, bytes(8))
@@ -131,11 +133,11 @@ def read_cell_size_px(fd: int) -> tuple[int, int] | None:
 _BEGUN = re.compile(r"\x1b(?:P>[^\x1b]*|_G[^\x1b]*|\[6;[\d;]*|\[\?[\d;]*)\x1b?\Z")
 """The beginning of an answer whose rest has not arrived."""
 _MAYBE_BEGUN = re.compile(r"\x1b(?:[P_\[]|\[6)?\Z")
-"""What may be the beginning of an answer, but also a key."""
+"""Input that may be the beginning of an answer, or a key."""
 _KEY_S = 0.1
-"""What may be a key waits this long for the rest of an answer."""
+"""Input that may be a key waits this many seconds for the rest of an answer."""
 _REST_S = 3.0
-"""The beginning of an answer waits this long for its rest; after that it is dropped."""
+"""The beginning of an answer waits this many seconds for its rest; after that it is dropped."""
 _LONGEST = 500
 """An answer is at most this long; the beginning of a longer one is dropped."""
 
@@ -149,7 +151,7 @@ class TerminalAnswered(Message):
 
 
 class AnswerParser(XTermParser):
-    """Textual's parser of what the terminal sends, which takes answers that it does not know for key presses."""
+    """Textual's parser of the terminal's input, which also reads answers that Textual would take for key presses."""
 
     is_asked: ClassVar[bool] = False
     """Whether a terminal that has answered before was asked again."""
@@ -161,7 +163,7 @@ class AnswerParser(XTermParser):
         self._facts = TerminalFacts()
 
     def feed(self, data: str) -> Iterable[Message]:
-        """Yield a message for each answer, and then those for the rest of the data."""
+        """Yield a message for each answer in the data, and then the messages for the rest of the data."""
         was = self._begun
         self._begun = ""
         text = was + data
@@ -193,7 +195,7 @@ class AnswerParser(XTermParser):
         return match[0] if match else ""
 
     def tick(self) -> Iterable[Message]:
-        """Yield what has been held back for long enough; drop an answer whose rest does not come."""
+        """Yield messages for input that was held back as the possible begin of an answer; drop an incomplete answer."""
         is_answer = _BEGUN.match(self._begun)
         if self._begun and monotonic() - self._begun_s >= (_REST_S if is_answer else _KEY_S):
             text = "" if is_answer else self._begun

@@ -1,4 +1,4 @@
-"""What a page that shows the app, and its server, ask of the app."""
+"""The requests to the app of the page that shows it, and of the server of the page."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from textual.message import Message
 
 
 class ActionAsked(Message):
-    """A button of the page that shows the app asks for an action."""
+    """Posted when a button of the web page that shows the app requests an action."""
 
     def __init__(self, name: str) -> None:
         super().__init__()
@@ -16,7 +16,7 @@ class ActionAsked(Message):
 
 
 class ServerAsks(Message):
-    """The server that shows the app in a browser asks for something."""
+    """Posted when the server that shows the app in a browser requests something."""
 
     def __init__(self, request: Mapping[str, object]) -> None:
         super().__init__()

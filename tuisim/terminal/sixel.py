@@ -25,10 +25,10 @@ _SHORT_RUN = 3
 
 
 def encode(picture: Pixels) -> str:
-    """Return the codes that draw a picture at the cursor. Where the cursor is after them differs among terminals.
+    """Return the codes that draw a picture at the cursor; terminals differ in where the cursor is afterwards.
 
     Args:
-        picture: Shape (height, width, 3); with more than `MAX_COLORS` colours, the nearest of a palette are taken.
+        picture: Shape (height, width, 3); more than `MAX_COLORS` colours are replaced by the nearest of a palette.
     """
     height_px, width_px = picture.shape[:2]
     colors, numbers = _find_palette(picture)
@@ -44,7 +44,7 @@ def encode(picture: Pixels) -> str:
 
 
 def _find_palette(picture: Pixels) -> tuple[list[tuple[int, ...]], npt.NDArray[np.intp]]:
-    """Return the colours of a picture, and which of them each pixel has, shape (height, width)."""
+    """Return the colours of a picture, and the index of the colour of each pixel, shape (height, width)."""
     packed = picture.astype(np.int32) @ np.array([1 << 16, 1 << 8, 1], np.int32)
     colors_found, numbers = np.unique(packed, return_inverse=True)
     if len(colors_found) > MAX_COLORS:
@@ -53,7 +53,7 @@ def _find_palette(picture: Pixels) -> tuple[list[tuple[int, ...]], npt.NDArray[n
 
 
 def _reduce_palette(picture: Pixels) -> tuple[list[tuple[int, ...]], npt.NDArray[np.intp]]:
-    # Imported on demand: most pictures have few colours.
+    # This is imported on demand, since most pictures have few colours.
     from PIL import Image
 
     image = Image.fromarray(picture).quantize(MAX_COLORS, dither=Image.Dither.NONE)
@@ -68,7 +68,11 @@ def _define_color(number: int, color: tuple[int, ...]) -> str:
 
 
 def _encode_band(numbers: npt.NDArray[np.intp]) -> str:
-    """Return up to six rows of pixels, one colour after the other."""
+    """Return the codes of up to six rows of pixels, one colour after the other.
+
+    Args:
+        numbers: The index of the colour of each pixel, shape (rows, width).
+    """
     colors, places = np.unique(numbers, return_inverse=True)
     rows, cols = numbers.shape
     bits = np.repeat(1 << np.arange(rows), cols)

@@ -18,7 +18,7 @@ Line: TypeAlias = list[Run]
 
 
 def escape_markup(text: str) -> str:
-    """Return a text that comes from a file or the user as markup that shows it as it is.
+    """Return the markup that shows a text from a file or the user as it is.
 
     `textual.markup.escape` leaves some brackets that follow a backslash or stand in quotes.
     """
@@ -26,7 +26,7 @@ def escape_markup(text: str) -> str:
 
 
 def convert_color(color: Color | None) -> Rgb | None:
-    """Return red, green and blue of a colour; None without one, and for a number of the terminal's palette."""
+    """Return red, green and blue of a colour; None for no colour, and for a number of the terminal's palette."""
     if color is None or color.triplet is None:
         return None
     red, green, blue = color.triplet
@@ -34,12 +34,12 @@ def convert_color(color: Color | None) -> Rgb | None:
 
 
 def cut(text: str, width: int) -> str:
-    """Shorten a text to a maximum width; a truncated one ends in an ellipsis."""
+    """Return a text cut to a number of cells; one that was cut ends in an ellipsis."""
     return text if len(text) <= width else text[: max(0, width - 1)] + "…"[:width]
 
 
 def cut_line(line: Sequence[Run], width: int) -> Sequence[Run]:
-    """Shorten a line to a maximum width; it ends in an ellipsis if more than blanks is cut."""
+    """Return a line cut to a number of cells; it ends in an ellipsis if more than blanks was cut."""
     if (
         sum(len(text) for text, _ in line) <= width
         or not "".join(text for text, _ in line)[width:].strip()
@@ -60,5 +60,11 @@ def cut_line(line: Sequence[Run], width: int) -> Sequence[Run]:
 
 
 def find_first_row(chosen: int, count: int, room: int) -> int:
-    """Return the first row to show of a list, so that the selected row is near the middle."""
+    """Return the first row to show of a list, so that the selected row is near the middle.
+
+    Args:
+        chosen: The selected row.
+        count: Number of rows of the list.
+        room: Number of rows that are visible.
+    """
     return min(max(chosen - room // 2, 0), max(count - room, 0))

@@ -117,7 +117,7 @@ _GLOBALS: Sequence[tuple[ModuleType, str]] = (
 
 
 def list_missing_names() -> list[str]:
-    """Return which names the Textual that is installed does not have, such as `App._display`."""
+    """Return the names that this module uses and the installed Textual lacks, such as `App._display`."""
     missing = [
         f"{owner.__name__}.{name}"
         for owner, names in _USED.items()
@@ -139,7 +139,7 @@ def _has(owner: type, name: str) -> bool:
 
 
 def read_textual_version() -> Version:
-    """Return the version of the Textual that is installed; empty if it is no release.
+    """Return the version of the installed Textual; empty if it is no release.
 
     It is read from the name of its metadata: `importlib.metadata` would take a tenth of the time that Textual takes.
     """
@@ -150,7 +150,7 @@ def read_textual_version() -> Version:
 
 
 def describe_textual() -> tuple[Version, tuple[Version, Version], list[str]]:
-    """Return the version that is installed, the first and the last one that was tried, and what it lacks."""
+    """Return the installed version of Textual, the first and last tested versions, and the names that it lacks."""
     return read_textual_version(), TESTED, list_missing_names()
 
 
@@ -164,10 +164,10 @@ SUPPORTED = _is_tested()
 
 
 class HookedApp(App[None]):
-    """Textual's app, which asks before it draws, while it shuts down, and when it fails."""
+    """Textual's app with methods that subclasses override: for drawing, for errors, and for the shutdown."""
 
     def show_update(self, screen: Screen[Any], update: object) -> None:
-        """Draw an update of a screen; a subclass may draw another one in its place."""
+        """Draw an update of a screen; a subclass may draw something else instead."""
         super()._display(screen, cast(ConsoleRenderable | RichCast | str | None, update))
 
     def _display(
@@ -176,7 +176,7 @@ class HookedApp(App[None]):
         self.show_update(screen, renderable)
 
     def is_harmless(self, error: Exception) -> bool:
-        """Return whether an error that nothing has handled can be ignored."""
+        """Return whether an unhandled error can be ignored; here, none can."""
         return False
 
     def _handle_exception(self, error: Exception) -> None:
@@ -195,7 +195,7 @@ class HookedApp(App[None]):
 
     @property
     def is_writing(self) -> bool:
-        """Whether what is drawn now is written to the terminal, as Textual decides it."""
+        """Whether Textual writes to the terminal what is drawn now."""
         if not SUPPORTED:
             return False
         return self._running and not (
@@ -204,7 +204,7 @@ class HookedApp(App[None]):
 
     @property
     def line_filters(self) -> list[LineFilter]:
-        """The filters of everything that is drawn, enabled or not, in their order."""
+        """The filters that are applied in this order to everything that is drawn, also the disabled ones."""
         return self._filters if SUPPORTED else []
 
     @line_filters.setter
@@ -214,10 +214,10 @@ class HookedApp(App[None]):
 
 
 class HookedScreen(ModalScreen[Result], Generic[Result]):
-    """Textual's modal screen, which may drop messages and see what is below it."""
+    """Textual's modal screen; it can also ignore messages, and read what the screen below draws."""
 
     def should_drop(self, message: Message) -> bool:
-        """Return whether to ignore a message."""
+        """Return whether to ignore a message; here, none is ignored."""
         return False
 
     async def _on_message(self, message: Message) -> None:
@@ -225,7 +225,7 @@ class HookedScreen(ModalScreen[Result], Generic[Result]):
             await super()._on_message(message)
 
     def read_lower_parts(self, crop: Region) -> list[list[Strip]] | None:
-        """Return the parts of each row that the screen below draws, from left to right; None if that is not known."""
+        """Return the strips of each row of the screen below, from left to right; None if they are not known."""
         stack = self.app.screen_stack
         index = stack.index(self) if self in stack else 0
         if not index or not SUPPORTED:
@@ -238,24 +238,24 @@ class HookedScreen(ModalScreen[Result], Generic[Result]):
 
 
 class Codes(CompositorUpdate):
-    """An update that is codes already."""
+    """An update of the screen that consists of codes for the terminal."""
 
     def __init__(self, codes: str) -> None:
         self._codes = codes
 
     def render_segments(self, console: Console) -> str:
-        """Return the codes."""
+        """Return the codes as they are."""
         return self._codes
 
 
 class MadeOnDemand(Strip):
-    """A strip whose segments are made when somebody asks for them."""
+    """A strip whose segments are made when they are read first."""
 
     __slots__ = ["_made"]
 
     # The base class's caches are omitted: every method that uses one is overridden by the subclasses.
     def begin(self, cells: int) -> None:
-        """Set the width; called by the `__init__` of subclasses, in place of the base class's own."""
+        """Set the width in cells; subclasses call this in their `__init__`, in place of that of the base class."""
         if not SUPPORTED:
             super().__init__(self.make(), cells)
             return
@@ -266,7 +266,7 @@ class MadeOnDemand(Strip):
 
     @abstractmethod
     def make(self) -> list[Segment]:
-        """Return its segments."""
+        """Return the segments of the strip."""
 
     if SUPPORTED:
 
@@ -278,45 +278,45 @@ class MadeOnDemand(Strip):
 
 
 class HookedLinuxDriver(LinuxDriver):
-    """Textual's driver of a terminal, which asks what to do when the process was stopped and is continued."""
+    """Textual's driver of a terminal, with a method for subclasses that is called when a stopped process continues."""
 
     def handle_continuation(self) -> None:
-        """Handle that the process was stopped and is continued; called from the handler of the signal."""
+        """Handle that the stopped process continues; called from the handler of the signal."""
         super()._sigcont_application()
 
     def _sigcont_application(self, *_: object) -> None:
         self.handle_continuation()
 
     def wrap_output(self, wrap: Callable[[TextIO], object]) -> None:
-        """Write to another file, which `wrap` makes of the present one."""
+        """Replace the output of the driver by what `wrap` returns for it."""
         self._file = wrap(cast(TextIO, self._file))  # type: ignore[assignment]  # write, flush and fileno are enough
 
     @property
     def resumes(self) -> bool:
-        """Whether it takes the terminal over again when the process is continued."""
+        """Whether the driver takes the terminal back when the process is continued."""
         return self._auto_restart and not self._loop.is_closed()
 
     @property
     def writes(self) -> bool:
-        """Whether its thread that writes is alive."""
+        """Whether the driver's thread that writes to the terminal is alive."""
         return self._writer_thread is not None and self._writer_thread.is_alive()
 
     def call_soon(self, function: Callable[[], None]) -> None:
-        """Call a function in the app's loop, from anywhere."""
+        """Call a function in the app's event loop; this may be called from any thread or signal handler."""
         self._loop.call_soon_threadsafe(function)
 
     def resume(self) -> None:
-        """Take the terminal over again, and tell the app."""
+        """Take the terminal back, and tell the app that it has been resumed."""
         self._must_signal_resume = True
         self.resume_application_mode()
 
 
 class ThoroughCompositor(Compositor):
-    """Compares a layout with the last layout that the widgets were told.
+    """Textual's compositor, which compares each layout with the last one of which the widgets got messages.
 
-    Textual compares it with the map of all widgets, and makes that map anew when somebody asks for the size of a widget
-    between two layouts. To a widget that was mounted in between it would never send `Resize` or `Show`, and one that
-    was removed would stay on the screen. Whether somebody asks in between depends on how busy the machine is.
+    Textual compares it with the map of all widgets, and makes that map again when somebody asks for the size of a
+    widget between two layouts. To a widget that was mounted in between it would never send `Resize` or `Show`, and one
+    that was removed would stay on the screen. Whether somebody asks in between depends on how busy the machine is.
     """
 
     def __init__(self) -> None:
@@ -324,7 +324,7 @@ class ThoroughCompositor(Compositor):
         self._told: CompositorMap = {}
 
     def reflow(self, parent: Widget, size: Size) -> ReflowResult:
-        """Lay out the widgets, and return which of them are hidden, shown and resized since they were last told."""
+        """Lay out the widgets; return which of them were hidden, shown or resized since the last layout they got."""
         before = self._full_map
         hidden, visible, resized = super().reflow(parent, size)
         previous_map = self._told
@@ -344,44 +344,44 @@ class ThoroughCompositor(Compositor):
 
 
 def is_leaving(app: App[Any]) -> bool:
-    """Return whether the app is shutting down: nothing may be opened any more, for it could not be drawn."""
+    """Return whether the app is shutting down, so that nothing can be opened any more."""
     return bool(getattr(app, "_exit", False))
 
 
 NOTICE_LAYER = "_toastrack"
-"""The layer above all others, which an app has that shows notices."""
+"""The layer above all others of an app that shows notices."""
 
 
 def can_show_notices(app: App[Any]) -> bool:
-    """Return whether an app shows notices; one without a terminal may not."""
+    """Return whether an app can show notices; an app without a terminal may not."""
     return not getattr(app, "_disable_notifications", False)
 
 
 def find_app(driver: Driver) -> App[Any]:
-    """Return the app that a driver draws."""
+    """Return the app to which a driver belongs."""
     return driver._app
 
 
 def replace_write(driver: Driver, write: Callable[[bytes], int]) -> None:
-    """Let the driver of a browser write by a function from now on."""
+    """Let the driver of a browser call a function in place of its own `write`."""
     driver._write = write  # type: ignore[attr-defined]  # a partial function
 
 
 def find_bindings(node: DOMNode) -> BindingsMap:
-    """Return the bindings of a node's keys, which may be changed."""
+    """Return the bindings of keys of a node; the caller may change them."""
     return getattr(node, "_bindings", None) or BindingsMap()
 
 
 def render_screen(app: App[Any]) -> list[Strip]:
-    """Return the rows of the whole screen, with its dialogs and notices."""
+    """Return all rows of an app's screen, with its dialogs and notices."""
     if SUPPORTED:
-        # As Textual's own `export_screenshot` does.
+        # Textual's own `export_screenshot` sets this variable, too.
         visible_screen_stack.set(app._background_screens)
     return app.screen._compositor.render_strips()
 
 
 def find_selection(widget: Widget) -> Selection | None:
-    """Return what is selected of a widget; nothing in a screen without styles: it is not drawn yet, or is gone."""
+    """Return the selected part of a widget's text; None if its screen is not drawn yet, or is gone."""
     screen = widget.screen
     return (
         screen.selections.get(widget) if "screen--selection" in screen._component_styles else None
@@ -389,18 +389,18 @@ def find_selection(widget: Widget) -> Selection | None:
 
 
 def find_key(character: str) -> str:
-    """Return the name of the key that types a character, such as `question_mark`; itself if that is not known."""
+    """Return the name of the key that types a character, such as `question_mark`; the character itself if unknown."""
     name_of = getattr(textual_keys, "_character_to_key", str)
     return str(name_of(character))
 
 
 def count_tab_columns(area: TextArea) -> int:
-    """Return the number of columns from the cursor to the next tab stop."""
+    """Return the number of columns from the cursor of a text to the next tab stop."""
     return area._find_columns_to_next_tab_stop() if SUPPORTED else area.indent_width
 
 
 def find_line(area: TextArea, row: int) -> tuple[int, int]:
-    """Return the index of the line at a row of the wrapped text, and which of its rows it is.
+    """Return the line of a wrapped text that a row of the screen shows, and which of its rows that is, from 0.
 
     Raises:
         IndexError: there is no such row.
@@ -428,7 +428,7 @@ END: Callable[[Widget], Awaitable[None]] = (
 def route_messages(
     post: Post, dispatch: Dispatch, call_next: CallNext, call_later: CallLater
 ) -> None:
-    """Let Textual call these functions for all its messages."""
+    """Let Textual call these functions in place of its own for the messages and callbacks of all widgets."""
     MessagePump.post_message = post  # type: ignore[method-assign, assignment]
     MessagePump._dispatch_message = dispatch  # type: ignore[method-assign, assignment]
     MessagePump.call_next = call_next  # type: ignore[method-assign]
@@ -436,15 +436,15 @@ def route_messages(
 
 
 def set_input_parser(parser: type[XTermParser], decoder: Callable[[], Any]) -> None:
-    """Let Textual's driver, which makes its parser and its decoder itself, make these."""
+    """Let Textual's driver of a terminal make its parser and its decoder of these classes."""
     if SUPPORTED:
         linux_driver.XTermParser = parser  # type: ignore[attr-defined]
         linux_driver.getincrementaldecoder = lambda _: decoder  # type: ignore[attr-defined, assignment]
 
 
 def set_page_parser(parser: type[XTermParser]) -> None:
-    """Let Textual's driver for browsers, which makes its parser itself, make this one."""
-    # Imported on demand: most apps run in a terminal.
+    """Let Textual's driver for browsers make its parser of this class."""
+    # This is imported on demand, since most apps run in a terminal.
     from textual.drivers import web_driver
 
     web_driver.XTermParser = parser  # type: ignore[attr-defined]
@@ -454,26 +454,26 @@ _click, _move_page = getattr(OptionList, "_on_click", None), getattr(OptionList,
 
 
 async def _choose_clicked(listed: OptionList, event: Click) -> None:
-    """Choose the option that was clicked on; nothing if the list has become shorter since."""
+    """Choose the option of a list that was clicked; do nothing if the list has become shorter meanwhile."""
     if event.style.meta.get("option", 0) < listed.option_count:
         await _click(listed, event)  # type: ignore[misc]  # there if it is called
 
 
 def _move_seen_page(listed: OptionList, direction: Literal[-1, 1]) -> None:
-    """Move by as many lines as are seen; not in a list without room, which has no lines."""
+    """Move the highlight of a list by as many rows as are visible; do nothing if none is."""
     if listed.scrollable_content_region:
         _move_page(listed, direction)  # type: ignore[misc]  # there if it is called
 
 
 def repair_textual(end_messages: Callable[[Widget], Awaitable[None]]) -> None:
-    """Mend what Textual's own screens and lists get wrong.
+    """Replace functions of Textual's screens and lists that have errors.
 
     Args:
         end_messages: Called in place of Textual's function after the last message of a widget.
     """
     if not SUPPORTED:
         return
-    # A screen makes its compositor itself.
+    # A screen makes its compositor itself, so the class is replaced.
     textual_screen.Compositor = ThoroughCompositor  # type: ignore[attr-defined]
     OptionList._on_click = _choose_clicked  # type: ignore[method-assign, assignment]
     OptionList._move_page = _move_seen_page  # type: ignore[method-assign, assignment]
