@@ -16,21 +16,27 @@ Limits = tuple[float, float]
 
 
 def choose_step(span: float, count: int) -> float:
-    """Return a round step that divides `span` (above 0) into at most about `count` parts."""
-    # At least 1e-300: a part of the smallest span would be 0.
+    """Return a round step that divides a span above 0 into at most about `count` parts."""
+    # The minimum is 1e-300, since a part of the smallest span would be 0.
     rough = max(span / max(count, 1), 1e-300)
     magnitude = 10.0 ** math.floor(math.log10(rough))
     return next(step * magnitude for step in _STEPS if step * magnitude >= rough * 0.999)
 
 
 def choose_limits(low: float, high: float, from_zero: bool = False) -> Limits:
-    """Return round limits around values, so that they seldom change while values come in; `from_zero` includes 0."""
+    """Return round limits around two values, so that they seldom change while values come in.
+
+    Args:
+        low: The lowest value.
+        high: The highest value.
+        from_zero: Whether to include 0.
+    """
     if from_zero:
         low = min(low, 0.0)
     size = max(abs(low), abs(high), 1.0)
     if high - low < 1e-9 * size:
-        # Adding 1 does not change a number with more than sixteen digits; labels with a power of ten show few.
-        # With 2, the step is 1: a count has no decimals.
+        # The room grows with the number: adding 1 does not change one of more than sixteen digits. It is at least 2, so
+        # that the step is 1 and the label of a count has no decimals.
         room = max(2.0, (1e-6 if size < 1e15 else 1e-3) * size)
         low, high = low - room, high + room
     step = choose_step(high - low, 4)
@@ -38,11 +44,11 @@ def choose_limits(low: float, high: float, from_zero: bool = False) -> Limits:
 
 
 _MORE_PARTS = 4
-"""A step of a part so much smaller is at most half of the span, so that two positions are inside."""
+"""Number by which more parts are tried: such a step is at most half of the span, so that two positions are inside."""
 
 
 def find_ticks(limits: Limits, count: int) -> list[float]:
-    """Return about `count` round positions at most inside limits, but at least two, which show a distance."""
+    """Return at most about `count` round positions inside limits, but at least two, so that they show a distance."""
     low, high = limits
     positions: list[float] = []
     for parts in range(count, count + _MORE_PARTS):
@@ -60,8 +66,13 @@ _MAX_CHARACTERS = 20
 
 
 def label(value: float, step: float) -> str:
-    """Return a tick's label with no more digits than the distance between ticks needs."""
-    # With a tolerance: the distance may be the difference of two positions far from 0.
+    """Return the label of a tick, with no more digits than the distance between two ticks needs.
+
+    Args:
+        value: Position of the tick.
+        step: Distance between two ticks.
+    """
+    # The comparison has a tolerance: the distance may be the difference of two positions far from 0.
     exact = (
         count
         for count in range(_MAX_DIGITS)
@@ -75,7 +86,7 @@ def label(value: float, step: float) -> str:
 
 
 def _label_shortly(value: float, step: float) -> str:
-    """Return a tick's label as a few digits and a power of ten: enough digits to differ from the next tick."""
+    """Return the label of a tick as a few digits and a power of ten, enough to differ from the next tick's label."""
     digits = math.floor(math.log10(max(abs(value) / step, 1.0))) + 2
     return f"{value:.{max(digits, 4)}g}"
 
@@ -85,7 +96,7 @@ _MAX_LABEL = 9
 
 
 def label_ticks(limits: Limits, count: int) -> list[tuple[float, str]]:
-    """Return round positions between limits, with their labels."""
+    """Return at most about `count` round positions between limits, with their labels."""
     positions = find_ticks(limits, max(count, 1))
     step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
     texts = [label(position, step) for position in positions]
@@ -95,7 +106,10 @@ def label_ticks(limits: Limits, count: int) -> list[tuple[float, str]]:
 
 
 def grow_limits(end_s: float) -> Limits:
-    """Return limits from 0 to shortly after `end_s`; they grow in steps, so that a new point rarely rescales curves."""
+    """Return limits from 0 to a time in s shortly after `end_s`.
+
+    They grow in steps, so that a new point rarely rescales the curves.
+    """
     step = choose_step(max(end_s, 1.0), 8)
     return 0.0, max(math.ceil(end_s / step - 1e-9) * step, 1.0)
 
@@ -106,7 +120,7 @@ _MIN_SPAN_S = 1e-100
 
 
 def widen_times(low_s: float, high_s: float) -> Limits:
-    """Return the first and the last time as limits, which are moved apart if the times are equal."""
+    """Return two times in s as limits; if they are equal, limits around them."""
     size_s = max(abs(low_s), abs(high_s))
     if high_s - low_s > max(_MIN_TIME_SHARE * size_s, _MIN_SPAN_S):
         return low_s, high_s
@@ -115,13 +129,13 @@ def widen_times(low_s: float, high_s: float) -> Limits:
 
 
 def find_column(x: float, limits: Limits, columns: int) -> int:
-    """Return the character column of a value, 0 … columns - 1 for values inside the limits."""
+    """Return the character column of a value on a horizontal axis: 0 to `columns` - 1 for values inside the limits."""
     low, high = limits
     return math.floor((x - low) / (high - low) * (columns - 0.5))
 
 
 def find_column_value(column: int, limits: Limits, columns: int) -> float:
-    """Return the value in the middle of a character column."""
+    """Return the value in the middle of a character column of a horizontal axis."""
     low, high = limits
     return low + (high - low) * min(max((column + 0.25) / (columns - 0.5), 0.0), 1.0)
 
@@ -142,14 +156,15 @@ shorter than one with more ticks to be taken instead of it. The numbers are set 
 
 
 def extend_limits(limits: Limits, rows: int) -> Limits:
-    """Return limits, extended as little as possible, that have round ticks in the middle of rows, at equal distances.
+    """Return limits for a vertical axis on which round ticks are in the middle of rows, at equal distances.
 
-    For 2 to 6 parts, the axis begins at a multiple of the round step below the values; the rows between two ticks
-    are as many as fit. The shortest axis is chosen; `_SPARSE` is added to the length of one with few parts, and the
-    whole span of the values to one whose ticks are in neighbouring rows.
+    The given limits are extended as little as possible. For 2 to 6 parts, the axis begins at a multiple of the round
+    step below the values; the rows between two ticks are as many as fit. The shortest axis is chosen; `_SPARSE` is
+    added to the length of one with few parts, and the whole span of the values to one whose ticks are in neighbouring
+    rows.
 
     Args:
-        limits: Those of the values.
+        limits: The lowest and the highest value.
         rows: Height of the canvas in characters, at least 1; if it is small, the limits are not extended.
     """
     if rows < _MIN_ROUND_ROWS:
@@ -174,7 +189,7 @@ def extend_limits(limits: Limits, rows: int) -> Limits:
 
 
 def find_row_ticks(limits: Limits, rows: int) -> list[float]:
-    """Return the values at which a vertical axis has a label."""
+    """Return the values at which a vertical axis of this number of rows has a label."""
     if rows < _MIN_ROUND_ROWS:
         return list(limits)
     low, high = limits
@@ -195,13 +210,19 @@ Places = TypeVar("Places", float, "FloatArray")
 
 
 def measure_row(values: Places, limits: Limits, rows: int) -> Places:
-    """Return how many rows below the top of a canvas values are; limits are in the middle of the outermost rows."""
+    """Return how many rows below the top of a canvas values are.
+
+    Args:
+        values: The values.
+        limits: Those of the vertical axis, in the middle of the lowest and the highest row.
+        rows: Height of the canvas.
+    """
     low, high = limits
     return 0.5 + (high - values) / (high - low) * (rows - 1)
 
 
 def time_ticks(limits: Limits, columns: int) -> list[float]:
-    """Return the ticks of a horizontal axis."""
+    """Return the values at which a horizontal axis of this number of columns has a tick."""
     return find_ticks(limits, max(1, columns // 10))
 
 
@@ -217,7 +238,7 @@ def label_rows(limits: Limits, rows: int) -> dict[int, str]:
 
 
 def draw_time_axis(limits: Limits, columns: int, unit: str = "s") -> tuple[str, str]:
-    """Return a horizontal axis: the line with its ticks, and the labels below, each `columns` long."""
+    """Return a horizontal axis as two texts of `columns` characters: the line with its ticks, and the labels below."""
     positions = time_ticks(limits, columns)
     step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
     line = ["─"] * columns

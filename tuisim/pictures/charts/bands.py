@@ -29,7 +29,7 @@ _OVERHANG = 2
 _MAX_NAME_ROWS = 3
 """Rows from the lowest one in which names stand: higher up, a name seems to belong to the curve beside it."""
 _SHIFTS = (0, 1, -1, 2, -2, 3, -3)
-"""Columns from its middle to which the name of a band gives way."""
+"""Columns from the middle of a band by which its name is moved if the middle is not free, in this order."""
 _MAX_STEP = 0.2
 """A shorter part of the longest band is a step of a slope, such as of a sensor that seldom measures."""
 FREE = " ┈"
@@ -37,13 +37,13 @@ FREE = " ┈"
 
 
 def build_band_span(name: str, start: float, stop: float, level: float, grey: str) -> Span:
-    """Return the span of a band, named by its level and its grey."""
+    """Return a band as a shaded range of the time axis, named by its level and its grey."""
     text = f"{level:.4g}"
     return Span(start, stop, (f"{text} {grey}".rstrip(), text), name)
 
 
 def find_spans(trace: Trace, light: Light) -> tuple[Span, ...]:
-    """Return the bands of a trace as spans, none if it has more than `MAX_SAMPLES`.
+    """Return the bands of a trace as ranges of the time axis; none if the trace has more than `MAX_SAMPLES` points.
 
     Args:
         trace: A variable over time.
@@ -63,7 +63,7 @@ def find_spans(trace: Trace, light: Light) -> tuple[Span, ...]:
 
 
 def _find_steps(levels: Levels, times_s: FloatArray) -> list[bool]:
-    """Return which levels are steps of a slope: short, and between the levels before and after."""
+    """Return for each level whether it is a step of a slope: short, and between the levels before and after it."""
     steps = np.diff(levels.level)
     is_between = np.zeros(len(levels.level), bool)
     is_between[1:-1] = steps[:-1] * steps[1:] > 0
@@ -74,7 +74,7 @@ def _find_steps(levels: Levels, times_s: FloatArray) -> list[bool]:
 
 
 def find_columns(span: Span, x_limits: Limits, columns: int) -> range:
-    """Return the columns of a canvas that a span covers."""
+    """Return the columns of a canvas that a span of the time axis covers."""
     first, last = (axes.find_column(x, x_limits, columns) for x in (span.start, span.stop))
     return range(max(first, 0), min(last + 1, columns))
 
@@ -87,7 +87,9 @@ def place_names(
     is_free: Callable[[int, int, int], bool],
     avoided: Sequence[int] = (),
 ) -> list[tuple[int, int, str]]:
-    """Return the names of spans on a canvas: row, first column and text, each in the lowest free row; none without one.
+    """Return where the names of spans are written on a canvas: row, first column and text.
+
+    Each name is in the lowest free row of its span; names without a free row are left out.
 
     Args:
         spans: The spans.
@@ -129,12 +131,14 @@ def shade_rows(
     cursors: Sequence[int] = (),
     style: Style = NAME,
 ) -> list[list[Run]]:
-    """Return the rows of a canvas with shaded spans, each with its name in the lowest row where nothing is drawn.
+    """Return the rows of a canvas with shaded spans and their names.
+
+    Each name is in the lowest row where nothing is drawn.
 
     Args:
         rows: The canvas.
-        spans: What is shaded.
-        x_limits: Those of the canvas.
+        spans: The spans.
+        x_limits: Limits of the canvas.
         columns: Width of the canvas.
         cursors: Columns of cursors, beside which names stand.
         style: Style of the names.
@@ -159,7 +163,7 @@ def shade_rows(
 
 
 def _cut(row: list[Run], start: int, stop: int) -> list[Run]:
-    """Return the pieces of a row between two columns."""
+    """Return the pieces of a row between two columns, as a row."""
     piece = []
     column = 0
     for text, style in row:

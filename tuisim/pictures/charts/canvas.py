@@ -41,13 +41,13 @@ _TURN = 4
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """One trace to be drawn."""
+    """The points of one trace, and how they are drawn."""
 
     times_s: FloatArray
     values: FloatArray
     rgb: Rgb
     marker: str = BRAILLE
-    """`braille`, or one character, for terminals without colours."""
+    """How points are drawn: `braille`, or one character, for terminals without colours."""
     rising: bool = True
     """Whether the times rise, so that points may be left out; a path may go anywhere."""
     joined: bool = True
@@ -56,7 +56,7 @@ class Curve:
 
 @lru_cache(maxsize=1)
 def _load_plotext() -> Any:
-    # Most of its import is spent on its manual, which nobody opens here.
+    # plotext spends most of its import on its manual, which nobody opens here.
     manual = ModuleType("plotext._doc.doc")
     vars(manual)["docs"] = None
     sys.modules.setdefault(manual.__name__, manual)
@@ -71,13 +71,13 @@ def _load_plotext() -> Any:
 def draw_canvas(
     curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y_limits: Limits
 ) -> list[list[TextRun]]:
-    """Return curves as rows of text, without axes.
+    """Return curves as rows of braille characters, without axes.
 
-    Where several lines share cells, the cells have the colours of these lines in turns, so that none is hidden. Of
-    points that are not joined, the topmost is seen.
+    If several lines share cells, the cells have the colours of these lines in turn, so that none is hidden. Of points
+    that are not joined, the topmost is visible.
 
     Args:
-        curves: What to draw, the topmost last.
+        curves: The curves, the topmost last.
         columns: Width in characters, at least 1.
         rows: Height in characters, at least 1.
         x_limits: Times at the left and right edge.
@@ -115,11 +115,14 @@ def draw_canvas(
 
 
 def choose_owners(covered: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.bool_]:
-    """Return which curve is seen at each place; where there are several, each in turns along a row.
+    """Return which curve is visible at each place; several curves at a place take turns along the row.
 
     Args:
         covered: Shape (curves, rows, columns): where each curve is, the topmost last.
         width: Columns of a turn.
+
+    Returns:
+        The same shape; at most one curve is true at a place.
     """
     count = covered.sum(axis=0)
     turn = np.arange(covered.shape[2]) // width % np.maximum(count, 1)
@@ -136,9 +139,12 @@ def _place_points(
     y_limits: Limits,
     parts: tuple[int, int] = (1, 1),
 ) -> tuple[FloatArray, FloatArray]:
-    """Return where the points of a curve are, from the left and from the top.
+    """Return the positions of a curve's points on a canvas, from the left and from the top.
 
     Args:
+        curve: The curve.
+        columns, rows: Size of the canvas in cells.
+        x_limits, y_limits: Limits of the axes.
         parts: The units in a cell, across and down: (1, 1) for cells.
     """
     times_s = curve.times_s
@@ -149,14 +155,14 @@ def _place_points(
             times_s, values = clip_line(times_s, values, x_limits)
     across = (times_s - x_limits[0]) / (x_limits[1] - x_limits[0]) * (columns - 0.5) * parts[0]
     down = axes.measure_row(values, y_limits, rows) * parts[1]
-    # A place far outside is not drawn; a line to it needs no dots there.
+    # Positions far outside are clipped: they are not drawn, and a line to them needs no dots there.
     return across.clip(-columns, 4 * columns), down.clip(-4 * rows, 8 * rows)
 
 
 def _clip_places(
     across: FloatArray, down: FloatArray, columns: int, rows: int
 ) -> tuple[IntArray, IntArray]:
-    """Return places as whole numbers, without those outside the canvas."""
+    """Return positions on a canvas as whole cells, without those outside it."""
     indices = np.floor(across).astype(np.int64), np.floor(down).astype(np.int64)
     good = (indices[0] >= 0) & (indices[0] < columns) & (indices[1] >= 0) & (indices[1] < rows)
     return indices[0][good], indices[1][good]
@@ -165,11 +171,11 @@ def _clip_places(
 def _draw_braille(
     curve: Curve, columns: int, rows: int, x_limits: Limits, y_limits: Limits
 ) -> npt.NDArray[np.uint32]:
-    """Return the dots of a curve, shape (rows, columns): as bits of a braille character."""
+    """Return the dots of a curve as bits of a braille character for each cell, shape (rows, columns)."""
     across, down = _place_points(curve, columns, rows, x_limits, y_limits, (DOTS_X, DOTS_Y))
     is_thick = curve.joined and curve.rising
     # A line over time is two dots thick: the dot above and the one below its place.
-    # A margin of one character: plotext places limits in the middle of the outermost ones.
+    # There is a margin of one character, because plotext places limits in the middle of the outermost ones.
     across = np.floor(across) + DOTS_X
     down = (np.rint(down) - 1 if is_thick else np.floor(down)) + DOTS_Y
     width, height = (columns + 2) * DOTS_X, (rows + 2) * DOTS_Y
@@ -198,12 +204,12 @@ def _draw_braille(
 def _plot_braille(
     across: FloatArray, down: FloatArray, columns: int, rows: int, joined: bool
 ) -> npt.NDArray[np.uint32]:
-    """Return the braille characters that plotext draws, shape (rows, columns): as bits.
+    """Return the dots that plotext draws as bits of a braille character for each cell, shape (rows, columns).
 
-    plotext has one figure a process: call this from one thread only.
+    plotext has one figure in a process: call this from one thread only.
 
     Args:
-        across, down: Places of dots, from the left and the top.
+        across, down: Positions of dots, from the left and the top.
         columns, rows: Size in characters.
         joined: Whether the dots are joined by lines.
     """
@@ -217,7 +223,7 @@ def _plot_braille(
             figure.ruler(axis, side).frequency(0)
         figure.ruler(axis, 0).lim(0, last)
     figure.plot_size(columns, rows)
-    # plotext counts in characters, whose middles are whole numbers, and upwards.
+    # plotext measures in characters, upwards; whole numbers are the middles of characters.
     xs = (across + 0.5) / DOTS_X - 0.5
     ys = rows - 0.5 - (down + 0.5) / DOTS_Y
     figure.draw(
@@ -233,10 +239,12 @@ def _plot_braille(
 def _split_runs(
     text: npt.NDArray[np.uint32], owners: npt.NDArray[np.int64], colors: Sequence[Rgb | None]
 ) -> list[TextRun]:
-    """Return a row as pieces of one colour.
+    """Return a row of characters as pieces of one colour.
 
     Args:
+        text: The code of each character.
         owners: Index of the colour of each cell; -1, for no curve, stands for the last colour.
+        colors: The colours.
     """
     starts = np.flatnonzero(np.diff(owners, prepend=-2)).tolist()
     ends = [*starts[1:], len(text)]
@@ -251,14 +259,14 @@ _HERE = Style(color=palette.BLACK, bgcolor=palette.WHITE, bold=True)
 
 
 def build_style(rgb: Rgb | None) -> Style:
-    """Return the style of a text in a colour; `PLAIN` for None."""
+    """Return the style of text in a colour; `PLAIN` for None."""
     return Style(color=Color.from_rgb(*rgb)) if rgb else PLAIN
 
 
 def drop_hidden_points(
     xs: FloatArray, ys: FloatArray, limits: Sequence[axes.Limits], columns: int, rows: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a path that a canvas can show apart: of successive points at the same dot only the first.
+    """Return the points of a path that are visible on a canvas: of successive points at the same dot only the first.
 
     Args:
         xs, ys: Finite, shape (n,).
@@ -289,9 +297,10 @@ def draw_xy_chart(
     """Return a chart of one variable against another as lines of text.
 
     Args:
-        xs, ys: Shape (n,); pairs that are not finite are left out.
+        xs, ys: Values of both, shape (n,); pairs that are not finite are left out.
         here: Index of the point to mark, None for none.
         names: Names of x and of y.
+        rgb: Colour of the points.
         marker: `braille`, or one character.
         width, height: Size in characters.
     """

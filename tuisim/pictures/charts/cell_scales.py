@@ -29,7 +29,7 @@ _PARTS = 2000
 
 @dataclass(frozen=True, slots=True)
 class CellScales:
-    """The vertical scales of a chart in characters, with labels and last values beside the canvas."""
+    """The vertical scales of a chart in characters: the labels left, and the last values right of the canvas."""
 
     scales: Scales
     labels: tuple[dict[int, str], ...]
@@ -55,8 +55,12 @@ class CellScales:
         """Return the scales of traces for a chart.
 
         Args:
+            drawn: The traces.
             width: Width of the chart in columns.
             rows: Height of its canvas.
+            x_limits: Limits of the time axis.
+            zoomed: Whether the scales fit the visible data.
+            margins: Minimum columns left and right of the canvas.
         """
         scales = Scales.group([(trace.name, trace.values, trace.scale) for trace in drawn], zoomed)
         scales = Scales(
@@ -89,12 +93,12 @@ class CellScales:
 
     @property
     def left_width(self) -> int:
-        """Columns on the left of the canvas."""
+        """The number of columns on the left of the canvas."""
         return max(_measure_width(self.labels[0]), self.margins[0])
 
     @property
     def right_width(self) -> int:
-        """Columns on the right of the canvas."""
+        """The number of columns on the right of the canvas."""
         return max(self._right_used, self.margins[1])
 
     @property
@@ -102,12 +106,12 @@ class CellScales:
         return self.ends_width + sum(map(_measure_width, self.labels[1:]))
 
     def curve(self, trace: Trace, marks: bool) -> Curve:
-        """Return a trace as a curve on the left scale."""
+        """Return a trace as a curve whose values are on the left scale; with `marks`, its points are drawn."""
         values = self.scales.on_left(trace.values, self.scales.find_scale(trace.name))
         return Curve(trace.times_s, values, trace.rgb, trace.mark if marks else BRAILLE)
 
     def frame_row(self, row: int, inside: list[Run]) -> list[Run]:
-        """Return a row of the canvas with the labels and values beside it."""
+        """Return a row of the canvas with the labels left of it and the last values right of it."""
         text = self.labels[0].get(row, "")
         line = [
             (text.rjust(self.left_width - 1), self.styles[0]),
@@ -130,7 +134,7 @@ def _on_rows(scale: Scale, rows: int) -> Scale:
 
 
 def _label_scale(scale: Scale, rows: int) -> dict[int, str]:
-    """Return the labels of a scale by row, the uppermost with the unit."""
+    """Return the labels of a scale by row; the uppermost one has the unit."""
     labels = axes.label_rows(scale.limits, rows)
     top = min(labels)
     return {**labels, top: labels[top] + scale.unit}
@@ -143,7 +147,7 @@ def _measure_width(labels: dict[int, str]) -> int:
 def _place_end_values(
     drawn: Sequence[Trace], scales: Scales, rows: int, x_limits: Limits
 ) -> tuple[dict[int, Run], int]:
-    """Return the last values in view, by row: where each line ends, or next to it; and the width of these values."""
+    """Return the last visible values by row, each where its line ends or in a row next to it, and their width."""
     ends: list[tuple[int, Run]] = []
     width = 0
     for trace in drawn:
@@ -165,7 +169,7 @@ def _place_end_values(
                 ),
             )
         )
-        # The width of the limits counts, too, so that the canvas keeps its size while values come in.
+        # The labels of the limits count for the width, too, so that the canvas keeps its size while values come in.
         width = max(width, *(len(text + scale.unit) for text in texts))
     return _separate_rows(ends, rows), width
 
@@ -177,7 +181,7 @@ def _round_value(value: float, scale: Scale) -> str:
 
 
 def _separate_rows(ends: Sequence[tuple[int, Run]], rows: int) -> dict[int, Run]:
-    """Return texts by row: each in its own row or one next to it, so that none overlap; equal ones only once."""
+    """Return texts by row, each in its own row or one next to it, so that no two share a row; equal texts only once."""
     taken: dict[int, Run] = {}
     row_of: dict[int, int] = {}
     for row, run in ends:

@@ -41,7 +41,7 @@ _SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
 
 
 def parse_size(text: str, smallest: Size, largest: Size) -> Size | None:
-    """Parse a size such as `800x600`; return None if the text is not one, or not within the limits."""
+    """Return the size that a text such as `800x600` stands for; None if it is no size, or outside the limits."""
     match = _SIZE.fullmatch(text)
     size = (int(match[1]), int(match[2])) if match else (0, 0)
     is_allowed = all(
@@ -51,17 +51,17 @@ def parse_size(text: str, smallest: Size, largest: Size) -> Size | None:
 
 
 def describe_limits(smallest: Size, largest: Size) -> str:
-    """Return the limits of a size, such as `200x150 to 6000x6000`."""
+    """Return the smallest and the largest size in words, such as `200x150 to 6000x6000`."""
     return " to ".join(f"{width}x{height}" for width, height in (smallest, largest))
 
 
 @dataclass(frozen=True, slots=True)
 class ChartFormat:
-    """A file format of charts."""
+    """A file format of charts: the function that writes it, and its sizes."""
 
     write: Callable[[ChartData, Size], bytes]
     size: Size
-    """Default width and height."""
+    """Default width and height, in the format's unit."""
     smallest: Size
     largest: Size
     unit: str
@@ -102,19 +102,20 @@ FACET_PX = 200
 
 
 def find_format(path: Path) -> ChartFormat:
-    """Return the format for a file's suffix, after checking that the file can be written.
+    """Return the format that belongs to a file's suffix, after checking that the file can be written.
 
     Raises:
-        ExportError: unknown suffix, or it cannot be written.
+        ExportError: unknown suffix, or the file cannot be written.
     """
     check_format(path, "chart", CHART_FORMATS)
     return CHART_FORMATS[path.suffix.lower()]
 
 
 def check_format(path: Path, what: str, formats: Collection[str]) -> None:
-    """Check that something can be written to a file.
+    """Check that a file can be written, and has one of some suffixes.
 
     Args:
+        path: The file.
         what: What is written, such as `chart`.
         formats: The suffixes that its files may have.
 
@@ -132,7 +133,7 @@ def check_format(path: Path, what: str, formats: Collection[str]) -> None:
 def save_chart(
     chart_of: Callable[[int, int], ChartData], path: Path, size: Size | None = None
 ) -> None:
-    """Write a chart to a file, replacing an existing one.
+    """Write a chart to a file, which may exist.
 
     Args:
         chart_of: Returns the chart for a width and a height, in pixels or in parts of characters.
@@ -141,7 +142,7 @@ def save_chart(
 
     Raises:
         ExportError: the file cannot be written; an existing one is unchanged.
-        LogError: no such variable to draw against.
+        LogError: a variable to draw against another one does not exist.
     """
     kind = find_format(path)
     width, height = size or kind.size
@@ -152,7 +153,7 @@ def save_chart(
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Write a file atomically.
+    """Write the content of a file completely or not at all; the file may exist.
 
     Raises:
         ExportError: it cannot be written; an existing file is unchanged.
@@ -170,7 +171,12 @@ _INVALID = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\
 
 
 def draw_svg(drawing: Drawing, *, inside: bool = False) -> str:
-    """Return a picture as SVG: as a file or, with `inside`, as a part of a page, whose colours it uses."""
+    """Return a picture as the content of an SVG file.
+
+    Args:
+        drawing: The picture.
+        inside: Whether to return an element of a page instead, which has the colours of the page.
+    """
     size = f'viewBox="0 0 {drawing.width} {drawing.height}" width="{drawing.width}" height="{drawing.height}"'
     look = f'font-family="{_FONT}" font-size="{FONT_PX}" role="img"'
     ink = "" if inside else f' color="{_format_hex(_INK)}"'
@@ -247,7 +253,7 @@ _ANCHORS = {"start": "lm", "middle": "mm", "end": "rm"}
 
 
 def draw_image(drawing: Drawing) -> Image:
-    """Return a picture as a Pillow image, on white."""
+    """Return a picture as a Pillow image on a white background."""
     from PIL import Image, ImageDraw, ImageFont
 
     image = Image.new("RGB", (drawing.width * _FINE, drawing.height * _FINE), "white")

@@ -43,7 +43,7 @@ _SCALE_GAP_PX = 6
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One variable of a chart."""
+    """The points of one variable of a chart, and how they are drawn."""
 
     name: str
     xs: FloatArray
@@ -53,11 +53,11 @@ class Line:
     number: int
     """Index that selects colour and marker."""
     scale: str = ""
-    """Which scale it is drawn on, as `Trace.scale`."""
+    """Name of the scale to which the line is drawn, as `Trace.scale`."""
 
     @property
     def label(self) -> str:
-        """The name of the variable, with its unit if the name tells it."""
+        """The name of the variable, with its unit if the name implies it."""
         return add_unit(self.name)
 
 
@@ -68,14 +68,14 @@ class Span:
     start: float
     stop: float
     texts: tuple[str, ...]
-    """Its names, the longest first: the first one with room is written."""
+    """Names of the span, the longest first: the first one with room is written."""
     name: str
-    """Variable that it is about."""
+    """Name of the variable whose band the span is."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChartData:
-    """The data of a whole chart."""
+    """The data of a whole chart: its lines, its axes and its title."""
 
     title: str
     lines: tuple[Line, ...]
@@ -91,19 +91,19 @@ class ChartData:
 
 
 def add_unit(name: str) -> str:
-    """Return the name of a variable with its unit, as it is written beside a chart."""
+    """Return the name of a variable with its unit, as it is written beside a chart; without a unit, the name alone."""
     unit = find_unit(name)
     return printable(f"{name} ({unit})" if unit else name)
 
 
 def find_unit(name: str) -> str:
-    """Return the unit of a variable from its name, empty if there is none."""
+    """Return the unit that the name of a variable implies; empty if it implies none."""
     return units.parse_unit(name.partition(" #")[0]).sign
 
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A straight line of an axis or of the grid behind the data."""
+    """A straight line of an axis or of the grid, as a shape of a drawing."""
 
     x1: float
     y1: float
@@ -114,7 +114,7 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """A line of text."""
+    """A line of text, as a shape of a drawing."""
 
     x: float
     y: float
@@ -123,13 +123,13 @@ class Words:
     anchor: str = "start"
     """Anchor at x: `start`, `middle` or `end`."""
     rgb: Rgb | None = None
-    """None for the default text colour."""
+    """Colour of the text; None for the default one."""
     strong: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Shade:
-    """A shaded area."""
+    """A shaded rectangle, as a shape of a drawing."""
 
     x: float
     y: float
@@ -139,7 +139,7 @@ class Shade:
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """A line of the data, or its points."""
+    """A line through points, or the points themselves, as a shape of a drawing."""
 
     points: FloatArray
     """Shape (n, 2): x and y."""
@@ -149,7 +149,7 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class Raster:
-    """Pixels stretched over a rectangle."""
+    """Pixels stretched over a rectangle, as a shape of a drawing."""
 
     x: float
     y: float
@@ -164,19 +164,19 @@ Shape: TypeAlias = Rule | Words | Shade | Stroke | Raster
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """A picture made of shapes."""
+    """A picture that consists of shapes, with its size in pixels."""
 
     title: str
     width: int
     height: int
     shapes: tuple[Shape, ...]
     plots: tuple[Frame, ...] = ()
-    """Where the data of a chart are, the facets from the top."""
+    """The rectangles with the data of a chart, those of facets from the top."""
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """The rectangle in which data are drawn, in pixels, and the limits of its axes."""
+    """The rectangle of a chart in which data are drawn, in pixels, and the limits of its axes."""
 
     left: float
     top: float
@@ -186,26 +186,32 @@ class Frame:
     y: Limits
 
     def find_xs(self, values: FloatArray | float) -> FloatArray:
-        """Return the pixel columns of values."""
+        """Return the pixel columns of values of x."""
         return np.asarray(
             self.left
             + (np.asarray(values) - self.x[0]) / (self.x[1] - self.x[0]) * (self.right - self.left)
         )
 
     def find_ys(self, values: FloatArray | float) -> FloatArray:
-        """Return the pixel rows of values."""
+        """Return the pixel rows of values of y."""
         return np.asarray(
             self.bottom
             - (np.asarray(values) - self.y[0]) / (self.y[1] - self.y[0]) * (self.bottom - self.top)
         )
 
     def replace_y(self, limits: Limits) -> Frame:
-        """Return the frame with other limits of y."""
+        """Return a frame with the same rectangle and other limits of y."""
         return Frame(self.left, self.top, self.right, self.bottom, self.x, limits)
 
 
 def lay_out_chart(chart: ChartData, width: int, height: int, *, titled: bool = True) -> Drawing:
-    """Return the picture of a chart in a size in pixels, with or without the title above it."""
+    """Return the picture of a chart.
+
+    Args:
+        chart: The chart.
+        width, height: Size in pixels.
+        titled: Whether the title is above it.
+    """
     shapes: list[Shape] = []
     top: float = PAD
     if titled:
@@ -248,7 +254,7 @@ def lay_out_chart(chart: ChartData, width: int, height: int, *, titled: bool = T
 
 
 def cut_drawing(drawing: Drawing, x: float) -> Drawing:
-    """Return the picture of a chart without its data to the right of an x of its axis, with a line at this x."""
+    """Return the picture of a chart with a vertical line at a value of x, and without the data to its right."""
     shapes: list[Shape] = []
     for shape in drawing.shapes:
         plot = next((plot for plot in drawing.plots if _is_inside(shape, plot)), None)
@@ -276,7 +282,7 @@ def _is_inside(shape: Shape, plot: Frame) -> bool:
 
 
 def move_shapes(drawing: Drawing, right_px: float, down_px: float) -> list[Shape]:
-    """Return the shapes of a picture at another place."""
+    """Return the shapes of a picture, moved to the right and down by a number of pixels."""
     shapes: list[Shape] = []
     for shape in drawing.shapes:
         match shape:
@@ -296,12 +302,12 @@ def move_shapes(drawing: Drawing, right_px: float, down_px: float) -> list[Shape
 
 
 def find_color(line: Line) -> Rgb:
-    """Return the colour of a line."""
+    """Return the colour in which a line of a chart is drawn."""
     return COLORS[line.number % len(COLORS)]
 
 
 def shorten(text: str, width_px: float) -> str:
-    """Return a text that fits into a width; a truncated one ends in an ellipsis."""
+    """Return a text cut to a width in pixels; one that was cut ends in an ellipsis."""
     max_letters = max(int(width_px / LETTER_PX), 1)
     return text if len(text) <= max_letters else text[: max_letters - 1] + "…"
 
@@ -313,7 +319,10 @@ def _measure_right_width(scales: Scales) -> float:
 def _draw_legend(
     lines: Sequence[Line], scales: Scales, width: int, top: float
 ) -> tuple[list[Shape], int]:
-    """Return the legend, a stroke and a name for each line, with a note for right scales; and its number of rows."""
+    """Return the shapes of the legend, and its number of rows.
+
+    Each line has a stroke and its name, with a note if it is drawn to a right scale.
+    """
     shapes: list[Shape] = []
     x = float(PAD)
     row = 0
@@ -340,29 +349,33 @@ _SEEN = 8.0
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """A vertical scale of a chart."""
+    """A vertical scale of a chart: its limits and its unit."""
 
     limits: Limits
     unit: str
-    """Unit of its variables; empty if they have none, or several."""
+    """Unit of the scale's variables; empty if they have none, or several."""
     names: tuple[str, ...]
-    """Names of its variables."""
+    """Names of the scale's variables."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scales:
-    """The vertical scales of a chart; variables of other sizes have their own, so that none appears as a flat line."""
+    """The vertical scales of a chart.
+
+    Variables whose values differ much in size have scales of their own, so that none appears as a flat line.
+    """
 
     left: Scale
     right: tuple[Scale, ...]
 
     @classmethod
     def group(cls, variables: Sequence[Variable], zoomed: bool) -> Scales:
-        """Return the scales of variables.
+        """Return the scales for variables.
 
         On the left is the scale of light and of variables without a known unit, else that of the first variable.
 
         Args:
+            variables: The variables.
             zoomed: Whether the scales fit the visible data.
         """
         groups: dict[str, list[Variable]] = {}
@@ -378,7 +391,7 @@ class Scales:
         return cls(left, tuple(scales.values()))
 
     def find_scale(self, name: str) -> Scale:
-        """Return the scale of a variable."""
+        """Return the scale to which a variable is drawn."""
         return next((scale for scale in self.right if name in scale.names), self.left)
 
     def on_left(self, values: FloatArray, scale: Scale) -> FloatArray:
@@ -391,7 +404,7 @@ class Scales:
 
 
 def _is_flat(values: FloatArray, others: FloatArray) -> bool:
-    """Return whether one of two variables would be a flat line on a common scale."""
+    """Return whether a common scale would make one of two variables a flat line."""
     smaller, larger = sorted(float(np.abs(series).max(initial=0.0)) for series in (values, others))
     return 0.0 < smaller * _SEEN < larger
 
@@ -428,7 +441,7 @@ def _measure_widest(limits: Limits) -> float:
 
 
 def _match_scales(chart: ChartData, frame: Frame) -> Frame:
-    """Return a frame with the same mm per pixel on both axes, if the chart is a path on the field."""
+    """Return a frame for a chart: if it is a path on the field, with the same mm per pixel on both axes."""
     names = [chart.x_label.partition(" (")[0], *(line.name for line in chart.lines)]
     if not chart.path or {find_unit(name) for name in names} != {"mm"}:
         return frame
@@ -442,7 +455,12 @@ def _match_scales(chart: ChartData, frame: Frame) -> Frame:
 
 
 def draw_grid(frame: Frame, *, with_x: bool = True) -> list[Shape]:
-    """Return the grid behind the data, with the labels of the left scale and, if `with_x`, of the lower one."""
+    """Return the shapes of the grid behind the data, with the labels of the left axis.
+
+    Args:
+        frame: The frame.
+        with_x: Whether to add the labels of the lower axis.
+    """
     shapes: list[Shape] = []
     for value, text in label_ticks(frame.y, _count_labels(frame)):
         y = float(frame.find_ys(value))
@@ -463,7 +481,7 @@ def _count_labels(frame: Frame) -> int:
 
 
 def draw_borders(frame: Frame) -> list[Shape]:
-    """Return the left and the lower axis."""
+    """Return the lines of the left and the lower axis as shapes."""
     return [
         Rule(frame.left, frame.top, frame.left, frame.bottom),
         Rule(frame.left, frame.bottom, frame.right, frame.bottom),
@@ -537,10 +555,12 @@ _NARROW = 8
 
 
 def fit_names(spans: Sequence[Span], letters: Sequence[float], overhang: int = 0) -> list[str]:
-    """Return the names of spans: long ones if these fit into all but very narrow spans, else short ones, or empty ones.
+    """Return a name for each span, all long ones or all short ones.
+
+    Long names are used if they fit into all but very narrow spans; a name that does not fit is empty.
 
     Args:
-        spans: What is named.
+        spans: The spans.
         letters: The width of each span in letters.
         overhang: By how many letters a short name may be wider than its span.
     """

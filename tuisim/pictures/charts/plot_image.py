@@ -30,10 +30,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Plot:
-    """What an image shows on a canvas in cells, and between the labels of its axes."""
+    """The canvas of a chart to be drawn as an image: its curves, spans, cursors and limits."""
 
     curves: tuple[Curve, ...]
-    """The topmost last."""
+    """The curves, the topmost last."""
     columns: int
     """Size of the canvas in cells. A cell more on the left is for the axis there."""
     rows: int
@@ -46,29 +46,29 @@ class Plot:
     cursors: tuple[float, ...]
     """Times of the cursors."""
     spans: tuple[Span, ...] = ()
-    """What is shaded and named."""
+    """Ranges of time that are shaded and named."""
 
     @property
     def size(self) -> tuple[int, int]:
-        """The rows and columns of the image in cells, with the axes."""
+        """The number of rows and columns of the image in cells, with the axes."""
         return self.rows + self.has_time_line, 1 + self.columns
 
     def measure_across(self, times_s: FloatArray, width: int) -> _Points:
-        """Return how many points right of the left edge times are, for cells of a width in points."""
+        """Return how many points times are to the right of the image's left edge, for cells of a width in points."""
         # Place times as `axes.find_column` does, so that a label is below its tick.
         low, high = self.x_limits
         return (times_s - low) / (high - low) * (self.columns - 0.5) * width + 1
 
     def down(self, values: FloatArray, height: int) -> _Points:
-        """Return how many points below the top of the canvas values are, for cells of a height in points."""
+        """Return how many points values are below the canvas's top; `height` is that of a cell in points."""
         return axes.measure_row(values, self.y_limits, self.rows) * height
 
     def draw(self, cell: tuple[int, int], inks: PlotInks) -> Pixels:
-        """Return it as an image of the size of its cells; the colours of its curves are final.
+        """Return the canvas as an image of the size of its cells.
 
         Args:
             cell: Width and height of a cell in points.
-            inks: The other colours.
+            inks: The colours besides those of the curves.
         """
         width, height = cell
         rows, cols = self.size
@@ -92,19 +92,19 @@ class Plot:
 
 @dataclass(frozen=True, slots=True)
 class PlotInks:
-    """The colours of a plot besides those of its curves."""
+    """The colours of a chart's image, besides those of its curves."""
 
     ground: Rgb
     axis: Rgb
     cursor: Rgb
     shades: tuple[Rgb, ...] = ()
-    """For spans in turns."""
+    """Colours of the spans, used in turn."""
 
 
 _GRID_SHARE = 0.2
-"""How much of the colour of the axes the grid has."""
+"""Share of the colour of the axes in the colour of the grid."""
 _FINE = 3
-"""Curves are drawn so many times finer, and then reduced, for smooth edges."""
+"""Factor by which curves are drawn finer, and then reduced, for smooth edges."""
 _LETTER = 0.602
 """Width of a letter of the font, of its size."""
 _LEVELS = 4
@@ -116,7 +116,7 @@ _LINE_SHARE, _MARK_SHARE = 1 / 9, 1 / 5
 
 
 def _find_cells(span: Span, plot: Plot, width: int) -> tuple[int, int]:
-    """Return the first point of a span along the canvas, and the one behind its last."""
+    """Return the first column of points of a span on the canvas, and the one after its last."""
     start, stop = np.clip(
         plot.measure_across(np.array([span.start, span.stop]), width), 0, plot.columns * width
     ).astype(int)
@@ -130,8 +130,8 @@ def _draw_names(
     cell: tuple[int, int],
     inks: PlotInks,
 ) -> None:
-    """Write the names of spans into the image, each in the lowest row of cells without a curve."""
-    # Imported on demand: few terminals need it.
+    """Write the names of spans into an image, in place; each is in the lowest row of cells without a curve."""
+    # This is imported on demand, since few terminals need it.
     from PIL import Image, ImageDraw
 
     width, height = cell
@@ -182,7 +182,7 @@ def _draw_axes(
 
 
 def _clip_places(points: _Points, length: int) -> npt.NDArray[np.intp]:
-    """Return places as indices of an image's points, without places outside it."""
+    """Return positions as indices of an image's points, without those outside the image."""
     places = np.floor(points).astype(np.intp)
     return places[(places >= 0) & (places < length)]
 
@@ -195,8 +195,8 @@ def _mix_colors(ground: Rgb, rgb: Rgb, share: float) -> Rgb:
 
 
 def _measure_coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np.uint8]:
-    """Return how much of each point of the canvas a curve covers, from 0 to `_LEVELS`."""
-    # Imported on demand: few terminals need it.
+    """Return for each point of the canvas how much of it a curve covers, from 0 to `_LEVELS`."""
+    # This is imported on demand, since few terminals need it.
     from PIL import Image, ImageDraw
 
     width, height = cell

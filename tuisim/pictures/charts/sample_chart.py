@@ -24,9 +24,10 @@ from tuisim.pictures.charts.traces import (
 def build_sample_chart(
     samples: Iterable[Sample], columns: int, limits: Limits | None = None
 ) -> ChartData:
-    """Return the samples over simulated time as `tuisim log plot` draws them, one line per name.
+    """Return the chart of samples over simulated time that `tuisim log plot` draws, with one line for each name.
 
     Args:
+        samples: The samples.
         columns: Width in pixels; points that it could not show apart are left out.
         limits: Range of time; None for that of the samples.
     """
@@ -61,7 +62,7 @@ def build_line(
     *,
     hold: bool = False,
 ) -> Line:
-    """Return a line of a chart over time.
+    """Return the line of a variable for a chart over time.
 
     Args:
         name: The variable.

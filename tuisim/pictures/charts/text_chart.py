@@ -38,7 +38,7 @@ _GRID = "┈"
 _LINE_ROWS = 13
 """Lower charts have no line above the labels of time, so that the curves have its row."""
 _BETWEEN_BOXES = "  "
-"""What stands between tick boxes."""
+"""Characters between two tick boxes."""
 
 EMPTY_TEXT = (
     "Nothing logged yet. To log a value, print it with a name:",
@@ -49,7 +49,7 @@ EMPTY_SHORT = ("Nothing logged yet.", "print('Colour: '", "      + str(value))")
 
 @dataclass(frozen=True, slots=True)
 class ChartState:
-    """The user's settings of a chart, and what is selected in it."""
+    """The user's settings of a chart: its cursors, its time range, its selected trace, and how it is drawn."""
 
     selected: str | None = None
     """Name of the trace whose tick box has the focus."""
@@ -57,21 +57,21 @@ class ChartState:
     x_limits: Limits | None = None
     """Fixed limits while the chart is frozen, None to follow."""
     grey: bool = False
-    """Without colours: marks tell several traces apart."""
+    """Whether there are no colours, so that marks tell several traces apart."""
     is_ascii: bool = False
-    """Without braille: without colours even a single trace is drawn as marks."""
+    """Whether there is no braille: without colours even a single trace is then drawn as marks."""
     other_s: float | None = None
     """The second cursor; distances are measured from it."""
     unit: str = "s"
     """Unit of the horizontal axis."""
     marks: bool = False
-    """Draw the points as marks, not joined by lines."""
+    """Whether to draw the points as marks, not joined by lines."""
     grows: bool = False
     """Whether more data may follow, so that the horizontal axis extends a little beyond them."""
     grid: bool = False
-    """Draw a faint line at each label of the left scale."""
+    """Whether to draw a faint line at each label of the left scale."""
     spans: tuple[Span, ...] = ()
-    """What is shaded and named, in order of time."""
+    """Ranges that are shaded and named, in order of time."""
     margins: tuple[int, int] = (0, 0)
     """Columns on the left and the right of the canvas at least."""
     zoomed: bool = False
@@ -82,7 +82,7 @@ class ChartState:
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """The place of a tick box: row, first column, first column after it."""
+    """The position of a tick box in a chart: its row, its first column, and the column after its last."""
 
     row: int
     first: int
@@ -92,7 +92,7 @@ class Box:
 
 @dataclass(frozen=True, slots=True)
 class ChartPicture:
-    """A drawn chart and where its parts are, in characters."""
+    """A drawn chart as lines of text, with the positions of its parts in characters."""
 
     lines: list[list[Run]]
     boxes: tuple[Box, ...]
@@ -103,10 +103,10 @@ class ChartPicture:
     rows: int = 0
     x_limits: Limits = (0.0, 1.0)
     plot: Plot | None = None
-    """What is on the canvas, for an image in place of it; None if there is none, or no room for it."""
+    """The content of the canvas, for an image in place of it; None if there is none, or no room for it."""
 
     def find_time_s(self, column: int, row: int) -> float | None:
-        """Return the time at a place of the chart, None beside the canvas."""
+        """Return the time in s at a column and row of the chart; None outside the canvas."""
         if 0 <= column - self.left < self.columns and 0 <= row - self.top < self.rows:
             return axes.find_column_value(column - self.left, self.x_limits, self.columns)
         return None
@@ -114,7 +114,7 @@ class ChartPicture:
 
 @dataclass(slots=True)
 class ChartPainter:
-    """Draws charts; the canvas is cached while its points and limits stay the same."""
+    """Draws a chart as text; stores the drawn canvas while its points and limits stay the same."""
 
     _key: object = field(default=None, init=False)
     _canvas: list[list[TextRun]] = field(default_factory=list, init=False)
@@ -122,9 +122,11 @@ class ChartPainter:
     def paint(
         self, traces: Traces, state: ChartState, width: int, height: int, *, is_blank: bool = False
     ) -> ChartPicture:
-        """Return the chart in a panel.
+        """Return the chart of traces for a panel.
 
         Args:
+            traces: The traces.
+            state: The user's settings.
             width, height: Inner size of the panel, at least 1.
             is_blank: Whether to leave the canvas empty, for an image in its place.
         """
@@ -214,7 +216,7 @@ def _time_limits(end_s: float, grows: bool) -> Limits:
 
 
 def _style_runs(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
-    """Return a row of the canvas; with `is_on_grid`, the line of the grid is where nothing is drawn."""
+    """Return the pieces of a row of the canvas with their styles; with `is_on_grid`, the grid fills the gaps."""
     if not is_on_grid:
         return [(text, build_style(rgb)) for text, rgb in runs]
     return [
@@ -224,14 +226,14 @@ def _style_runs(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
 
 
 def _style_of_names(drawn: Sequence[Trace], spans: Sequence[Span]) -> Style:
-    """Return the style of the names of bands: the colour of their curve, if there are other curves."""
+    """Return the style of the names of bands: if there are several curves, the colour of the curve with the bands."""
     names = {span.name for span in spans}
     of_bands = [trace for trace in drawn if {trace.name} == names]
     return build_style(of_bands[0].rgb) if of_bands and len(drawn) > 1 else NAME
 
 
 def _draw_cursors(runs: list[Run], columns: Sequence[int]) -> list[Run]:
-    """Return a row of the canvas with cursors at rising columns; those outside the canvas are left out."""
+    """Return a row of the canvas with cursors at columns, given in rising order; columns outside it are ignored."""
     line: list[Run] = []
     column_at = 0
     for text, style in runs:
@@ -250,7 +252,10 @@ def _draw_cursors(runs: list[Run], columns: Sequence[int]) -> list[Run]:
 def _draw_tick_boxes(
     traces: Traces, selected: str | None, by_mark: bool, width: int
 ) -> tuple[list[list[Run]], tuple[Box, ...]]:
-    """Return the row of tick boxes, none without traces, and where they are; boxes without room are only counted."""
+    """Return the row of tick boxes, and the position of each; without traces, no row.
+
+    The row ends with the number of boxes for which there is no room.
+    """
     every = [*traces]
     if not every:
         return [], ()
@@ -278,7 +283,7 @@ def _draw_tick_boxes(
 def _choose_boxes(
     texts: Sequence[tuple[str, Trace]], selected: str | None, width: int
 ) -> list[int]:
-    """Return the indices of the boxes that fit into a row, in order; the selected one and drawn ones come first."""
+    """Return the indices of the tick boxes that fit into a row, in order; selected and drawn traces come first."""
     gap = len(_BETWEEN_BOXES)
     if sum(len(text) + gap for text, _ in texts) - gap <= width:
         return [*range(len(texts))]
@@ -305,10 +310,11 @@ def _draw_box(text: str, trace: Trace, selected: bool, by_mark: bool) -> list[Ru
 def measure_margins(
     parts: Sequence[Traces], state: ChartState, width: int, rows: int
 ) -> tuple[int, int]:
-    """Return the columns left and right of the canvases of charts below each other, so that they are in line.
+    """Return the columns left and right of the canvases of several charts, so that the canvases are in line.
 
     Args:
         parts: The traces of each chart.
+        state: The user's settings.
         width, rows: Size of each chart in characters.
     """
     drawn = [part.list_drawn() for part in parts if part.list_drawn()]
@@ -321,7 +327,7 @@ def measure_margins(
 
 
 def format_values(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) -> str:
-    """Return the value of each trace at a time, as many as fit."""
+    """Return the values of traces at a time as a text of at most `width` letters, as many as fit."""
     line = f"{cursor_s:.2f} {unit}"
     for number, trace in enumerate(drawn):
         value = trace.find_value(cursor_s)
@@ -341,7 +347,9 @@ def _empty(traces: Traces, width: int, height: int, state: ChartState) -> list[l
     """Return the text of a chart without curves: how to log a value, or that no trace is ticked.
 
     Args:
-        state: With the trace that its keys show, if they do not do something else.
+        traces: The traces, of which none is drawn.
+        width, height: Size in characters.
+        state: Says which keys show a trace.
     """
     has_keys = state.selected is not None and width >= 26
     how = (f"{state.tick_keys} show a trace",) if has_keys else ()
@@ -364,9 +372,10 @@ MIN_ROWS = 8
 
 
 def draw_text(chart: ChartData, width: int, height: int, *, colors: bool = False) -> Text:
-    """Return a chart as text of a given size in characters.
+    """Return a chart as text.
 
     Args:
+        chart: The chart.
         width, height: Size in characters; facets use more lines if necessary.
         colors: Whether colours distinguish the lines; otherwise marks do.
     """
@@ -411,7 +420,7 @@ def _trace(line: Line) -> Trace:
 
 
 def _on_any_ground(run: Run) -> Run:
-    """Return a run that is readable in light and dark themes: only data keep their colour."""
+    """Return a piece of text that is legible in light and dark terminals: only data keep their colour."""
     text, style = run
     return run if style.color and style.color.triplet in COLORS else (text, Style())
 

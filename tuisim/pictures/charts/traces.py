@@ -26,7 +26,8 @@ TRACE_COLORS: tuple[Rgb, ...] = (
 """Those of Okabe and Ito, with a lighter blue and white for a dark ground, and a light green in place of a second
 orange: they stay apart for people who see fewer colours. Source: https://jfly.uni-koeln.de/color/."""
 MARKS = "o+x*#%=~&@"
-"""For terminals without colours; more than there are colours, so that many traces differ in one or the other."""
+"""Marks of traces for terminals without colours; more than there are colours, so that many traces differ in one or
+the other."""
 
 _OTHER_READINGS = ("ultrasonic", "gyro", "wheel")
 """Names that begin so are distances and angles, whose unit a program may choose."""
@@ -38,7 +39,10 @@ _THINNED = 4
 
 
 def find_scale_name(name: str) -> str:
-    """Return the scale of a variable: its unit or reading; empty for light in any unit, and for unknown variables."""
+    """Return the name of the scale to which a variable is drawn: its unit, or the word for its reading.
+
+    It is empty for light in any unit, and for unknown variables.
+    """
     name = name.partition(" #")[0]
     sign = parse_unit(name).sign
     if sign:
@@ -47,7 +51,7 @@ def find_scale_name(name: str) -> str:
 
 
 class Trace:
-    """A variable as points in order of time, with a colour and a tick.
+    """A variable as points in order of time, with a colour; ticked traces are drawn.
 
     Args:
         name: The name that was logged, or that of a column of telemetry.
@@ -61,23 +65,23 @@ class Trace:
         self.rgb = TRACE_COLORS[number % len(TRACE_COLORS)]
         self.mark = MARKS[number % len(MARKS)]
         self.scale = find_scale_name(name)
-        """Which scale it is drawn on; traces of one scale have the same text."""
+        """Name of the scale to which the trace is drawn; traces of one scale have the same text."""
         self._times_s = np.empty(256)
         self._values = np.empty(256)
         self._count = 0
 
     @property
     def times_s(self) -> FloatArray:
-        """Simulated times, shape (n,)."""
+        """Simulated times of the points in s, shape (n,)."""
         return self._times_s[: self._count]
 
     @property
     def values(self) -> FloatArray:
-        """Values as they are drawn, shape (n,)."""
+        """Values of the points, limited to what can be drawn, shape (n,)."""
         return limit_drawn(self._values[: self._count])
 
     def add(self, times_s: Sequence[float], values: Sequence[float]) -> None:
-        """Append points; those that are not finite are left out, as are times beyond `MAX_DRAWN`."""
+        """Append points to the trace, without those that are not finite or have times beyond `MAX_DRAWN`."""
         new_times, new_values = np.array(times_s, float), np.array(values, float)
         good = (np.abs(new_times) < MAX_DRAWN) & np.isfinite(new_values)
         new_times, new_values = new_times[good], new_values[good]
@@ -97,7 +101,7 @@ class Trace:
             self._drop_points()
 
     def _drop_points(self) -> None:
-        """Keep two of every four points: the least and the greatest value, in their order."""
+        """Remove two of every four points; the least and the greatest value stay, in their order."""
         whole = self._count // _THINNED * _THINNED
         values = self._values[:whole].reshape(-1, _THINNED)
         offsets = np.sort(
@@ -115,21 +119,21 @@ class Trace:
         )
 
     def find_value(self, time_s: float) -> float | None:
-        """Return the last value at or before a time, None before the first."""
+        """Return the value of the last point at or before a time in s; None before the first point."""
         index = int(np.searchsorted(self.times_s, time_s, "right")) - 1
         return float(self._values[index]) if index >= 0 else None
 
     def find_nearest_s(self, time_s: float) -> float:
-        """Return the time of the point nearest to a time; there must be one."""
+        """Return the time in s of the point nearest to a time; the trace must have a point."""
         return float(self.times_s[np.abs(self.times_s - time_s).argmin()])
 
     def clear(self) -> None:
-        """Remove the points; keep visibility and colour."""
+        """Remove the points of the trace; its tick and its colour stay."""
         self._count = 0
 
 
 class Traces:
-    """The traces of a chart, those that the program logged first.
+    """The traces of a chart; those that the program has logged come first.
 
     Args:
         traces: The traces at first, by name.
@@ -149,7 +153,7 @@ class Traces:
     def append(
         self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True
     ) -> None:
-        """Add points to a trace, which is created if it is new.
+        """Add points to a trace, which is made if it does not exist.
 
         If a program logs a variable with the name of a column of telemetry, the trace shows the program's values.
         """
@@ -168,7 +172,7 @@ class Traces:
         trace.add(times_s, values)
 
     def clear(self) -> None:
-        """Remove all traces."""
+        """Remove all traces; a trace that gets points later has its tick and its colour again."""
         for trace in self._by_name.values():
             trace.clear()
         self._cleared.update(self._by_name)
@@ -179,14 +183,14 @@ class Traces:
         return [trace for trace in self if trace.on and len(trace.times_s)]
 
     def end_s(self) -> float:
-        """Return the latest time of all points, 0 if there are none."""
+        """Return the latest time of all points in s; 0 if there are none."""
         return max((float(trace.times_s[-1]) for trace in self if len(trace.times_s)), default=0.0)
 
 
 def reduce_points(
     times_s: FloatArray, values: FloatArray, x_limits: tuple[float, float], columns: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a trace that a chart of some width can show apart.
+    """Return the points of a trace that a chart of a given width can show apart.
 
     Args:
         times_s: Rising times, shape (n,).
@@ -216,10 +220,10 @@ def reduce_points(
 def clip_line(
     xs: FloatArray, ys: FloatArray, limits: tuple[float, float]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the part of a line within limits, with interpolated points where it enters and leaves them.
+    """Return the part of a line between two places on the x axis, with interpolated points at both ends.
 
     Args:
-        xs: Places that do not fall, shape (n,).
+        xs: Places of the points, which do not decrease, shape (n,).
         ys: Values, shape (n,).
         limits: First and last place shown.
     """
@@ -234,7 +238,7 @@ def clip_line(
 
 
 def sample_and_hold(times_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the corners of a step line."""
+    """Return the points of a step line, which keeps each value until the next point."""
     if len(times_s) < 2:
         return times_s, values
     return np.repeat(times_s, 2)[1:], np.repeat(values, 2)[:-1]
@@ -265,7 +269,7 @@ _SUMMED_AT_ONCE = 10_000
 
 
 class Pyramid:
-    """The finite points of a series, sorted by time, with extremes of blocks, to draw long series quickly.
+    """The finite points of a series, sorted by time, with the extremes of blocks, for drawing long series quickly.
 
     Args:
         times_s: Shape (n,).
@@ -295,7 +299,7 @@ class Pyramid:
     def select_points(
         self, x_limits: tuple[float, float], columns: int
     ) -> tuple[FloatArray, FloatArray]:
-        """Return times and values to draw: at most a few thousand points, which look like all of them.
+        """Return the times and values to draw: at most a few thousand points that look like all points.
 
         Args:
             x_limits: First and last time shown; one point beyond each is kept.
@@ -325,7 +329,7 @@ class Pyramid:
         )
 
     def find_nearest(self, time_s: float) -> int:
-        """Return the index, among all given points, of the finite one nearest to a time; there must be one."""
+        """Return the index, among all given points, of the finite point nearest to a time; there must be one."""
         index = int(np.searchsorted(self.times_s, time_s))
         if index == len(self.times_s) or (
             index and time_s - self.times_s[index - 1] <= self.times_s[index] - time_s
@@ -334,7 +338,7 @@ class Pyramid:
         return index if self._index is None else int(self._index[index])
 
     def select_range(self, start_s: float, stop_s: float) -> tuple[FloatArray, FloatArray]:
-        """Return the points in a time range, both ends included."""
+        """Return the times and values of the points in a time range, with both ends included."""
         first, last = self._find_range(start_s, stop_s)
         return self.times_s[first:last], self.values[first:last]
 
@@ -346,7 +350,7 @@ class Pyramid:
         return int(first), int(last)
 
     def compute_summary(self, start_s: float, stop_s: float) -> Summary:
-        """Return the statistics of a time range, both ends included, without quantiles."""
+        """Return the statistics of the points in a time range, with both ends included, without quantiles."""
         first, last = self._find_range(start_s, stop_s)
         if last - first <= _SUMMED_AT_ONCE or find_scale(*self._find_ends()) != 1.0:
             return compute_summary(self.values[first:last], quantiles=())
@@ -371,12 +375,12 @@ class Pyramid:
         return float(lowest.min()), float(highest.max())
 
     def _compute_moments(self) -> tuple[FloatArray, FloatArray]:
-        """Mean and sum of squared deviations of each whole block; cached."""
+        """Return the mean and the sum of squared deviations of each whole block; they are computed once."""
         if self._sums is None:
             whole = self.values[: len(self.values) // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
             means = np.empty(len(whole))
             squares = np.empty(len(whole))
-            # In parts, so that a long log is not copied as a whole.
+            # The blocks are computed in parts, so that a long log is not copied as a whole.
             for start in range(0, len(whole), _SUMMED_AT_ONCE):
                 part = slice(start, start + _SUMMED_AT_ONCE)
                 means[part] = whole[part].mean(axis=1)
@@ -386,6 +390,6 @@ class Pyramid:
 
 
 def _is_below(numbers: FloatArray, limit: float) -> bool:
-    """Return whether all numbers are below a limit, without a copy."""
+    """Return whether the absolute value of all numbers is below a limit, without a copy of them."""
     # One NaN makes minimum and maximum NaN, and all comparisons false.
     return not len(numbers) or bool(numbers.min() > -limit and numbers.max() < limit)

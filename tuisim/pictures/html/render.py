@@ -17,7 +17,7 @@ _TEMPLATES = Path(__file__).parent / "templates"
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table of texts with heads; it is not shown without rows."""
+    """A table of texts with column headings on a page; a table without rows is not shown."""
 
     heads: Sequence[str]
     rows: Sequence[Sequence[str]]
@@ -26,11 +26,11 @@ class Table:
 
 
 def render_page(template: str, **values: Any) -> str:
-    """Return a page in HTML.
+    """Return an HTML page, filled in from a template.
 
     Args:
         template: The name of a file in `templates`.
-        values: What the template shows, by name. Every text is escaped, and characters that are invalid in HTML
+        values: The values in the template, by name. Every text is escaped, and characters that are invalid in HTML
             become U+FFFD.
     """
     return replace_invalid(_load_templates().get_template(template).render(values))

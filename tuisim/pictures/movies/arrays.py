@@ -35,7 +35,9 @@ _MIN_DISC_PX = 60
 
 
 def draw_face(face: DiscFace, width: int, height: int, *, has_limits: bool) -> Drawing:
-    """Return the disc of a sensor; below it the value that the program reads, a scale, the thresholds and the rings.
+    """Return the picture of what a colour sensor sees: its disc, and below that its values.
+
+    These are the value that the program reads, a scale, the thresholds and the rings.
 
     Args:
         face: What is shown of the sensor.
@@ -71,7 +73,7 @@ def draw_face(face: DiscFace, width: int, height: int, *, has_limits: bool) -> D
 
 
 def _scale(face: DiscFace, width: int) -> np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]:
-    """Return a scale from black to white, filled up to the value that the program reads, with the thresholds on it."""
+    """Return a scale from black to white as pixels, filled up to the program's value, with marks at its thresholds."""
     picture = np.empty((1, width, 3), np.uint8)
     picture[:] = _REST_RGB
     picture[:, : round(min(max(face.share, 0), 1) * width)] = _FILLED_RGB
@@ -82,7 +84,7 @@ def _scale(face: DiscFace, width: int) -> np.ndarray[tuple[int, int, int], np.dt
 
 
 def draw_arrays(faces: Sequence[DiscFace], width: int, height: int) -> Drawing:
-    """Return the discs of sensors side by side, each with its words."""
+    """Return the picture of what several colour sensors see, side by side."""
     each = width // max(len(faces), 1)
     has_limits = any(face.thresholds for face in faces)
     shapes: list[Shape] = []

@@ -23,7 +23,7 @@ _STEP_MS = 10
 
 
 class ClipPanel(StrEnum):
-    """A panel of a movie's frames."""
+    """A panel that a movie's frames can have."""
 
     WORLD = "world"
     CHART = "chart"
@@ -32,24 +32,24 @@ class ClipPanel(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """One frame of a movie."""
+    """One frame of a movie: the simulated time that it shows, and how long it is shown."""
 
     time_s: float
-    """Simulated time that it shows."""
+    """Simulated time that the frame shows."""
     duration_ms: int
-    """How long it is shown."""
+    """How long the frame is shown."""
 
 
 def plan_shots(start_s: float, stop_s: float, speed: float, fps: float) -> tuple[Shot, ...]:
-    """Return the frames of a movie, the first at the start and the last at the end of a range.
+    """Return the frames of a movie; the first shows the start and the last the end of a range of simulated time.
 
     Args:
-        start_s, stop_s: Range of simulated time, the start not after the end.
+        start_s, stop_s: The range in s; the start is not after the end.
         speed: Simulated seconds per second of the movie.
         fps: Frames per second of the movie.
     """
     count = count_shots(start_s, stop_s, speed, fps)
-    # Rounded from the start, so that the errors do not add up.
+    # Every time is rounded from the start of the clip, so that the errors do not add up.
     begins_ms = [round(number * 1000 / fps / _STEP_MS) * _STEP_MS for number in range(count + 1)]
     begins_ms[-1] += END_MS
     times_s = [min(start_s + number * speed / fps, stop_s) for number in range(count - 1)] + [
@@ -62,13 +62,13 @@ def plan_shots(start_s: float, stop_s: float, speed: float, fps: float) -> tuple
 
 
 def count_shots(start_s: float, stop_s: float, speed: float, fps: float) -> int:
-    """Return the number of frames that `plan_shots` returns."""
+    """Return the number of frames of a movie, for the arguments of `plan_shots`."""
     return math.ceil((stop_s - start_s) * fps / speed - 1e-9) + 1
 
 
 @dataclass(frozen=True, slots=True)
 class ClipMoment:
-    """The state of a run at one instant."""
+    """The state of a run at one instant: its record, and the values printed so far."""
 
     time_s: float
     tick: int
@@ -84,7 +84,7 @@ class ClipRun:
         run: The run.
 
     Raises:
-        LogError: it is still running, nothing of it was recorded, or its recording is damaged.
+        LogError: the run is still going on, nothing of it was recorded, or its recording is damaged.
     """
 
     def __init__(self, run: StoredRun) -> None:
@@ -113,19 +113,19 @@ class ClipRun:
 
     @property
     def end_s(self) -> float:
-        """Simulated time of the newest tick."""
+        """The simulated time of the run's last tick, in s."""
         return (len(self.telemetry) - 1) / self._hz
 
     def clip_span_s(self, start_s: float | None, stop_s: float | None) -> tuple[float, float]:
-        """Return the part of the run between two times; None stands for the run's own start or end.
+        """Return a range of the run in simulated s; None stands for the run's own start or end.
 
         Raises:
-            ConfigError: the part is empty.
+            ConfigError: the range is empty, or not in the run.
         """
         low = 0.0 if start_s is None else start_s
         high = self.end_s if stop_s is None else min(stop_s, self.end_s)
         known = f"run {self.run.number} lasts from 0 s to {self.end_s:g} s"
-        # With NaN, this condition is true, too.
+        # This condition is true for NaN, too.
         if not 0 <= low <= high or (low == high and (start_s, stop_s) != (None, None)):
             requested = low, self.end_s if stop_s is None else stop_s
             raise ConfigError(
@@ -136,7 +136,7 @@ class ClipRun:
         return low, high
 
     def read_moment(self, time_s: float) -> ClipMoment:
-        """Return the state of the run at a simulated time within it."""
+        """Return the state of the run at a simulated time in s, which must be within the run."""
         # As a float, a time such as 0.29 s is slightly less than 29 hundredths.
         tick = min(math.floor(time_s * self._hz + 1e-6), len(self.telemetry) - 1)
         values = []

@@ -36,7 +36,7 @@ most frequent ones, unchanged."""
 def encode_gif(
     frames: Iterator[Image], samples: Sequence[Image], durations_ms: Sequence[int]
 ) -> bytes:
-    """Return an animated GIF that repeats for ever.
+    """Return the content of an animated GIF that repeats for ever.
 
     Args:
         frames: The frames; at least one.
@@ -60,7 +60,7 @@ def encode_gif(
 
 
 class _Palette:
-    """At most 255 colours: the most frequent ones of some frames unchanged, and colours near the others.
+    """A palette of at most 255 colours: the most frequent colours of some frames, and colours near the others.
 
     Args:
         frames: The frames.
@@ -81,7 +81,7 @@ class _Palette:
         self._image.putpalette(content)
 
     def reduce(self, frame: Image) -> Image:
-        """Return a frame in the colours of the palette."""
+        """Return a frame in which each colour is replaced by one of the palette."""
         reduced = frame.quantize(palette=self._image, dither=Dither.NONE)
         # Pillow takes colours that differ little for the same, also where one of them is in the palette.
         packed = _pack_pixels(np.asarray(frame))
@@ -95,7 +95,7 @@ class _Palette:
 
 
 def _pack_pixels(pixels: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:
-    """Return red, green and blue of each pixel as one number."""
+    """Return for each pixel its red, green and blue as one number."""
     return pixels.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
 
 
@@ -111,7 +111,7 @@ MAX_FRAMES = 20_000
 
 @dataclass(frozen=True, slots=True)
 class Clip:
-    """A movie to be written."""
+    """A movie of a run that is to be written: its range, speed, panels and size."""
 
     recorded: ClipRun
     panels: tuple[ClipPanel, ...]
@@ -130,11 +130,18 @@ class Clip:
 
     @property
     def view(self) -> Viewport:
-        """The view of a whole frame in which the world lies as in the frame, which must have a panel of the world."""
+        """A view of the whole frame that shows the world at the same place as the movie's world panel.
+
+        The movie must have this panel.
+        """
         return find_frame_view(self.recorded, self.panels, self.size)
 
     def save(self, path: Path, watch: Watch = lambda done, total: None) -> int:
-        """Write a movie as GIF, replacing an existing file; return its size in bytes.
+        """Write the movie to a GIF file, which may exist; return its size in bytes.
+
+        Args:
+            path: The file.
+            watch: Called after each frame with the number of frames done and that of all.
 
         Raises:
             ConfigError: the movie is too large, or its panels do not fit.
@@ -198,11 +205,11 @@ def _check_size(clip: Clip) -> None:
 SMALL_BYTES = 300_000
 """Maximum size of a movie in a page."""
 _SMALL_S, _SMALL_FPS = 10, (10, 5)
-"""Its longest duration, and its frames per second: fewer of them where it would be too large."""
+"""Longest duration of such a movie in s, and its frames per second: the smaller number if it would be too large."""
 
 
 def make_small_movie(recorded: ClipRun) -> tuple[Clip, bytes] | None:
-    """Return a movie of the world as GIF, small enough for a page; a long run is shown faster.
+    """Return a movie of a run's world, and its content as a GIF small enough for a page; a long run is shown faster.
 
     Returns:
         None if the robot does not move, or if the movie would be too large.
@@ -229,7 +236,7 @@ def save_picture(
     path: Path,
     size: Size | None = None,
 ) -> None:
-    """Write the picture of a run at an instant, replacing an existing file.
+    """Write the picture of a run at a simulated time to a file, which may exist.
 
     Raises:
         ConfigError: the panels do not fit the size.
@@ -242,7 +249,7 @@ def save_picture(
 
 
 def check_file(path: Path, what: str) -> None:
-    """Check that a `movie` or a `picture` can be written to a file.
+    """Check that a file can be written, and has a suffix of a `movie` or a `picture`, as `what` says.
 
     Raises:
         ExportError: unknown suffix, or it cannot be written.
@@ -251,7 +258,7 @@ def check_file(path: Path, what: str) -> None:
 
 
 def parse_clip_size(text: str) -> Size:
-    """Parse the size of a movie or a picture in pixels, such as `800x600`.
+    """Return the size in pixels of a movie or a picture that a text such as `800x600` stands for.
 
     Raises:
         ConfigError: it is no size, or not within the limits.

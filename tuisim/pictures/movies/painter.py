@@ -45,15 +45,15 @@ if TYPE_CHECKING:
 Size = tuple[int, int]
 
 WIDTH_PX = 600
-"""Default width."""
+"""Default width of a frame."""
 LEAST = (160, 120)
 MOST = (3840, 2160)
-"""Limits of a size."""
+"""Smallest and largest size of a frame."""
 
 _STRIP_PX = 190
 """Default height of chart and arrays below the world."""
 _STRIP_SHARE = 0.34
-"""Their share of a given height."""
+"""Share of chart and arrays in a given height."""
 _CAPTION_PX = LINE_PX + 8
 _LABELS_PX = 5 * LINE_PX
 _FACE_PX = 130
@@ -64,7 +64,7 @@ _ARRAYS_SHARE = 0.45
 
 @dataclass(frozen=True, slots=True)
 class PictureBox:
-    """The place of a part of the picture, in pixels."""
+    """The position and the size of a part of a frame, in pixels."""
 
     left: int
     top: int
@@ -84,7 +84,7 @@ def _fit_size(panels: Sequence[ClipPanel], robot: RobotSpec, area: Area) -> Size
 def find_frame_view(
     recorded: ClipRun, panels: Sequence[ClipPanel], size: Size | None = None
 ) -> Viewport:
-    """Return the view of a whole frame in which the world lies as it does in the frame's panel of the world.
+    """Return a view of the whole frame that shows the world at the same place as the frame's world panel.
 
     A picture drawn in this view fits over the frame.
 
@@ -108,7 +108,7 @@ class FramePainter:
 
     Args:
         recorded: The run.
-        panels: What is shown, at least one.
+        panels: The panels of each frame, at least one.
         span_s: Range of simulated time of the chart.
         size: Width and height in pixels; None for the size that fits the panels.
 
@@ -143,7 +143,7 @@ class FramePainter:
             self._arrays = SensorArrays(recorded)
 
     def image(self, moment: ClipMoment) -> Image:
-        """Return the frame as a Pillow image. The instants of successive calls must not decrease."""
+        """Return a frame as a Pillow image; each call must be for the same instant as the last one, or a later one."""
         from PIL import Image
 
         image = Image.new("RGB", self.size, "white")
@@ -164,7 +164,7 @@ class FramePainter:
         return Drawing(printable(self._recorded.run.program.name), *self.size, tuple(shapes))
 
     def _iterate_parts(self, moment: ClipMoment) -> Iterable[tuple[PictureBox, Drawing | Image]]:
-        """Yield everything that is drawn, with its place."""
+        """Yield each part of a frame, with its position in the frame."""
         caption = PictureBox(0, 0, self.size[0], _CAPTION_PX)
         yield caption, _draw_caption(moment, caption)
         if box := self._boxes.get(ClipPanel.WORLD):
@@ -179,7 +179,7 @@ class FramePainter:
 def _place_boxes(
     panels: Sequence[ClipPanel], size: Size, sensors: int
 ) -> dict[ClipPanel, PictureBox]:
-    """Return the place of each panel: the world above, arrays and chart below.
+    """Return the position of each panel in a frame: the world is above, arrays and chart are below it.
 
     Raises:
         ConfigError: a panel would be too small.
@@ -224,7 +224,7 @@ def _center_box(box: PictureBox, size: Size) -> PictureBox:
 
 
 def _build_chart(recorded: ClipRun, columns: int, span_s: tuple[float, float]) -> ChartData:
-    """Return the chart of the printed samples, at the times at which they were printed."""
+    """Return the chart of the samples that a run has printed, at the times of printing."""
     low, high = span_s
     return build_sample_chart(
         recorded.samples, columns, span_s if high > low else (low - 0.5, low + 0.5)
@@ -232,7 +232,7 @@ def _build_chart(recorded: ClipRun, columns: int, span_s: tuple[float, float]) -
 
 
 def _draw_caption(moment: ClipMoment, box: PictureBox) -> Drawing:
-    """Return a line with the time and as many values as fit."""
+    """Return the caption of a frame: one line with the time and as many values as fit."""
     words: list[Shape] = []
     x = float(PAD)
     for number, text in enumerate(
@@ -247,7 +247,7 @@ def _draw_caption(moment: ClipMoment, box: PictureBox) -> Drawing:
 
 
 class MovingWorld:
-    """The world with the robot and what its pen has drawn.
+    """Draws the world of a recorded run at successive instants: the mat, the robot, and what its pen has drawn.
 
     Args:
         recorded: The run.
@@ -264,10 +264,10 @@ class MovingWorld:
         mat = recorded.run.find_mat_files().read_pixels()
         self._painter = build_painter(mat, has_floor=self._spec.world.is_open)
         self._traced = 0
-        """Records whose pen traces are drawn."""
+        """Number of records whose pen traces are drawn."""
 
     def draw_moment(self, moment: ClipMoment) -> Image:
-        """Return the picture of the world at a moment. The instants of successive calls must not decrease."""
+        """Return the picture of the world at an instant; each call must be for the same or a later instant."""
         from PIL import Image
 
         self._painter.trace.add(
@@ -280,7 +280,7 @@ class MovingWorld:
 
 
 class SensorArrays:
-    """What the colour sensors see in a recorded run.
+    """Computes what the colour sensors see at any instant of a recorded run.
 
     Args:
         recorded: The run.
@@ -294,7 +294,7 @@ class SensorArrays:
         self._mat, self._recording = recorded.run.open_mat(), Recording(recorded.run)
 
     def list_faces(self, moment: ClipMoment) -> list[DiscFace]:
-        """Return what is shown of each sensor; nothing for a damaged record."""
+        """Return what each colour sensor sees at an instant; nothing if the record of that instant is damaged."""
         if read_pose(moment.record) is None:
             return []
         run = self._run

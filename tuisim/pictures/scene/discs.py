@@ -23,7 +23,7 @@ from tuisim.programs.facts import ProgramThreshold, read_facts
 from tuisim.terminal.pixels import Pixels
 
 RIM_RGB = (58, 70, 88)
-"""Around a disc: neither black, white nor a colour of a mat, so that its outline is seen on any of them."""
+"""Colour around a disc: neither black, white nor a colour of a mat, so that its outline is visible on any of them."""
 
 RINGS = ("centre", "middle", "edge")
 """Rings of equal width, from the inside."""
@@ -36,11 +36,11 @@ _FINEST = 80
 
 @dataclass(frozen=True, slots=True)
 class DiscFace:
-    """What is shown of a colour sensor: the pixels that it sees, its values and the program's thresholds."""
+    """What a colour sensor sees, as it is shown: the pixels of its disc, its values, and the program's thresholds."""
 
     name: str
     box: bytes
-    """The pixels of the box around its disc: d × d, three bytes a pixel, row-major."""
+    """The pixels of the box around the disc: d × d, three bytes a pixel, row-major."""
     seen: ColorReading
     read: LightRead
     """Which number of the sensor the program reads."""
@@ -51,7 +51,7 @@ class DiscFace:
 
     @property
     def value_words(self) -> str:
-        """The value that the program reads, in words."""
+        """The value that the program reads, as a text."""
         value = self.read.compute_value(self.seen, self.reflected_max)
         is_whole = self.read in (LightRead.REFLECTED, LightRead.REFLECTION)
         word = "mean " if self.read is LightRead.MEAN else ""
@@ -59,19 +59,19 @@ class DiscFace:
 
     @property
     def unit(self) -> str:
-        """The unit of the value, with its largest number where that is not 100 %."""
+        """The unit of the value that the program reads, with the value on white where that is not 100 %."""
         return f"of {self.reflected_max}" if self.read is LightRead.REFLECTED else "%"
 
     @property
     def share(self) -> float:
-        """The value that the program reads, as a share of the one on white."""
+        """The value that the program reads, as a share of the value on white."""
         return self.read.compute_value(self.seen, self.reflected_max) / self.read.find_white(
             self.reflected_max
         )
 
     @property
     def limit_shares(self) -> tuple[float, ...]:
-        """The thresholds as shares of the value on white; those from 0 to 1."""
+        """The program's thresholds as shares of the value on white, without those outside 0 to 1."""
         shares = [
             threshold.value / threshold.read.find_white(self.reflected_max)
             for threshold in self.thresholds
@@ -80,9 +80,9 @@ class DiscFace:
         return tuple(share for share in dict.fromkeys(shares) if 0 <= share <= 1)
 
     def limit_words(self, width: int) -> str:
-        """Return the comparisons of the program and their present results, such as `code line 15 > 90: no`.
+        """Return the program's comparisons and their present results, such as `code line 15 > 90: no`.
 
-        The words do not say that the program asks now.
+        The program may not make these comparisons at this moment.
 
         Args:
             width: Room in letters: to fit, the lines are left out, else all but the first comparison, else both.
@@ -101,7 +101,7 @@ class DiscFace:
 
     @property
     def rings(self) -> tuple[float, ...]:
-        """The mean light of each of `RINGS`, of the channels and on the scale of the value that the program reads."""
+        """The mean light in each of `RINGS`, in the channels and on the scale of the value that the program reads."""
         pixels = np.frombuffer(self.box, np.uint8).reshape(-1, 3)
         light = pixels.mean(axis=1) if self.read.uses_all_channels(self.seen) else pixels[:, 0]
         white = self.read.find_white(self.reflected_max)
@@ -109,19 +109,19 @@ class DiscFace:
         offsets = np.arange(side) - side / 2
         ring = np.hypot(offsets[:, None], offsets[None, :]).ravel() / (side / 2) * len(RINGS)
         rings = [light[(ring >= first) & (ring < first + 1)] for first in range(len(RINGS))]
-        # The disc of a sensor of 2 mm has no middle.
+        # The disc of a sensor of 2 mm has no pixel in its middle ring, whose mean is NaN.
         return tuple(float(part.mean()) / 255 * white if len(part) else math.nan for part in rings)
 
     @property
     def ring_words(self) -> list[str]:
-        """The rings as whole numbers."""
+        """The mean light in each ring, as whole numbers in texts."""
         return ["–" if math.isnan(value) else f"{value:.0f}" for value in self.rings]
 
 
 def list_disc_faces(
     spec: RunSpec, instant: Instant, field: Field, program: Program | None
 ) -> list[DiscFace]:
-    """Return what is shown of each colour sensor of a run at an instant.
+    """Return what each colour sensor of a run sees at an instant, as it is shown.
 
     Args:
         spec: The run.
@@ -145,7 +145,7 @@ def list_disc_faces(
 def draw_disc(
     box: bytes, width_px: int, height_px: int, ground_rgb: Rgb, rim_rgb: Rgb, tall: float = 1.0
 ) -> Pixels:
-    """Return the picture of a disc, in the middle and as large as fits.
+    """Return the picture of what a colour sensor sees as a disc, in the middle and as large as fits.
 
     Args:
         box: The pixels of the box around the disc: d × d, three bytes a pixel, row-major.
@@ -196,5 +196,5 @@ def _means(samples: npt.NDArray[np.generic], fine: int) -> npt.NDArray[np.float6
 
 
 def _place_samples(size_px: int, fine: int) -> npt.NDArray[np.float64]:
-    """Return the places of samples along a side, in pixels from its middle; `fine` samples are in a pixel."""
+    """Return the positions of samples along a side, in pixels from its middle, with `fine` samples in each pixel."""
     return (np.arange(size_px * fine) + 0.5) / fine - size_px / 2

@@ -18,11 +18,12 @@ _REMEMBERED = 4
 _MIN_CONTRAST = 24
 """Pixels over colours that differ less show their mean, as of a gradient."""
 _PLAIN = 0.15
-"""So near to the ends of the range of its pixel, a colour is one of two, and not of many."""
+"""Share of the range of a pixel's colours: a colour that is so near to one of its ends is one of two, and not of
+many."""
 _MIN_SHARE = 0.2
-"""A line that covers so much of a pixel and the one beside it is drawn in its own colour."""
+"""Share of a pixel and the one beside it that a line must cover to be drawn in its own colour."""
 _FINE_COLS = 2
-"""Pixels of so many across a cell, or of fewer, are so large that thin lines need it."""
+"""Number of pixels across a cell up to which they are so large that thin lines need their own colour."""
 
 _PAD = ((2, 2), (2, 2), (0, 0))
 
@@ -37,7 +38,7 @@ def shrink(
     whole_cells: bool = False,
     exact: bool = False,
 ) -> Pixels:
-    """Return what a viewport shows of a mat.
+    """Return the picture of a mat in a viewport.
 
     Each picture pixel is the mean of the mat pixels under it. Where a pixel is as wide as a cell or half of it, it has
     the colour of one area, so that edges are sharp, or that of a thin line: a black line of 10 mm is black where a
@@ -75,10 +76,13 @@ def shrink(
 def _end_at_cells(
     lines: Pixels, inside: slice, step: int, outside_rgb: tuple[int, int, int]
 ) -> None:
-    """Move both ends of the mat in `lines` to the nearest ends of cells of `step` lines, in place.
+    """Move both ends of the mat in a picture to the nearest ends of cells, in place.
 
     Args:
+        lines: The rows, or the columns, of the picture.
         inside: The lines that show the mat.
+        step: Number of lines in a cell.
+        outside_rgb: Colour of what lies off the mat.
     """
     first, end = (step * math.floor(edge / step + 0.5) for edge in (inside.start, inside.stop))
     lines[first : inside.start] = lines[inside.start]
@@ -90,7 +94,7 @@ def _end_at_cells(
 def _find_edges(
     start_mm: float, mm_per_px: float, count: int, size_mm: int
 ) -> tuple[slice, npt.NDArray[np.intp]]:
-    """Return which picture pixels have their middle on the mat, and the edges of these pixels on the mat, in mm."""
+    """Return which pixels of a picture have their middle on the mat, and the edges of these pixels in mm on the mat."""
     middles = start_mm + (np.arange(count) + 0.5) * mm_per_px
     inside = np.flatnonzero((middles >= 0) & (middles < size_mm))
     if not len(inside):
@@ -136,7 +140,7 @@ def _reduce_mat(
 def _reduce_rows(
     operation: np.ufunc, part: Pixels, starts: npt.NDArray[np.intp], dtype: npt.DTypeLike
 ) -> npt.NDArray[Any]:
-    """Return `operation.reduceat(part, starts, axis=0, dtype=dtype)`, in a tenth of its time."""
+    """Return `operation.reduceat(part, starts, axis=0, dtype=dtype)`, computed in a tenth of its time."""
     reduced = np.empty((len(starts), *part.shape[1:]), dtype)
     for row, (start, end) in enumerate(pairwise([*starts, len(part)])):
         operation.reduce(part[start : max(end, start + 1)], axis=0, dtype=dtype, out=reduced[row])
@@ -144,7 +148,9 @@ def _reduce_rows(
 
 
 def _keep_detail(mean: _Numbers, low: _Numbers, high: _Numbers, middle: _Numbers) -> Pixels:
-    """Return the colours of pixels: of what covers most of them, or of the thin line that they are the best place for.
+    """Return the colours of pixels: that of the area that covers most of a pixel, or that of a thin line in it.
+
+    A thin line is drawn in the pixels that it covers more of than their neighbours.
 
     Args:
         mean, low, high: Mean, lowest and highest of each channel below each pixel, shape (rows, columns, 3).
@@ -156,7 +162,7 @@ def _keep_detail(mean: _Numbers, low: _Numbers, high: _Numbers, middle: _Numbers
     picture = np.where((has_contrast & is_pure)[..., None], middle, mean)
     around = np.pad(mean, _PAD, mode="edge")
     near = sum(_shift(around, *offset) for offset in product((-1, 0, 1), repeat=2)) / 9
-    # A line has the colour that is rarer here.
+    # Of the two colours, that of the line is the rarer one around the pixel.
     line = np.where(high - near < near - low, low, high)
     ground = low + high - line
     way = (line - ground) / np.maximum(np.square(span).sum(axis=2, keepdims=True), 1)
@@ -169,11 +175,11 @@ def _keep_detail(mean: _Numbers, low: _Numbers, high: _Numbers, middle: _Numbers
 
 
 def _find_lines(mean: _Numbers, ground: _Numbers, way: _Numbers) -> _Flags:
-    """Return which pixels a thin line covers more of than their neighbours on both of its sides.
+    """Return the pixels that a thin line covers more of than their neighbours on both of its sides.
 
     Args:
         mean: Mean colours, shape (rows, columns, 3).
-        ground: What is beside the line, of the same shape.
+        ground: The colour beside the line, of the same shape.
         way: From there to the line's colour, divided by the square of its length, of the same shape.
     """
     is_line = np.zeros(mean.shape[:2], bool)
@@ -193,14 +199,20 @@ def _find_lines(mean: _Numbers, ground: _Numbers, way: _Numbers) -> _Flags:
 
 
 def _shift(padded: _Numbers, down: int, right: int) -> _Numbers:
-    """Return for each pixel the values of the one so many rows and columns further, of a picture padded with `_PAD`."""
+    """Return for each pixel of a picture the values of the pixel some rows below and some columns to the right.
+
+    Args:
+        padded: The picture with `_PAD` around it.
+        down: Number of rows; negative is above.
+        right: Number of columns; negative is to the left.
+    """
     first_row, first_col = 2 + down, 2 + right
     rows, cols = padded.shape[0] - 4, padded.shape[1] - 4
     return padded[first_row : first_row + rows, first_col : first_col + cols]
 
 
 class MatPictures:
-    """Scaled pictures of one mat, cached by viewport.
+    """Makes scaled pictures of one mat, and stores one for each viewport.
 
     Args:
         mat: The mat, shape (height in mm, width in mm, 3).

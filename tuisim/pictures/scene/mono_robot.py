@@ -16,7 +16,7 @@ _BODY = "&"
 
 
 def draw_body(view: Viewport, pose: Pose, outline: RobotOutline) -> dict[tuple[int, int], int]:
-    """Return the signs of the cells at least half of which a robot covers, by row and column."""
+    """Return signs for the cells of which a robot covers at least half, by row and column."""
     empty = np.zeros((view.height_px, view.width_px, 3), np.uint8)
     draw_robot(empty, view, pose, outline, CLEARED)
     rows = view.height_px // view.cell.rows
@@ -38,10 +38,10 @@ def draw_mono_robot(
     pressed: tuple[bool, ...] = (),
     detail_cols: int | None = None,
 ) -> None:
-    """Paint a robot as `draw_robot` does, for a terminal of two colours.
+    """Paint a robot into a picture in place, as `draw_robot` does, for a terminal of two colours.
 
-    Each point is black or white: mixed colours would become a pattern, as the greys of the mat do. A white rim keeps
-    the robot apart from what is around it.
+    Each point is black or white: mixed colours would become a pattern, as the greys of the mat do. A white rim
+    separates the robot from what is around it.
     """
     on_white, on_black = np.full_like(picture, 255), np.zeros_like(picture)
     for canvas in (on_white, on_black):

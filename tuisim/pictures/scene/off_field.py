@@ -17,7 +17,7 @@ _ARROW_CELLS = 4.0
 
 
 def describe_off_field(pose: Pose, width: int = 80) -> str:
-    """Return how far the middle of a robot is off the field, and on which side; empty if it is on the field.
+    """Return in words how far a robot's middle is off the field, and on which side; empty if it is on the field.
 
     Args:
         pose: Pose of the robot.

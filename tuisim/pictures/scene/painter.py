@@ -37,13 +37,13 @@ from tuisim.terminal.pixels import Pixels
 GRID_MM = (100, 200, 500, 1000, 2000, 5000)
 """Distances of the lines of the grid."""
 _MIN_CELLS = 8
-"""The lines are at least so many cells apart."""
+"""Minimum distance of the lines of the grid, in cells."""
 _FAINT = 0.07
-"""The difference of the lines from the floor."""
+"""Share by which the lines of the grid are nearer to black or white than the floor is."""
 
 
 def find_mat_floor_rgb(mat: Pixels) -> Rgb:
-    """Return the colour of the floor around a mat.
+    """Return the colour of the floor around a mat, which is that of the mat's edges.
 
     Args:
         mat: Shape (height, width, 3).
@@ -53,14 +53,14 @@ def find_mat_floor_rgb(mat: Pixels) -> Rgb:
 
 
 def find_grid_rgb(floor_rgb: Rgb) -> Rgb:
-    """Return the colour of the grid on a floor: a little darker, on a dark floor a little lighter."""
+    """Return the colour of the grid on a floor: a little darker than the floor, or lighter on a dark floor."""
     towards = 0 if sum(floor_rgb) > 3 * 127 else 255
     red, green, blue = (round(value + (towards - value) * _FAINT) for value in floor_rgb)
     return red, green, blue
 
 
 def find_field_pixels(view: Viewport) -> tuple[int, int, int, int]:
-    """Return the left, top, right and lower edge of the field in a picture; negative ones become 0."""
+    """Return the left, upper, right and lower edge of the field in pixels of a picture; negative ones become 0."""
     left, top = (max(round(edge), 0) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
     right, low = (max(int(edge), 0) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
     return left, top, right, low
@@ -84,7 +84,7 @@ _GHOST_OPACITY, _EARLIER_OPACITY = 0.75, 0.6
 
 
 class Faint(StrEnum):
-    """Which robot is drawn translucently."""
+    """The role of a robot that is drawn translucently."""
 
     BESIDE = "beside"
     """The robot of another run, which is shown beside this one."""
@@ -94,13 +94,13 @@ class Faint(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class SceneState:
-    """The objects on the mat at one moment, as they are drawn."""
+    """The objects on the mat at one instant, as they are drawn."""
 
     robot: RobotSpec
     pose: Pose
     obstacles: tuple[Obstacle, ...] = ()
     rays: tuple[tuple[float, float], ...] = ()
-    """(world angle in degrees, length in mm); empty to draw none."""
+    """The ultrasonic rays, as (world angle in degrees, length in mm); empty to draw none."""
     rays_from: Pose | None = None
     """Pose of the robot when `rays` were cast; None for `pose`."""
     faint: tuple[tuple[Faint, Pose], ...] = ()
@@ -112,11 +112,11 @@ class SceneState:
     beacon: BeaconSpec | None = None
     """The infrared beacon on the field."""
     has_robot: bool = True
-    """Whether the robot is seen; a damaged recording may have no valid pose."""
+    """Whether the robot is drawn; a damaged recording may have no valid pose."""
 
 
 class ScenePainter:
-    """Draws the field with all objects on it. Caches what stays the same from frame to frame.
+    """Draws the field with all objects on it; stores what stays the same from frame to frame.
 
     Args:
         mat: The mat, shape (height in mm, width in mm, 3).
@@ -172,7 +172,7 @@ class ScenePainter:
         """The outline of `_robot`."""
 
     def paint(self, view: Viewport, scene: SceneState) -> Pixels:
-        """Return the picture, shape (view.height_px, view.width_px, 3)."""
+        """Return the picture of the field in a view, shape (view.height_px, view.width_px, 3)."""
         picture = self._draw_ground(view, scene).copy()
         if self._outline is None or scene.robot is not self._robot:
             self._robot, self._outline = scene.robot, build_outline(scene.robot)
@@ -233,7 +233,7 @@ class ScenePainter:
         return self._ground
 
     def _find_pen_ground(self, view: Viewport) -> Pixels:
-        """Return the mat on which the pen draws, without its trace, which may be drawn again."""
+        """Return the picture of the mat without the pen trace, on which the whole trace can be drawn again."""
         return self._mat.picture(view)
 
 
@@ -250,7 +250,7 @@ _BEACON_MM = 25.0
 
 FRAME_PX = 2
 _LIGHT = 180
-"""On a ground at least so light the edge of a white mat would not be seen without a frame."""
+"""Brightness of a ground from which on the edge of a white mat would not be visible without a frame."""
 _FRAME_RGB = (70, 74, 82)
 _SOFT_FRAME_RGB = (168, 172, 178)
 """In the cells of a screen, where a dark line of one cell looks like a wall."""
@@ -259,7 +259,7 @@ _SOFT_FRAME_RGB = (168, 172, 178)
 def draw_frame(
     picture: Pixels, view: Viewport, width_px: int = FRAME_PX, rgb: Rgb = _FRAME_RGB
 ) -> None:
-    """Paint a frame around the field."""
+    """Paint a frame around the field into a picture, in place."""
     left, top, right, low = find_field_pixels(view)
     if not (right and low):
         # The field is not in view: the view has followed a robot off it.
@@ -281,7 +281,7 @@ def draw_rays(
     *,
     is_solid: bool = False,
 ) -> None:
-    """Paint rays from one point of the world, as far as they are on the field.
+    """Paint the part of ultrasonic rays that is on the field into a picture.
 
     Args:
         picture: Modified in place.
@@ -290,7 +290,7 @@ def draw_rays(
         y_mm: World y of the sensor.
         rays: (world angle in degrees, length in mm) each.
         grey: Whether the terminal shows only brightness.
-        is_solid: Whether they hide what is below: the thin lines of a file would hardly be seen on white.
+        is_solid: Whether they hide what is below: the thin lines of a file would hardly be visible on white.
     """
     col, row = view.to_px(x_mm, y_mm)
     low_col, low_row = (round(edge) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
@@ -321,7 +321,7 @@ def draw_rays(
 def draw_obstacles(
     picture: Pixels, view: Viewport, obstacles: Sequence[Obstacle], marked: int | None = None
 ) -> None:
-    """Paint the obstacles, each at least one pixel wide and high.
+    """Paint obstacles into a picture, each at least one pixel wide and high.
 
     Args:
         picture: Modified in place.
@@ -340,7 +340,7 @@ def draw_obstacles(
 
 
 def draw_beacon(picture: Pixels, view: Viewport, x_mm: float, y_mm: float) -> None:
-    """Paint an infrared beacon, a disc with a light core at least three pixels wide.
+    """Paint an infrared beacon into a picture: a disc with a light core, at least three pixels wide.
 
     Args:
         picture: Modified in place.

@@ -1,4 +1,4 @@
-"""What the pen has drawn."""
+"""The trace that the pen has drawn."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _GREY_APART = 90.0
 
 
 def choose_pen_rgb(ground: Pixels, rgb: Rgb, grey: bool = False) -> Pixels:
-    """Return a colour for each pixel of a line: that of the line, or a darker or lighter one where it would vanish.
+    """Return a colour for each pixel of a line: the line's own, or where that is hard to see, a darker or lighter one.
 
     Args:
         ground: The pixels below the line, shape (n, 3).
@@ -51,7 +51,7 @@ _LONGEST_STEP_MM = 250.0
 def trace_pixels(
     view: Viewport, xs_mm: FloatArray, ys_mm: FloatArray, width_mm: float
 ) -> tuple[FloatArray, ...]:
-    """Return the picture pixels that a trace covers.
+    """Return the pixels of a picture that a pen trace covers.
 
     Args:
         view: The visible part of the field.
@@ -74,13 +74,13 @@ def trace_pixels(
 
 
 def _spread(width_px: float) -> FloatArray:
-    """Return the offsets of pixels across a line from its middle."""
+    """Return the offsets in pixels, from the middle of a line, of the pixels across it."""
     count = max(1, round(width_px))
     return np.arange(count, dtype=np.float64) - (count - 1) / 2
 
 
 def _join_points(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray, FloatArray]:
-    """Return points along a trace that are no further apart than a step, without NaN."""
+    """Return the points of a trace, with further ones between them so that gaps are at most `step_mm`; without NaN."""
     good = np.isfinite(xs) & np.isfinite(ys)
     if len(xs) < 2:
         return xs[good], ys[good]
@@ -102,7 +102,7 @@ _FALLBACK = "red"
 
 
 def parse_pen_color(color: str) -> Rgb:
-    """Return the colour of a pen: a CSS name or `#rrggbb`; red for anything else."""
+    """Return the colour of a pen, given as a CSS name or `#rrggbb`; anything else is red."""
     rgb = parse_css_rgb(color) or parse_css_rgb(_FALLBACK)
     assert rgb is not None
     return rgb
@@ -110,33 +110,33 @@ def parse_pen_color(color: str) -> Rgb:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A part of the trace, drawn with one pen."""
+    """A part of the pen trace, drawn with one pen."""
 
     xs_mm: FloatArray
-    """Shape (n,); NaN lifts the pen."""
+    """World x of the points, shape (n,); NaN lifts the pen."""
     ys_mm: FloatArray
     rgb: Rgb
     width_mm: float
 
     @classmethod
     def from_points(cls, xs_mm: FloatArray, ys_mm: FloatArray, pen: PenSpec) -> Piece:
-        """Return points as a piece drawn with a pen."""
+        """Return a piece of a trace that consists of the points that a pen has drawn."""
         return cls(xs_mm, ys_mm, parse_pen_color(pen.color), pen.width_mm)
 
     def lift(self) -> Piece:
-        """Return the same piece with the pen lifted before it, so that it is not joined to another one."""
+        """Return the same piece with a lifted pen before it, so that it is not joined to the piece before."""
         return replace(
             self, xs_mm=np.insert(self.xs_mm, 0, np.nan), ys_mm=np.insert(self.ys_mm, 0, np.nan)
         )
 
     @property
     def pen(self) -> tuple[Rgb, float]:
-        """The colour and width of the pen."""
+        """The colour and the width in mm of the pen."""
         return self.rgb, self.width_mm
 
 
 class PenTrace:
-    """Everything that the pen has drawn since the trace was cleared."""
+    """The trace that the pen has drawn since it was last cleared, in pieces."""
 
     def __init__(self) -> None:
         self._pieces: list[Piece] = []
@@ -146,7 +146,7 @@ class PenTrace:
         """How often the trace was cleared."""
 
     def add(self, piece: Piece) -> None:
-        """Add points, joined to the last ones if the pen is the same."""
+        """Add a piece; its points are joined to the last ones if the pen is the same."""
         if not len(piece.xs_mm):
             return
         self.count += len(piece.xs_mm)
@@ -159,19 +159,19 @@ class PenTrace:
         self._pieces.append(piece)
 
     def clear(self) -> list[Piece]:
-        """Clear the trace; return its pieces."""
+        """Remove all pieces, and return them."""
         pieces = self._pieces
         self._pieces = []
         self.clears += 1
         return pieces
 
     def put_back(self, pieces: list[Piece]) -> None:
-        """Put pieces of a cleared trace before all others; painters then draw the whole trace anew."""
+        """Insert pieces of a cleared trace before all others; painters then draw the whole trace again."""
         self._pieces[:0] = pieces
         self.clears += 1
 
     def iterate_pieces(self, first: int) -> Iterator[Piece]:
-        """Yield the pieces from index `first` on."""
+        """Yield the pieces of the trace from index `first` on."""
         return iter(self._pieces[first:])
 
     def __len__(self) -> int:
@@ -191,14 +191,14 @@ class PenTrace:
 
 
 def place_pen_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
-    """Return x and y of the pen in the world at each record of telemetry, each of shape (n,), also where it is up."""
+    """Return x and y of the pen in mm in the world at each record, also where it is up, each of shape (n,)."""
     return compute_world_points_mm(telemetry, robot.pen.x_mm, robot.pen.y_mm)
 
 
 def place_drawn_mm(
     robot: RobotSpec, telemetry: npt.NDArray[Any]
 ) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
-    """Return x and y of the pen at each record of telemetry, NaN where it is up; and where it is up. Shape (n,)."""
+    """Return x and y of the pen in mm at each record, NaN where it is up; and whether it is up. Each has shape (n,)."""
     xs_mm, ys_mm = place_pen_mm(robot, telemetry)
     lifted = (telemetry["flags"] & FLAG_PEN_DOWN) == 0
     xs_mm[lifted] = ys_mm[lifted] = np.nan
@@ -208,7 +208,7 @@ def place_drawn_mm(
 FAR_MM = 1e5
 """What is drawn farther from the field is left out: the time for a line grows with its length."""
 _FINE_MM = 1.0
-"""In most ticks the pen moves less."""
+"""Accuracy of the points of a trace: in most ticks the pen moves less."""
 
 
 def build_pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> Piece:

@@ -31,13 +31,16 @@ MM_PER_PX = 3
 """Scale of the picture of a run."""
 
 RIM_RGB: Rgb = (232, 234, 238)
-"""Around the field."""
+"""Colour around the field."""
 
 
 def find_area(spec: RunSpec, records: NDArray[Any]) -> Area:
-    """Return the area of the field, extended to where a robot has been; without a floor around it, only the field.
+    """Return the area that a picture of a run shows: the field, extended to where the robot has been.
+
+    If the field has no floor around it, it is only the field.
 
     Args:
+        spec: The run.
         records: Telemetry, structured as `TICK_FIELDS`.
     """
     if not spec.world.is_open or not len(records):
@@ -56,7 +59,7 @@ def find_area(spec: RunSpec, records: NDArray[Any]) -> Area:
 def build_world_view(
     robot: RobotSpec, mm_per_px: float = MM_PER_PX, area: Area = FIELD
 ) -> Viewport:
-    """Return a view in which a robot is completely visible wherever its axle is in an area."""
+    """Return a view of an area that shows the whole robot wherever in the area its axle is."""
     # The field is no multiple of three mm wide: the rest of the last column is left out.
     width_px, height_px = (max(int(side_mm / mm_per_px), 1) for side_mm in area.size_mm)
     rim_px = math.ceil(measure_reach_mm(build_outline(robot)) / mm_per_px) + FRAME_PX
@@ -65,7 +68,10 @@ def build_world_view(
 
 
 def find_view(spec: RunSpec, area: Area = FIELD) -> Viewport:
-    """Return the view of `draw_world`; a larger area has a smaller scale, so that pictures have similar sizes."""
+    """Return the view of the picture that `draw_world` makes.
+
+    A larger area has a smaller scale, so that pictures have similar sizes.
+    """
     larger = max(
         side_mm / field_mm for side_mm, field_mm in zip(area.size_mm, FIELD.size_mm, strict=True)
     )
@@ -73,12 +79,12 @@ def find_view(spec: RunSpec, area: Area = FIELD) -> Viewport:
 
 
 def find_end_view(run: StoredRun) -> Viewport:
-    """Return the view of `draw_end`."""
+    """Return the view of the picture that `draw_end` makes."""
     return find_view(run.spec, find_area(run.spec, run.telemetry.array()))
 
 
 def fit_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD) -> Viewport:
-    """Return the view of `build_world_view` in the largest scale with which the picture fits a size."""
+    """Return the view of `build_world_view` in the largest scale at which its picture fits a size in pixels."""
     reach_mm = measure_reach_mm(build_outline(robot))
     # The rim is rounded up to whole pixels on both sides.
     sides = zip(area.size_mm, (width_px, height_px), strict=True)
@@ -90,9 +96,10 @@ def fit_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD
 
 
 def build_scene(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> SceneState:
-    """Return the objects on the field of a run.
+    """Return the objects on the field of a run, as they are drawn.
 
     Args:
+        spec: The run.
         pose: Where the robot is; None for no robot.
         rays: Whether to draw the rays of the ultrasonic sensor.
     """
@@ -116,7 +123,7 @@ def build_scene(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> Scen
 def build_painter(
     mat: Pixels, traces: Sequence[Piece] = (), *, has_floor: bool = False
 ) -> ScenePainter:
-    """Return a painter that draws a field for files, with pen traces on it."""
+    """Return a painter that draws a field and pen traces on it for files."""
     trace = PenTrace()
     for piece in traces:
         trace.add(piece.lift())
@@ -135,8 +142,10 @@ def draw_world(
     """Return a picture of mat, obstacles, pen traces and robot.
 
     Args:
+        spec: The run.
         mat: Shape (height, width, 3), rows from the top.
         pose: Where the robot is, by default at its start.
+        traces: The pen traces.
         rays: Whether to draw the rays of the ultrasonic sensor.
         area: The part of the world to show.
 
@@ -154,13 +163,13 @@ def draw_world(
 
 
 def read_pose(record: TickRecord | None) -> Pose | None:
-    """Return the pose in a record; None for no record, and for a damaged one, which may have no valid pose."""
+    """Return the robot's pose in a record; None for no record, or a damaged one without a valid pose."""
     valid = record is not None and math.isfinite(record.x_mm + record.y_mm + record.heading_deg)
     return record.pose if record is not None and valid else None
 
 
 def draw_end(run: StoredRun) -> Image:
-    """Return the world at the end of a run, or at the latest tick of a running one, as a Pillow image.
+    """Return the picture of the world at the end of a run, or at the latest tick of a run that goes on.
 
     Raises:
         LogError: the recording is damaged, or the mat no longer exists.

@@ -17,7 +17,7 @@ from tuisim.terminal.pixels import CellPoints, Pixels
 
 _PAPER_RGB: Rgb = (232, 234, 238)
 _RIM_MM = 12.0
-"""Paper around a robot."""
+"""Width of the paper around a robot."""
 
 
 def draw_portrait(
@@ -28,11 +28,11 @@ def draw_portrait(
     mono: bool = False,
     grey: bool = False,
 ) -> Pixels:
-    """Return a robot, heading up, that fills a picture of that width and height, with all sensors that have a place.
+    """Return the picture of a robot, heading up, which fills it, with all sensors that have a position.
 
     Args:
         robot: The robot.
-        size_px: Width and height.
+        size_px: Width and height of the picture.
         cell: The points of a cell.
         mono: Whether there is only black and white.
         grey: Whether there are only greys.
@@ -55,7 +55,7 @@ def draw_portrait(
 
 
 def find_part_rgb(sensor: SensorSpec) -> Rgb | None:
-    """Return the colour of a sensor in the picture; None if it has no place in it."""
+    """Return the colour of a sensor in the picture of a robot; None if the picture does not show the sensor."""
     if isinstance(sensor, ColorSensorSpec):
         return COLORED.sensor
     if isinstance(sensor, TouchSpec):
@@ -64,7 +64,7 @@ def find_part_rgb(sensor: SensorSpec) -> Rgb | None:
 
 
 def _fit_view(robot: RobotSpec, width_px: int, height_px: int, cell: CellPoints) -> Viewport:
-    """Return the view in which a robot, heading up, fills a picture with a rim around it."""
+    """Return the view in which a robot, heading up, fills a picture except for a rim."""
     outline = build_outline(robot)
     bumpers_mm = [y_mm + _RIM_MM for _, y_mm, _ in outline.bumpers_mm]
     front_mm, back_mm = max([outline.front_mm, *bumpers_mm]) + _RIM_MM, outline.back_mm - _RIM_MM

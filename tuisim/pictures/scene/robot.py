@@ -26,7 +26,7 @@ _MIN_PX = {1: 8.0, 2: 18.0}
 """By the pixels across a cell: in a robot narrower than this many pixels the heading marker needs to project beyond
 the body."""
 _NOSE_PX = {1: 1.2, 2: 2.5}
-"""How far it projects."""
+"""Pixels by which the heading marker projects, by the pixels across a cell."""
 _THIN_PX = {1: 0.4, 2: 1.0}
 """Half of its width at the tip: in two colours a cell, less of it is lost in what is behind."""
 
@@ -42,12 +42,12 @@ _SPOT_MM = 10.0
 
 _NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _SPOT = range(9)
 _WEIGHTS = np.array([1.0, 1.5, 1.0, 2.0, 1.5, 2.0, 2.0, 2.0, 1.2])
-"""Of each part where a pixel shows one only: what tells place and heading wins over the body."""
+"""Weight of each part where a pixel shows only one: parts that show place and heading win over the body."""
 
 
 @dataclass(frozen=True, slots=True)
 class RobotColors:
-    """Colours of the parts of a robot; the defaults are in every 256-colour palette."""
+    """The colours of a robot's parts; the defaults are in every 256-colour palette."""
 
     edge: Rgb = (255, 255, 255)
     body: Rgb = (0, 95, 215)
@@ -79,7 +79,7 @@ GREY = RobotColors(
     spot=(128, 128, 128),
     has_small_edge=True,
 )
-"""For a terminal without colours: dark body, white edge and marker, to stand out on any grey."""
+"""Colours for a terminal with greys only: dark body, white edge and marker, which stand out on any grey."""
 MONO = RobotColors(
     edge=(0, 0, 0),
     body=(255, 255, 255),
@@ -90,9 +90,9 @@ MONO = RobotColors(
     edge_mm=100.0,
     has_small_edge=True,
 )
-"""For a terminal of two colours: a black arrow on white within a black edge."""
+"""Colours for a terminal of two colours: a black arrow on white within a black edge."""
 CLEARED = RobotColors((255,) * 3, (255,) * 3, (255,) * 3, (255,) * 3, has_marker=False)
-"""For a terminal of two colours and of signs only: a white place for the signs of the robot."""
+"""Colours for a terminal of two colours and of signs only: a white area for the signs of the robot."""
 GHOST = RobotColors(
     edge=(175, 0, 175),
     marker=(175, 0, 175),
@@ -101,17 +101,17 @@ GHOST = RobotColors(
     has_small_edge=True,
     is_outline=True,
 )
-"""For the robot now, while an earlier instant is in view."""
+"""Colours of the robot now, while an earlier instant is in view."""
 GREY_GHOST = replace(GHOST, edge=(88, 88, 88), marker=(88, 88, 88))
 
 EARLIER = RobotColors(
     body=(108, 108, 108), wheel=(68, 68, 68), sensor=(148, 148, 148), marker=(218, 218, 218)
 )
-"""For the robot of an earlier run."""
+"""Colours of the robot of an earlier run."""
 
 
 def measure_reach_mm(outline: RobotOutline) -> float:
-    """Return the radius of a circle around a robot's pose that contains all that is drawn of the robot."""
+    """Return the radius of a circle around a robot's pose that contains the whole drawn robot."""
     wheels_mm = math.hypot(outline.half_width_mm, outline.wheel_radius_mm)
     bars_mm = (math.hypot(abs(x) + half, abs(y) + _BUMPER_MM) for x, y, half in outline.bumpers_mm)
     spots_mm = (math.hypot(*spot) + _SPOT_MM for spot in outline.other_sensors_mm)
@@ -119,7 +119,7 @@ def measure_reach_mm(outline: RobotOutline) -> float:
 
 
 def choose_scale(outline: RobotOutline, view: Viewport) -> float:
-    """Return the factor by which a robot is drawn enlarged, at least 1."""
+    """Return the factor, at least 1, by which a robot is drawn larger than it is."""
     return max(1.0, _MIN_CELLS * view.cell.cols * view.mm_per_px / (2 * outline.half_width_mm))
 
 
@@ -133,10 +133,14 @@ def draw_robot(
     pressed: tuple[bool, ...] = (),
     detail_cols: int | None = None,
 ) -> None:
-    """Paint a robot into a picture, clipped to it.
+    """Paint the part of a robot that is inside a picture.
 
     Args:
         picture: Written in place, shape (view.height_px, view.width_px, 3).
+        view: What the picture shows.
+        pose: Pose of the robot.
+        outline: Shape of the robot.
+        colors: Colours of its parts.
         opacity: 0 … 1.
         pressed: Whether each bumper is pressed; empty for none.
         detail_cols: Pixels across a cell for which details are chosen, 1 or 2; None for those of the view.
@@ -200,10 +204,15 @@ def _classify_samples(
     *,
     has_marker: bool,
 ) -> npt.NDArray[np.intp]:
-    """Return which part of a robot covers each sample.
+    """Return for each sample the number of the robot's part that covers it.
 
     Args:
+        outline: Shape of the robot.
         side, ahead: Where the samples are: to the right of the robot's axis, and ahead, in mm.
+        px_mm: Width of a pixel.
+        cell_cols: Pixels across a cell.
+        edge_mm: Width of the robot's edge.
+        has_marker: Whether the robot has a heading marker.
     """
     across = np.abs(side)
     parts = np.zeros(side.shape, np.intp)
@@ -222,7 +231,7 @@ def _classify_samples(
     nose_mm = _NOSE_PX[cell_cols] * px_mm if is_small else 0.0
     tip = front_mm + nose_mm
     base = back_mm * 0.55
-    # Longer than wide: in an even triangle of few pixels any corner could be the tip.
+    # The marker is longer than wide: in an even triangle of few pixels any corner could be the tip.
     widest_mm = min(0.62 * (outline.half_width_mm - outline.wheel_width_mm), 0.28 * (tip - base))
     thinnest_mm = (_THIN_PX[cell_cols] if is_small else 0.4) * px_mm
     flank = np.maximum(widest_mm * (tip - ahead) / (tip - base), thinnest_mm)
@@ -243,7 +252,7 @@ def _mount(
     px_mm: float,
     pressed: tuple[bool, ...],
 ) -> None:
-    """Add bumpers and other sensors to `parts`; the heading marker stays on top."""
+    """Write the numbers of bumpers and other sensors into `parts`, except below the heading marker."""
     free = parts != _MARKER
     for number, (x_mm, y_mm, half) in enumerate(outline.bumpers_mm):
         # A bar is at least half a pixel thick and long, to stay visible.
@@ -255,7 +264,7 @@ def _mount(
 
 
 def _pick_part(blocks: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
-    """Return the part with the most weight in each pixel.
+    """Return for each pixel the part with the most weight among its samples.
 
     Args:
         blocks: The parts of the samples, in a block for each pixel.

@@ -34,7 +34,7 @@ class Area(NamedTuple):
 
     @property
     def size_mm(self) -> tuple[float, float]:
-        """Width and height."""
+        """Width and height of the area."""
         return self.right - self.left, self.upper - self.lower
 
 
@@ -43,7 +43,7 @@ FIELD = Area(0.0, 0.0, float(FIELD_WIDTH_MM), float(FIELD_HEIGHT_MM))
 
 @dataclass(frozen=True, slots=True)
 class Viewport:
-    """The part of the world that a picture shows; in the app, the picture consists of character cells."""
+    """The part of the world that a picture shows, and the size of the picture in pixels."""
 
     width_px: int
     height_px: int
@@ -56,21 +56,24 @@ class Viewport:
 
     @property
     def mm_per_row(self) -> float:
-        """The height of a pixel in mm."""
+        """The height of a pixel of the picture in mm."""
         return self.mm_per_px * self.cell.tall
 
     @property
     def extent_mm(self) -> tuple[float, float, float, float]:
-        """World x of the left and right edge, and world y of the lower and upper edge, in the order of matplotlib."""
+        """The edges of the picture in mm: left and right as world x, lower and upper as world y.
+
+        The order is that of matplotlib's `extent`.
+        """
         right_mm, lower_mm = self.to_mm(self.width_px, self.height_px)
         return self.left_mm, right_mm, lower_mm, self.top_mm
 
     def to_px(self, x_mm: float, y_mm: float) -> tuple[float, float]:
-        """Return the picture column and row of a world point; whole numbers are pixel corners."""
+        """Return the column and row of the picture at a world point; whole numbers are pixel corners."""
         return (x_mm - self.left_mm) / self.mm_per_px, (self.top_mm - y_mm) / self.mm_per_row
 
     def to_mm(self, col_px: float, row_px: float) -> tuple[float, float]:
-        """Return the world point of a picture position."""
+        """Return the world point, in mm, of a column and row of the picture; whole numbers are pixel corners."""
         return self.left_mm + col_px * self.mm_per_px, self.top_mm - row_px * self.mm_per_row
 
 
@@ -93,7 +96,7 @@ def follow_robot(
     *,
     on_floor: bool = False,
 ) -> Viewport:
-    """Return a viewport that keeps the robot visible.
+    """Return a viewport in which the robot is visible.
 
     The view stays still until the robot comes near an edge, and then jumps so that the robot is in the middle again: a
     picture that moved all the time would have to be sent completely in each frame.
@@ -129,7 +132,7 @@ def follow_robot(
 
 
 def _shift_view(view: Viewport, zoom: int, pose: Pose) -> Viewport:
-    """Return a view, moved by thirds of its size until the robot is not near its edges."""
+    """Return a view that is moved by thirds of its size so far that the robot is not near its edges."""
     share = _KEEP_ON_FLOOR if zoom == 1 else _KEEP_INSIDE
     col, row = view.to_px(pose.x_mm, pose.y_mm)
     right_px = _count_steps(col, view.width_px, share, view.cell.cols)
@@ -139,7 +142,14 @@ def _shift_view(view: Viewport, zoom: int, pose: Pose) -> Viewport:
 
 
 def _count_steps(at_px: float, size_px: int, share: float, cell_px: int) -> int:
-    """Return by how many pixels a picture has to move along an axis."""
+    """Return by how many pixels a view has to move along an axis, so that a point is not near its edges.
+
+    Args:
+        at_px: Position of the point in the view.
+        size_px: Size of the view.
+        share: Share of the size that is near an edge.
+        cell_px: Size of a cell; the view moves by whole cells.
+    """
     margin_px = size_px * share
     beyond_px = min(at_px - margin_px, 0.0) + max(at_px - (size_px - margin_px), 0.0)
     if not math.isfinite(beyond_px):
@@ -166,7 +176,7 @@ def _center_view(
 
 
 def _clamp_center(centre_mm: float, shown_mm: float, field_mm: float) -> float:
-    """Return the centre of a view, clamped so that as little as possible off the field is shown."""
+    """Return the centre of a view along an axis, moved so that as little as possible off the field is shown."""
     if shown_mm >= field_mm:
         return field_mm / 2
     return min(max(centre_mm, shown_mm / 2), field_mm - shown_mm / 2)
