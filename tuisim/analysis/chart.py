@@ -21,25 +21,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """Display options of a chart, besides visible variables and time range."""
+    """The user's settings of a chart, besides its variables and its time range."""
 
     facets: bool = False
-    """One chart for each variable."""
+    """Whether there is one chart for each variable."""
     marks: bool = False
-    """Points instead of lines."""
+    """Whether points are drawn instead of lines."""
     hold: bool = False
-    """Step lines."""
+    """Whether lines are step lines, which keep a value until the next one."""
     against: tuple[str, str] | None = None
     """Pair of x and y to draw against each other, instead of all variables over time."""
 
 
 def build_chart(model: AnalysisModel, view: View, columns: int, rows: int) -> ChartData:
-    """Return the chart of a model: its visible variables within its limits.
+    """Return the chart of a model's visible variables in its visible time range.
 
     Points are left out that a picture of `columns` by `rows` pixels, or parts of characters, could not show apart.
 
     Raises:
-        LogError: no such variable to draw against.
+        LogError: a variable to draw against another one does not exist.
     """
     x_limits = model.find_x_limits()
     if view.against:
@@ -88,7 +88,7 @@ def _build_path_chart(
 
 
 def build_spans(bands: Iterable[Band]) -> tuple[Span, ...]:
-    """Return bands as spans of a chart over time."""
+    """Return bands as shaded ranges of a chart over time."""
     return tuple(
         build_band_span(band.variable, band.start_s, band.stop_s, band.level, band.grey)
         for band in bands

@@ -29,28 +29,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """A place where a signal crosses a threshold."""
+    """An instant at which a signal crosses a threshold."""
 
     sample: int
     """Index of the first sample beyond the threshold."""
     time_s: float
     """Time at which the line between the samples on either side meets the threshold."""
     value: float
-    """The value of that sample."""
+    """The variable's value at that sample."""
     rising: bool
 
 
 def find_crossings(
     time_s: FloatArray, values: FloatArray, threshold: float, hysteresis: float = 0.0
 ) -> list[Crossing]:
-    """Return where a signal crosses a threshold, in order of time.
+    """Return the crossings of a threshold by a signal, in order of time.
 
-    A value on the threshold counts as beyond it when the signal comes from below, so
-    that a signal that only touches it from above crosses nothing.
+    A value equal to the threshold is above it: a signal that only touches the threshold from above crosses nothing.
 
     Args:
         time_s: Shape (n,), in any order.
         values: Shape (n,); those that are not finite are skipped.
+        threshold: The threshold.
         hysteresis: A crossing counts if the signal is this far from the threshold before and after it.
 
     Raises:
@@ -61,7 +61,7 @@ def find_crossings(
     known = np.arange(len(values))[sort_known(time_s, values)]
     signal = values[known]
     above = signal >= threshold
-    # The side of the threshold; 0 within the hysteresis.
+    # Each sample gets 1 above the threshold, -1 below it, and 0 if it is within the hysteresis.
     side = np.where(
         signal >= threshold + hysteresis, 1, np.where(signal < threshold - hysteresis, -1, 0)
     )
@@ -73,7 +73,7 @@ def find_crossings(
     for start, end in zip(before.tolist(), changes.tolist(), strict=True):
         rising = bool(side[end] > 0)
         beyond = above[start + 1 : end + 1] == rising
-        # The last crossing, not the sample beyond the hysteresis.
+        # The event is at the last crossing of the threshold, not where the signal leaves the hysteresis.
         index = start + 1 + (0 if beyond.all() else int(np.flatnonzero(~beyond)[-1]) + 1)
         first, last = int(known[index - 1]), int(known[index])
         results.append(
@@ -88,7 +88,7 @@ def find_crossings(
 
 
 def _find_changes(time_s: FloatArray, values: FloatArray) -> list[Crossing]:
-    """Return where a signal has another value than before, in order of time."""
+    """Return the instants at which the value of a signal differs from the one before, in order of time."""
     known = np.arange(len(values))[sort_known(time_s, values)]
     turns = np.flatnonzero(np.diff(values[known]))
     pairs = zip(known[turns].tolist(), known[turns + 1].tolist(), strict=True)
@@ -103,7 +103,7 @@ def _find_changes(time_s: FloatArray, values: FloatArray) -> list[Crossing]:
 def _compute_crossing_s(
     time_s: FloatArray, values: FloatArray, first: int, last: int, threshold: float
 ) -> float:
-    # Halved, so that the difference of huge values is finite.
+    # The values are halved, so that the difference of huge values is finite.
     start = float(values[first]) / 2.0
     stop = float(values[last]) / 2.0
     part = (threshold / 2.0 - start) / (stop - start) if stop != start else 1.0
@@ -118,7 +118,7 @@ _WIDTH = re.compile(rf"(?P<comparison>.+?)(?:\+-|±)\s*(?P<width>{NUMBER})\s*")
 
 @dataclass(frozen=True, slots=True)
 class Threshold(ValueCondition):
-    """A condition on a variable: that it falls below a value, rises above it, does either (EQUAL), or changes."""
+    """A condition on a variable: it falls below a value, rises above it, does either (EQUAL), or changes."""
 
     hysteresis: float = 0.0
     """The signal must pass the value by this margin on both sides."""
@@ -129,11 +129,11 @@ class Threshold(ValueCondition):
 
     @property
     def level(self) -> str:
-        """The value as it is shown; empty for a change."""
+        """The value of the threshold as it is shown; empty for a change."""
         return f"{float(self.value):g}" if self.value else ""
 
     def select_series(self, series: Sequence[Series]) -> list[Series]:
-        """Return the series of the threshold's variable: those of all runs, unless it names a run."""
+        """Return the series of the threshold's variable, of all runs or of the run that the threshold names."""
         return [
             candidate
             for candidate in series
@@ -141,7 +141,7 @@ class Threshold(ValueCondition):
         ]
 
     def find_crossings(self, series: Series) -> list[Crossing]:
-        """Return where a series crosses the threshold, in order of time."""
+        """Return the crossings of the threshold by a series, in order of time."""
         if self.operator is Operator.CHANGES:
             return _find_changes(series.time_s, series.values)
         results = find_crossings(series.time_s, series.values, float(self.value), self.hysteresis)
@@ -153,7 +153,7 @@ class Threshold(ValueCondition):
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """One crossing of one variable."""
+    """A crossing of a threshold by a variable of a log."""
 
     variable: str
     threshold: Threshold
@@ -166,10 +166,10 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class CommandChoice:
-    """The user's choice of commands: what programs asked of motors and sensors."""
+    """A search for the commands that programs gave to motors and sensors."""
 
     words: str
-    """In the names of part and call; empty for all."""
+    """Words in the names of part and call; empty for all commands."""
 
     def __str__(self) -> str:
         return f"command {self.words}".rstrip()
@@ -180,29 +180,29 @@ EventChoice: TypeAlias = Threshold | CommandChoice
 
 @dataclass(frozen=True)
 class CommandRow:
-    """What a program asked of a part, once or repeatedly, and its place in a log."""
+    """A command that a program gave to a motor or sensor, once or repeatedly, with its row in a log."""
 
     index: CommandIndex
     number: int
     """Number of the event in the index."""
     row: int
-    """Row of the table with the first sample since then."""
+    """Row of the table with the first sample after the command."""
     run: int
     """Number of the run in the log, 0 if there is only one."""
 
     @property
     def time_s(self) -> float:
-        """The time at which the program asked first."""
+        """The time at which the program gave the command first, in s."""
         return self.index.time_s(self.number)
 
     @cached_property
     def event(self) -> CommandEvent:
-        """What was asked; read on first use, and then cached."""
+        """The command; it is read from the recording on first use, and then stored."""
         return self.index.event(self.number)
 
 
 def parse_threshold(text: str) -> Threshold | None:
-    """Parse a threshold such as `Colour < 50`; return None if the text is not one."""
+    """Return the threshold that a text such as `Colour < 50` stands for; None if it is no threshold."""
     match = _WIDTH.fullmatch(text)
     condition = parse_condition(match["comparison"], value=NUMBER) if match else None
     width = float(match["width"]) if match and condition else 0.0
@@ -213,7 +213,7 @@ def parse_threshold(text: str) -> Threshold | None:
 
 
 def parse_event(text: str) -> EventChoice | None:
-    """Parse a threshold or a search for commands; return None if the text is neither."""
+    """Return the threshold or the search for commands that a text stands for; None if it is neither."""
     threshold = parse_threshold(text)
     if threshold is None and (words := parse_command_search(text)) is not None:
         return CommandChoice(words)
@@ -221,7 +221,7 @@ def parse_event(text: str) -> EventChoice | None:
 
 
 def parse_events(text: str, log: Log) -> tuple[EventChoice, ...]:
-    """Return the events that a text chooses, see `FORM`; none if it is empty.
+    """Return the thresholds and searches for commands in a text, see `FORM`; none if it is empty.
 
     Raises:
         LogError: a part of it is not a threshold, or there is no such variable.
@@ -243,11 +243,11 @@ def parse_events(text: str, log: Log) -> tuple[EventChoice, ...]:
 def find_events(
     log: Log, choices: Sequence[EventChoice], runs: Sequence[StoredRun] = ()
 ) -> list[Event | CommandRow]:
-    """Return where variables cross thresholds, and what programs asked, in the order of the rows.
+    """Return the crossings of thresholds and the commands of programs in a log, in the order of its rows.
 
     Args:
         log: The log.
-        choices: Which events are wanted.
+        choices: The thresholds and searches for commands.
         runs: The runs of the log; none for a file.
     """
     events: list[Event | CommandRow] = []
@@ -272,11 +272,11 @@ def find_events(
 def _find_commands(
     run: StoredRun, choice: CommandChoice, series: Sequence[Series], run_number: int
 ) -> list[CommandRow]:
-    """Return what the program of a run asked of its parts.
+    """Return the commands of a run's program that a search finds.
 
     Args:
         run: The run.
-        choice: Which commands are wanted.
+        choice: The search.
         series: The variables of the run in the log.
         run_number: As of `CommandRow.run`.
     """
@@ -295,7 +295,7 @@ def _find_commands(
 
 
 class Events:
-    """The current events of a log; they are searched for again when the log changes.
+    """The events of a log that the user has chosen; if the log changes, they are found again.
 
     Args:
         runs: As of `find_events`.
@@ -310,13 +310,13 @@ class Events:
     def set(
         self, log: Log, thresholds: tuple[EventChoice, ...], events: list[Event | CommandRow]
     ) -> None:
-        """Set the events."""
+        """Store the events that were found in a log for some thresholds."""
         self.thresholds = thresholds
         self._of = (log, thresholds)
         self._events = events
 
     def list_events(self, log: Log) -> list[Event | CommandRow]:
-        """Return the events of a log, in the order of its rows."""
+        """Return the events of a log for the present thresholds, in the order of its rows."""
         if self._of[0] is not log or self._of[1] != self.thresholds:
             self.set(log, self.thresholds, find_events(log, self.thresholds, self.runs))
         return self._events

@@ -40,7 +40,7 @@ _SORTED_AT_ONCE = 200_000
 
 
 class AnalysisModel:
-    """The state of the analysis of one log.
+    """The state of the analysis of one log: its variables, cursors, visible range, bands and notes.
 
     Raises:
         LogError: the log has rows but no numeric column, or its notes cannot be read.
@@ -82,11 +82,11 @@ class AnalysisModel:
 
     @property
     def trace(self) -> LogTrace:
-        """The selected variable."""
+        """The trace of the selected variable."""
         return self.traces.find_trace(self.selected)
 
     def trace_of_row(self, row: int) -> LogTrace:
-        """Return the trace that a row belongs to."""
+        """Return the variable to which a row of the log belongs; the selected one if the row names none."""
         layout = self.log.layout
         table = self.log.table
         if not layout.variable:
@@ -98,17 +98,17 @@ class AnalysisModel:
             and (key := f"{name} #{table.column(layout.run)[row].as_py()}") in self.traces
         ):
             name = key
-        # A row may have no name or no run.
+        # A row may have no name or no run: it then belongs to the selected variable.
         return self.traces.find_trace(name if name in self.traces else self.selected)
 
     @property
     def cursor_s(self) -> float:
-        """The x position of the current row: its time, unless runs are aligned otherwise."""
+        """The position of the cursor on the x axis: the time of its row in s, unless runs are aligned otherwise."""
         trace = self.trace_of_row(self.row)
         return float(trace.places[self._sample(trace, self.row)])
 
     def find_place(self, row: int, time_s: float) -> float:
-        """Return the x position of a time in the run to which a row belongs."""
+        """Return the position on the x axis of a time in s, in the run to which a row belongs."""
         if self.alignment == TIME:
             return time_s
         trace = self.trace_of_row(row)
@@ -116,26 +116,26 @@ class AnalysisModel:
         return time_s + float(trace.places[sample] - trace.series.time_s[sample])
 
     def find_time_s(self, row: int) -> float:
-        """Return the time of a row in its run."""
+        """Return the time of a row in its run, in s."""
         trace = self.trace_of_row(row)
         return float(trace.series.time_s[self._sample(trace, row)])
 
     @staticmethod
     def _sample(trace: LogTrace, row: int) -> int:
-        """Return the index of a variable's sample in a row of the table, or of its next sample after that row."""
+        """Return the index of a variable's sample in a row of the log, or of its next sample after that row."""
         rows = trace.series.rows
         return min(int(np.searchsorted(rows, row)), len(rows) - 1)
 
     @property
     def sample(self) -> int:
-        """The index of the selected variable's sample in the current row, or of the next one."""
+        """The index of the selected variable's sample in the row of the cursor, or of its next sample."""
         return self._sample(self.trace, self.row)
 
     def sample_variable(self, name: str) -> FloatArray:
         """Return the values of a variable or column at each sample of the selected variable, shape (n,).
 
         Raises:
-            LogError: there is none of that name, or it is not numeric.
+            LogError: there is no variable or column of that name, or it is not numeric.
         """
         series = self.trace.series
         if name in self.traces:
@@ -149,22 +149,22 @@ class AnalysisModel:
         return self.log.numbers(name)[series.rows]
 
     def find_run(self, row: int) -> int:
-        """Return the index of a row's run, from 0."""
+        """Return the index of the run to which a row belongs, from 0."""
         return max(0, self.trace_of_row(row).series.run - 1)
 
     def find_printed_line(self) -> int:
-        """Return the line of the program that printed the current row, 0 if the log does not say."""
+        """Return the line of the program that printed the row of the cursor; 0 if the log does not say."""
         if "line" not in self.log.table.column_names:
             return 0
         return int(self.log.table.column("line")[self.row].as_py() or 0)
 
     def go_to_time(self, time_s: float) -> None:
-        """Move the cursor to the selected variable's sample nearest to an x position."""
+        """Move the cursor to the selected variable's sample nearest to a position on the x axis."""
         if len(self.trace.pyramid.times_s):
             self.row = int(self.trace.series.rows[self.trace.pyramid.find_nearest(time_s)])
 
     def go_to_moment(self, time_s: float) -> None:
-        """Move the cursor to the selected variable's sample nearest to a time of the variable's run."""
+        """Move the cursor to the selected variable's sample nearest to a time of its run, in s."""
         series = self.trace.series
         if len(series.rows):
             self.row = int(series.rows[int(np.nanargmin(np.abs(series.time_s - time_s)))])
@@ -182,7 +182,7 @@ class AnalysisModel:
             self.row = int(rows[min(max(index, 0), len(rows) - 1)])
 
     def restore(self, other: AnalysisModel) -> None:
-        """Take over the state of another model, made when the same log was shorter."""
+        """Copy the state of another model, which was made when the same log was shorter."""
         self.row = other.row
         self.mark_s = other.mark_s
         self.limits = other.limits
@@ -201,7 +201,10 @@ class AnalysisModel:
             self._align_again(other.alignment)
 
     def copy_definitions(self, other: AnalysisModel) -> None:
-        """Derive the variables that another model of the same log has. Slow for a long log: call it in a thread."""
+        """Derive the variables that another model of the same log has.
+
+        This is slow for a long log: call it in a thread.
+        """
         for name, text in other.definitions.items():
             if name not in self.definitions:
                 # Definitions that need variables which no longer exist are dropped.
@@ -209,7 +212,7 @@ class AnalysisModel:
                     self.derive(text)
 
     def set_log(self, log: Log) -> None:
-        """Switch to the same log with other derived variables."""
+        """Replace the log by the same log with other derived variables."""
         self.log, self.opened = log, replace(self.opened, log=log)
         before = {trace.name: trace for trace in self.traces}
         self.traces.set_log(log)
@@ -231,22 +234,25 @@ class AnalysisModel:
         self.mark_s = mark_s
 
     def go_to_row(self, row: int) -> None:
-        """Move the cursor to the nearest existing row."""
+        """Move the cursor to a row; if there is no such row, to the first or the last one."""
         self.row = min(max(row, 0), max(self.log.rows - 1, 0))
 
     def select(self, step: int) -> None:
-        """Select another variable."""
+        """Select the variable that is a number of variables after the selected one; after the last comes the first."""
         names = [trace.name for trace in self.traces]
         if names:
             self.selected = names[(names.index(self.selected) + step) % len(names)]
 
     def add_named_columns(self, text: str) -> None:
-        """Derive the columns of the recording that a text names, if the log lacks them but can compute them."""
+        """Derive the columns of the recording that a text names and the log lacks, if they can be computed."""
         for name in find_named_columns(self.log, text):
             self.derive(name)
 
     def align(self, way: str) -> None:
-        """Align the runs by `time`; by `distance`, how far each robot has driven; or by an event such as `Colour < 50`.
+        """Align the runs of the log on the x axis.
+
+        Args:
+            way: `time`; `distance`, how far each robot has driven; or an event such as `Colour < 50`.
 
         Raises:
             LogError: the log does not say how far the robot drove, or no run has such an event.
@@ -259,14 +265,14 @@ class AnalysisModel:
         self.limits = None
         self.mark_s = None
 
-    # The part of the time that the chart shows
+    # The following methods move the visible range of the chart.
 
     def find_x_limits(self) -> Limits:
         """Return the visible range of the x axis."""
         return self.limits or self.traces.find_span_s()
 
     def zoom(self, factor: float) -> None:
-        """Zoom around the cursor."""
+        """Multiply the width of the visible range of the x axis by a factor; the cursor stays in place."""
         (low, high), (first, last) = self.find_x_limits(), self.traces.find_span_s()
         width = max((high - low) * factor, (last - first) * _MIN_SHOWN_SHARE)
         if width >= last - first:
@@ -276,7 +282,7 @@ class AnalysisModel:
         self._move_limits(self.cursor_s - share * width, width)
 
     def pan(self, share: float) -> None:
-        """Scroll by a fraction of the visible width."""
+        """Move the visible range of the x axis by a share of its width."""
         low, high = self.find_x_limits()
         if self.limits:
             self._move_limits(low + share * (high - low), high - low)
@@ -287,7 +293,7 @@ class AnalysisModel:
         self.limits = low, low + width
 
     def follow_cursor(self) -> None:
-        """Move the cursor into the visible range."""
+        """If the cursor is outside the visible range of the x axis, move that range to the cursor."""
         if self.limits and not self.limits[0] <= self.cursor_s <= self.limits[1]:
             width = self.limits[1] - self.limits[0]
             self._move_limits(self.cursor_s - width / 2, width)
@@ -295,13 +301,16 @@ class AnalysisModel:
     # Bands
 
     def list_unsearched(self) -> list[str]:
-        """Return the visible variables whose bands have not been searched yet."""
+        """Return the names of the visible variables in which bands have not been searched for yet."""
         return [
             trace.name for trace in self.traces.list_ticked() if trace.name not in self._reports
         ]
 
     def find_bands(self, names: Sequence[str], search: Search = find_plateaus) -> None:
-        """Search variables for bands. Slow for a long log: call it in a thread, with a search in another process."""
+        """Search variables for bands.
+
+        This is slow for a long log: call it in a thread, with a search in another process.
+        """
         for name in names:
             report = build_band_report(self.log, name, search)
             self._words[name], self._bands[name], self._reports[name] = (
@@ -311,7 +320,7 @@ class AnalysisModel:
             )
 
     def list_reports(self) -> list[BandReport]:
-        """Return the band reports of the visible variables."""
+        """Return the reports on the bands of the visible variables, one for each variable."""
         return [
             self._reports[trace.name]
             for trace in self.traces.list_ticked()
@@ -323,7 +332,7 @@ class AnalysisModel:
         return [self._words[report.variable] for report in self.list_reports()]
 
     def bands(self) -> Sequence[Band]:
-        """Return the bands of the visible variables that have been searched."""
+        """Return the bands of the visible variables in which they have been searched for."""
         reports = self.list_reports()
         if reports != self._reported[0]:
             self._reported = (
@@ -333,13 +342,16 @@ class AnalysisModel:
         return self._reported[1]
 
     def find_measured_span(self) -> Limits | None:
-        """Return the range between the two cursors, None if A is not set."""
+        """Return the range between the two cursors on the x axis; None if the second one, A, is not set."""
         if self.mark_s is None or not self.log.rows:
             return None
         return min(self.mark_s, self.cursor_s), max(self.mark_s, self.cursor_s)
 
     def list_unsummed(self) -> list[str]:
-        """Return the visible variables whose statistics must be computed first; none for a range, which is quick."""
+        """Return the names of the visible variables whose statistics are not computed yet.
+
+        There are none for the range between two cursors, whose statistics take no time.
+        """
         if self.find_measured_span() is not None:
             return []
         return [
@@ -347,12 +359,15 @@ class AnalysisModel:
         ]
 
     def sum_up(self, names: Sequence[str]) -> None:
-        """Compute the statistics of variables. Slow for a long log: call it in a thread."""
+        """Compute the statistics of variables over all samples.
+
+        This is slow for a long log: call it in a thread.
+        """
         for name in names:
             self._summaries[name] = compute_summary(self.traces.find_trace(name).series.values)
 
     def build_summary(self, name: str) -> Summary:
-        """Return the statistics of a variable, between the two cursors or of all samples; cached."""
+        """Return the statistics of a variable: between the two cursors, or else over all samples, which are stored."""
         span = self.find_measured_span()
         if span is not None:
             pyramid = self.traces.find_trace(name).pyramid
@@ -371,11 +386,11 @@ class AnalysisModel:
 
     @property
     def notes(self) -> list[tuple[int, Note]]:
-        """Every note with the index of its run, in order of time."""
+        """Every note on the log, with the index of its run, in order of time."""
         return [(run, note) for run, notes in enumerate(self._notes) for note in notes]
 
     def add_note(self, text: str, start_s: float, stop_s: float, variable: str, run: int) -> None:
-        """Write a note to its run's file.
+        """Add a note on a run, and write it to the file with the notes.
 
         Raises:
             LogError: it cannot be written, or the log is the standard input.
@@ -388,7 +403,7 @@ class AnalysisModel:
         self._notes[run] = notes
 
     def drop_note(self, run: int, note: Note) -> None:
-        """Delete a note.
+        """Delete a note on a run, given by the run's index.
 
         Raises:
             LogError: the file with the other notes cannot be written.
@@ -403,7 +418,7 @@ class AnalysisModel:
         return self._places[run]
 
     def apply_definition(self, text: str, log: Log) -> None:
-        """Apply a definition to a model, with the log that `compute_definition` returned for it."""
+        """Apply a definition of a derived variable, with the log that `compute_definition` returned for it."""
         name = RECKONING if text == RECKONING else parse_definition(text).name
         self.definitions.pop(name, None)
         if text == RECKONING or parse_definition(text).expression:
@@ -416,7 +431,9 @@ class AnalysisModel:
         )
 
     def compute_definition(self, text: str) -> tuple[str, Log]:
-        """Return a definition without blanks around it, and the log with its variable; an empty one removes it.
+        """Return the stripped text of a definition, and the log with its derived variable.
+
+        A definition without an expression removes the variable from the log.
 
         Raises:
             LogError: the line is invalid, or names an unknown variable.
@@ -444,7 +461,7 @@ class AnalysisModel:
         return text, bare
 
     def derive(self, text: str) -> None:
-        """Derive a variable; blocks until it is computed.
+        """Compute the derived variable of a definition, and add it to the log. Blocks.
 
         Raises:
             LogError: as for `compute_definition`.

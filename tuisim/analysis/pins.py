@@ -23,36 +23,36 @@ _LETTER_PX = 0.62 * _TEXT_PX
 
 @dataclass(frozen=True, slots=True)
 class Pin:
-    """A mark at a place where a goal or the like was decided."""
+    """A mark on a picture of the world, at the place where something was decided, such as a goal."""
 
     label: str
-    """A few characters."""
+    """The label of the pin, a few characters."""
     x_mm: float
     y_mm: float
     is_good: bool
     text: str
-    """What was decided, shown while the mouse is there."""
+    """The decision in words, shown while the mouse is over the pin."""
 
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """The place of the text beside a ring, in pixels of the picture."""
+    """The position of the text beside a ring, in pixels of the picture."""
 
     left_px: float
     right_px: float
     baseline_px: float
     is_at_end: bool
-    """Whether the right edge is beside the ring."""
+    """Whether the right edge of the text is beside the ring."""
 
     @property
     def x_px(self) -> float:
-        """The edge beside the ring."""
+        """The column of that edge of the text which is beside the ring."""
         return self.right_px if self.is_at_end else self.left_px
 
 
 @dataclass(frozen=True, slots=True)
 class Ring:
-    """A ring around pins at about one place, in pixels of the picture."""
+    """A ring around one or more pins that are close together, in pixels of the picture."""
 
     x_px: float
     y_px: float
@@ -61,7 +61,7 @@ class Ring:
 
     @property
     def is_good(self) -> bool:
-        """Whether all of its pins are good."""
+        """Whether all pins in the ring are good."""
         return all(pin.is_good for pin in self.pins)
 
 
@@ -78,11 +78,11 @@ class Dot:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture on a page; one without a source says in `text` why there is none."""
+    """A picture on a page; if it has no source, `text` says why there is no picture."""
 
     text: str
     source: str = ""
-    """Its content, as the `src` of an `img`."""
+    """The content of the picture, as the `src` of an `img`; empty without a picture."""
     size_px: tuple[int, int] | None = None
     view: Viewport | None = None
     """The part of the world that the picture shows; for rings and dots only."""
@@ -91,21 +91,27 @@ class Picture:
 
 
 def encode_picture(picture: Image) -> str:
-    """Return a picture as the `src` of an `img`."""
+    """Return a picture as a data URL for the `src` of an `img`."""
     content = io.BytesIO()
     picture.save(content, "png", optimize=True)
     return encode_data("png", content.getvalue())
 
 
 def encode_data(kind: str, content: bytes) -> str:
-    """Return the content of an image file of a kind, such as `png`, as the `src` of an `img`."""
+    """Return the content of an image file as a data URL for the `src` of an `img`.
+
+    Args:
+        kind: Type of the image, such as `png`.
+        content: The content of the file.
+    """
     return f"data:image/{kind};base64,{base64.b64encode(content).decode()}"
 
 
 def place_pins(pins: Sequence[Pin], view: Viewport) -> tuple[Ring, ...]:
-    """Return rings around the pins on a picture of the world, with labels that do not overlap if there is room.
+    """Return rings around pins on a picture of the world; their labels do not overlap if there is room.
 
     Args:
+        pins: The pins; those at about one place share a ring.
         view: The part of the world that the picture shows.
     """
     places: list[tuple[float, float, list[Pin]]] = []
@@ -128,7 +134,7 @@ def place_pins(pins: Sequence[Pin], view: Viewport) -> tuple[Ring, ...]:
         labels = [
             _place_label(x, y + side * _RING_PX, pins_here, view.width_px) for side in (-1, 2.5)
         ]
-        # Above its ring, unless another label is there.
+        # A label is above its ring, unless another label is there.
         free = (
             label for label in labels if not any(_do_overlap(label, ring.label) for ring in rings)
         )
@@ -137,7 +143,14 @@ def place_pins(pins: Sequence[Pin], view: Viewport) -> tuple[Ring, ...]:
 
 
 def _place_label(x_px: float, baseline_px: float, pins: Sequence[Pin], width_px: int) -> Label:
-    """Return the place of the label of a ring at `x_px`, on a picture that is `width_px` wide."""
+    """Return the position of a ring's label on a picture.
+
+    Args:
+        x_px: Column of the ring.
+        baseline_px: Row of the text's baseline.
+        pins: The pins of the ring, whose labels are the text.
+        width_px: Width of the picture.
+    """
     length_px = sum(len(pin.label) + 2 for pin in pins) * _LETTER_PX
     is_at_end = x_px > 0.8 * width_px
     gap_px = _RING_PX + 4

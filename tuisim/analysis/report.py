@@ -50,7 +50,7 @@ _HALO = (255, 255, 255)
 
 
 def build_default_name(opened: OpenedLog) -> str:
-    """Return the default file name of a report."""
+    """Return the file name that is proposed for the report on a log."""
     name = opened.runs[0].program.name if opened.runs else opened.request.file
     return f"{name_of(Path(name)).strip('-.') or 'log'}-report.html"
 
@@ -59,7 +59,7 @@ def check_report(path: Path) -> None:
     """Check that a report can be written to a path.
 
     Raises:
-        ExportError: it cannot be written, or its suffix is not that of a page.
+        ExportError: it cannot be written, or its suffix is not that of an HTML page.
     """
     if path.suffix.lower() not in SUFFIXES:
         raise ExportError(
@@ -71,9 +71,11 @@ def check_report(path: Path) -> None:
 def write_report(
     opened: OpenedLog, path: Path, names: Sequence[str] = (), search: Search = find_plateaus
 ) -> None:
-    """Write the report of a log, replacing an existing file.
+    """Write the report on a log to a file, which may exist.
 
     Args:
+        opened: The log.
+        path: The file.
         names: Variables of chart and bands, none for those that the analyser shows first.
         search: Finds the bands, such as `find_plateaus`, or `find_plateaus_in_subprocess` for long logs.
 
@@ -96,13 +98,17 @@ def build_report(
     pins: Sequence[Pin] = (),
     goals: Table | None = None,
 ) -> str:
-    """Return the page that `write_report` writes; arguments and errors are the same.
+    """Return the page that `write_report` writes.
 
     Args:
+        opened, names, search: As for `write_report`.
         title: The title of a page that is the same for identical runs: it names no run and no date.
         movie: Whether the page has a movie of each run.
         pins: Places that are marked on the pictures.
         goals: What the run has met and missed.
+
+    Raises:
+        LogError: a recording is damaged, or there is nothing to report on.
     """
     opened, remark = _choose_rows(opened)
     if title:
@@ -141,13 +147,16 @@ def _find_bands(opened: OpenedLog, names: Sequence[str], search: Search) -> Anal
 
 
 def _choose_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
-    """Return the log of a report, and a sentence if it is the telemetry of the run."""
+    """Return the log to report on, and a sentence about it.
+
+    If the program has printed no samples, this is the telemetry of the run; else the sentence is empty.
+    """
     if opened.log.rows:
         return opened, ""
     if not opened.runs:
         raise LogError("no rows", "a report needs a log or a run", file=opened.log.title)
     *_, telemetry = LogRequest(runs=(opened.runs[0].id,), telemetry=True).open_pieces()
-    # The run as it was given: its end may be described otherwise than in the store.
+    # The run is taken from the caller: the store may describe its end in another way.
     telemetry = replace(telemetry, runs=opened.runs[:1])
     return (
         telemetry,
@@ -170,12 +179,15 @@ def _draw_world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> Picture:
 
 
 def _find_mat_name(run: StoredRun) -> str:
-    """Return the name of the mat without a path, which would tell readers of the page about its maker's machine."""
+    """Return the name of a run's mat without its folder, which would tell the page's readers about another computer."""
     return run.spec.world.background.rpartition(os.sep)[2]
 
 
 def _draw_way(run: StoredRun) -> Image:
-    """Draw mat, obstacles, pen trace, robot, and the path of the axle's midpoint; a ring marks the start."""
+    """Return a picture of a run: mat, obstacles, pen trace, robot, and the path of the axle's midpoint.
+
+    A ring marks the start of the path.
+    """
     from PIL import ImageDraw
 
     picture = draw_end(run)
@@ -195,11 +207,11 @@ def _draw_way(run: StoredRun) -> Image:
 
 
 def _draw_movie(run: StoredRun, pins: Sequence[Pin]) -> Picture | None:
-    """Return a small movie of a run with places that are marked on it; None if nothing moves."""
+    """Return a small movie of a run, on which pins are marked; None if nothing moves."""
     try:
         movie = make_small_movie(ClipRun(run))
     except LogError:
-        # The page says why where its picture of the path would be.
+        # The page shows the reason in place of the picture of the path.
         return None
     if movie is None:
         return None
@@ -309,13 +321,13 @@ Fact = tuple[str, ...]
 
 
 def list_run_facts(runs: Sequence[StoredRun]) -> list[Fact]:
-    """Return the facts of stored runs, without facts that none of them has."""
+    """Return the facts of stored runs for a report, without facts that none of the runs has."""
     rows = [(name, *(fact(run) for run in runs)) for name, fact in _FACTS.items()]
     return [row for row in rows if any(row[1:])]
 
 
 def list_log_facts(log: Log) -> list[Fact]:
-    """Return the facts of a log file, and of its runs if it is an export."""
+    """Return the facts of a log file for its report; if it is an export of runs, also those of the runs."""
     rows: list[Fact] = [
         ("file", log.title),
         (
@@ -356,7 +368,7 @@ _TRAVELLED: Mapping[str, tuple[str, ...]] = {
 
 
 def _read_path(entry: Mapping[str, Any], path: Sequence[str]) -> str:
-    """Return the value at a path as text; empty if there is none."""
+    """Return a value in nested mappings as text, given by its keys; empty if there is none."""
     node: Any = entry
     for key in path:
         node = node.get(key, "") if isinstance(node, Mapping) else ""
@@ -383,7 +395,7 @@ def _describe_noise(run: StoredRun) -> str:
 
 
 def _list_further_settings(spec: RunSpec) -> str:
-    """Return the settings that differ from the defaults, except those that are facts of their own."""
+    """Return the settings of a run that differ from the defaults, except those that the report shows as facts."""
     chosen = list_chosen_values(spec)
     return ", ".join(text for text in chosen if not text.startswith(("start.", "noise.", "seed ")))
 
@@ -412,6 +424,6 @@ _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "user actions": lambda run: str(len(run.actions)) if run.actions else "",
     "tags": lambda run: ", ".join(run.tags),
 }
-"""To add a fact: a line here."""
+"""Facts of a run by their labels. To add a fact, add a line here."""
 _CHANGING_FACTS = frozenset({"run", "made"})
 """Facts that differ between identical runs."""

@@ -37,7 +37,7 @@ _NAME = "logs"
 
 @dataclass(frozen=True, slots=True)
 class _Reading:
-    """How a file was read, with its size and time, by which a changed file is noticed."""
+    """The choices with which a file was read, with the file's size and time, which tell whether it has changed."""
 
     path: str
     size_bytes: int
@@ -46,13 +46,13 @@ class _Reading:
 
 
 def request_file(file: str, choices: ReadChoices = NO_CHOICES) -> LogRequest:
-    """Return the request for a file; without choices, it gets those that the user made for this file before."""
+    """Return the request to open a file; without choices, it has those that the user made for this file before."""
     remembered = find_choices(file) if choices == NO_CHOICES else None
     return LogRequest(file, choices=remembered or choices, is_remembered=remembered is not None)
 
 
 def find_choices(file: str) -> ReadChoices | None:
-    """Return the choices that the user made for a file; None if there are none, or the file has changed since."""
+    """Return the stored choices of how to read a file; None if there are none, or the file has changed since."""
     reading = _look_up(file)
     return next(
         (old.choices for old in _load() if replace(old, choices=NO_CHOICES) == reading), None
@@ -60,7 +60,7 @@ def find_choices(file: str) -> ReadChoices | None:
 
 
 def remember_choices(file: str, choices: ReadChoices) -> None:
-    """Store the choices for a file in place of earlier ones; the oldest files are forgotten if there are too many.
+    """Store the choices of how to read a file, in place of earlier ones; of too many files, the oldest are dropped.
 
     Raises:
         OSError: they cannot be stored.
@@ -72,12 +72,12 @@ def remember_choices(file: str, choices: ReadChoices) -> None:
 
 
 def is_readable_again(file: str) -> bool:
-    """Return whether a log is a regular file; a pipe has its rows only once, and runs are not in a file."""
+    """Return whether a log is a regular file, and can be read twice: a pipe cannot, and runs are in no file."""
     return file not in ("", STDIN) and os.path.isfile(file)
 
 
 def _look_up(file: str) -> _Reading | None:
-    """Return path, size and time of a file; None if it is not a regular one."""
+    """Return the path, size and time of a file, without choices; None if it is not a regular file."""
     try:
         status = os.stat(file) if is_readable_again(file) else None
     except OSError:
@@ -87,7 +87,7 @@ def _look_up(file: str) -> _Reading | None:
 
 
 def _load() -> list[_Reading]:
-    """Return the stored readings, the newest last; damaged ones are left out."""
+    """Return the stored choices for all files, the newest last; damaged entries are left out."""
     entries = get_preference(_NAME)
     readings = []
     for entry in entries if isinstance(entries, list) else ():
@@ -98,21 +98,21 @@ def _load() -> list[_Reading]:
 
 @dataclass(frozen=True, slots=True)
 class LogRequest:
-    """The request to open a log: that of a file, or of runs."""
+    """The request to open a log: a file, or runs of the store."""
 
     file: str = ""
-    """Path, or `-` for the standard input; empty for runs."""
+    """Path of the file, or `-` for the standard input; empty for runs."""
     runs: tuple[str, ...] = ()
-    """Numbers, ids, or `last`."""
+    """The runs: numbers, ids, or `last`."""
     telemetry: bool = False
-    """Use the telemetry of the first run instead of samples."""
+    """Whether to open the telemetry of the first run instead of samples."""
     choices: ReadChoices = NO_CHOICES
-    """How a file is to be read."""
+    """The choices of how to read a file."""
     is_remembered: bool = False
     """Whether the choices were made before, for a file that is still the same."""
 
     def mark(self, log: Log) -> Log:
-        """Return the log of this request with a note, if it was read with choices that were remembered."""
+        """Return a log with a note about the stored choices with which it was read; without any, the same log."""
         if not self.is_remembered or self.choices == NO_CHOICES:
             return log
         options = " ".join(self.choices.format_options())
@@ -120,9 +120,9 @@ class LogRequest:
         return replace(log, notes=(note, *log.notes))
 
     def open_pieces(self) -> Iterator[OpenedLog]:
-        """Open a log; yield what has been read, soon after the start and then repeatedly.
+        """Open the log, and yield the part that was read so far, soon after the start and then repeatedly.
 
-        Slow for a large file: call it in a thread.
+        This is slow for a large file: call it in a thread.
 
         Raises:
             LogError: there is no such run or file, or it cannot be read.
@@ -143,14 +143,14 @@ class LogRequest:
 
 @dataclass(frozen=True, slots=True)
 class OpenedLog:
-    """An open log, possibly not completely read yet."""
+    """An open log with its runs and its request; it may not be completely read yet."""
 
     request: LogRequest
     log: Log
     runs: tuple[StoredRun, ...] = ()
     """In the order of the log's run column; none for a file."""
     part: float = 1.0
-    """Fraction that has been read, 0 to 1; NaN if unknown."""
+    """Share of the log that has been read, 0 to 1; NaN if unknown."""
     done: bool = True
 
     def find_notes_files(self) -> tuple[Path, ...]:
@@ -165,7 +165,7 @@ class OpenedLog:
         return (find_notes_file(file),) if file.is_file() else ()
 
     def stamp(self) -> object:
-        """Return a token that changes when the source grows."""
+        """Return an object that differs from an earlier one if the source of the log has grown since."""
         if self.runs:
             return tuple(
                 (run.telemetry.count if self.request.telemetry else run.output.length)
@@ -178,7 +178,7 @@ class OpenedLog:
 
 
 NOTES_FILE = "notes.jsonl"
-"""In the folder of a run."""
+"""Name of the file with the notes in the folder of a run."""
 _HASHED_BYTES = 1 << 16
 """Bytes at the beginning of a file that identify it, also if it grows."""
 _MAX_NOTES_BYTES = 64 << 20
@@ -186,7 +186,7 @@ _MAX_NOTES_BYTES = 64 << 20
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """A note on a sample or a span."""
+    """A user's note on a sample or a time range of a log."""
 
     text: str
     start_s: float
@@ -194,16 +194,16 @@ class Note:
     stop_s: float
     """End of the span; the same as `start_s` for a sample."""
     variable: str = ""
-    """The variable; empty for none in particular."""
+    """Name of the variable; empty for none in particular."""
 
 
 def find_notes_file(path: Path) -> Path:
-    """Return where the notes on a log file are kept; there may be no file there yet.
+    """Return the path of the file with the notes on a log file; there may be no file there yet.
 
-    The place depends on the path and the first line of the log: another log at the same path has other notes.
+    It depends on the path and the first line of the log: another log at the same path has other notes.
 
     Raises:
-        LogError: the file cannot be read.
+        LogError: the log file cannot be read.
     """
     try:
         with open_regular(path, follow_links=True) as handle:
@@ -215,7 +215,7 @@ def find_notes_file(path: Path) -> Path:
 
 
 def read_notes(place: Path) -> tuple[Note, ...]:
-    """Return the notes in a file, none if there is no such file.
+    """Return the notes in a file; none if there is no such file.
 
     Raises:
         LogError: it cannot be read, or a row is not a note.
@@ -240,7 +240,7 @@ def read_notes(place: Path) -> tuple[Note, ...]:
 
 
 def write_notes(place: Path, notes: Sequence[Note]) -> None:
-    """Replace the notes in a file.
+    """Replace all notes in a file by others.
 
     Raises:
         LogError: they cannot be written; the file is unchanged.
@@ -249,7 +249,7 @@ def write_notes(place: Path, notes: Sequence[Note]) -> None:
         make_private_folder(place.parent)
         with replacing(place, owner_only=True) as handle:
             for note in notes:
-                # Halves of characters become escapes of JSON.
+                # A lone surrogate, half of a character, becomes an escape of JSON.
                 text = json.dumps(asdict(note), ensure_ascii=False).encode(
                     errors="backslashreplace"
                 )

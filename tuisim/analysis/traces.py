@@ -24,11 +24,11 @@ MAX_VISIBLE = 4
 _LIGHT = "_red"
 """Suffix of the red light columns of colour sensors."""
 _MAX_SPAN_RATIO = 5.0
-"""A variable that spans less than 1 / this of a scale is drawn on its own one."""
+"""Ratio of spans: a variable that spans less than 1 / this of a scale is drawn on its own one."""
 
 
 class LogTrace(Trace):
-    """A variable of one run, named as in `Log.names`; its number selects colour and mark."""
+    """A variable of one run of a log, named as in `Log.names`, with its number, which selects colour and mark."""
 
     def __init__(self, log: Log, name: str, number: int) -> None:
         super().__init__(name, number)
@@ -46,22 +46,22 @@ class LogTrace(Trace):
 
     @property
     def pyramid(self) -> Pyramid:
-        """The finite samples, sorted by x position."""
+        """The finite samples of the variable, sorted by their position on the x axis."""
         if self._pyramid is None:
             self._pyramid = Pyramid(self.places, self.series.values)
         return self._pyramid
 
     @property
     def places(self) -> FloatArray:
-        """The x positions of the samples, shape (n,): their times, unless runs are aligned otherwise."""
+        """The positions of the samples on the x axis, shape (n,): times in s, unless runs are aligned otherwise."""
         return self.series.time_s if self._places is None else self._places
 
     def is_derived_otherwise(self, log: Log) -> bool:
-        """Return whether a log has a derived variable of this name with other samples."""
+        """Return whether another version of the log has a derived variable with this name and other samples."""
         return self.name in log.derived and log.derived[self.name] is not self.series
 
     def is_legible(self, others: Sequence[LogTrace]) -> bool:
-        """Return whether the trace is legible on a common scale with other traces."""
+        """Return whether the trace would be no flat line on a common scale with other traces."""
         own = self._find_extremes()
         left = [other._find_extremes() for other in others if not other.scale]
         low, high = (
@@ -76,27 +76,33 @@ class LogTrace(Trace):
         return (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
 
     def align(self, places: FloatArray | None) -> None:
-        """Set the x positions of the samples; None stands for their times."""
+        """Set the positions of the samples on the x axis; None stands for their times."""
         self._places = places
         self._pyramid = None
 
     def prepare(self, x_limits: Limits, columns: int, hold: bool) -> None:
-        """Select the points to draw at this chart width."""
+        """Select the points to draw in a chart.
+
+        Args:
+            x_limits: Visible range of the x axis.
+            columns: Width of the chart.
+            hold: Whether each value is kept until the next sample, as a step line.
+        """
         times_s, values = self.pyramid.select_points(x_limits, columns)
         self._shown = sample_and_hold(times_s, values) if hold else (times_s, values)
 
     @property
     def times_s(self) -> FloatArray:
-        """Times of the points to be drawn."""
+        """Positions on the x axis of the points to draw."""
         return self._shown[0]
 
     @property
     def values(self) -> FloatArray:
-        """Values of the points to be drawn."""
+        """Values of the points to draw."""
         return self._shown[1]
 
     def find_value(self, time_s: float) -> float | None:
-        """Return the last value at or before a time, None before the first."""
+        """Return the value of the last sample at or before a position on the x axis; None before the first sample."""
         pyramid = self.pyramid
         if not len(pyramid.times_s) or time_s < pyramid.times_s[0]:
             return None
@@ -104,7 +110,7 @@ class LogTrace(Trace):
 
 
 class LogTraces(Traces):
-    """The traces of a log, in its order."""
+    """The traces of all variables of a log, in the order of the log."""
 
     def __init__(self, log: Log) -> None:
         super().__init__()
@@ -116,7 +122,7 @@ class LogTraces(Traces):
         self._show_light_columns()
 
     def set_log(self, log: Log) -> None:
-        """Switch to the same log with other derived variables; new ones become visible."""
+        """Replace the log by the same log with other derived variables; new ones become visible."""
         remaining = [
             trace
             for trace in self
@@ -134,7 +140,7 @@ class LogTraces(Traces):
         self._by_log_name = {trace.name: trace for trace in (*remaining, *new)}
 
     def _show_light_columns(self) -> None:
-        """Make only the red light columns of colour sensors visible, of the many columns of telemetry."""
+        """Show only the red light of the colour sensors, of the many columns of telemetry."""
         light = [trace for trace in self if trace.name.endswith(_LIGHT)]
         for trace in self:
             trace.on = trace in light[:MAX_VISIBLE] if light else trace.on
@@ -149,7 +155,7 @@ class LogTraces(Traces):
         return name in self._by_log_name
 
     def find_trace(self, name: str) -> LogTrace:
-        """Return the trace of a variable.
+        """Return the trace of a variable, given by its name.
 
         Raises:
             KeyError: there is none.
@@ -157,11 +163,11 @@ class LogTraces(Traces):
         return self._by_log_name[name]
 
     def list_ticked(self) -> list[LogTrace]:
-        """Return the ticked traces, also those without points."""
+        """Return the ticked traces, including those without points."""
         return [trace for trace in self if trace.on]
 
     def find_span_s(self) -> Limits:
-        """Return the first and the last time of the visible traces, widened if they are equal."""
+        """Return the first and the last time of the visible traces in s, moved apart if they are equal."""
         ends = [
             trace.pyramid.times_s[[0, -1]]
             for trace in self.list_ticked()
@@ -179,7 +185,12 @@ FORM = f"time, distance, or an event: {THRESHOLD_FORM}"
 
 
 def align_series(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | None]:
-    """Return the x positions of the samples of each series; None stands for their times. `FORM` describes `way`.
+    """Return the positions on the x axis of the samples of each series; None stands for their times.
+
+    Args:
+        log: The log.
+        series: The variables.
+        way: How runs are aligned, see `FORM`.
 
     Raises:
         LogError: `way` is invalid, or the log cannot be aligned like that.
