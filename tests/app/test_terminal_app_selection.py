@@ -15,7 +15,7 @@ class _Shown(App[None]):
         yield Static("Colour: 100")
 
 
-async def test_a_screen_without_styles_shows_no_selection() -> None:
+async def test_a_widget_of_a_removed_screen_is_drawn_without_its_selection() -> None:
     async with _Shown().run_test() as pilot:
         shown = pilot.app.query_one(Static)
         pilot.app.screen.selections = {shown: Selection(Offset(0, 0), Offset(6, 0))}

@@ -67,7 +67,7 @@ def test_an_answer_is_what_json_can_hold(answer: str, got: str, cell: Cell) -> N
     assert cell(text).out == f"PY::?\n{got}\n"
 
 
-def test_without_collaboration_the_responder_is_not_called(cell: Cell) -> None:
+def test_without_collaborative_mode_the_responder_is_not_called(cell: Cell) -> None:
     cell("roboSim.responder = lambda text: 1 / 0")
     text = "%%sim_magic -RW\nfrom ev3dev2_glue import pyState\nprint('PY::?')\nprint(pyState())"
     assert cell(text).out == "PY::?\n{'messages': []}\n"

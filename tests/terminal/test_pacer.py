@@ -159,7 +159,7 @@ def test_what_is_no_frame_is_asked_about_only_if_it_is_large() -> None:
     assert [pacer.record_painted(size) for size in (100, 30_000, 100)] == [False, True, False]
 
 
-def test_nothing_is_asked_before_anything_is_painted() -> None:
+def test_the_first_painted_frame_is_followed_by_a_query() -> None:
     pacer = Pacer(20, clock=Clock())
     pacer.drawn()
 

@@ -32,7 +32,7 @@ FoundReasons = tuple[tuple["Reason", ...], "Recording | None"]
 
 
 def look(context: ActionContext) -> None:
-    """When the run in view has ended, search for its reasons in the background, once."""
+    """If the run in view has ended, begin once to search in the background for the reasons why it went wrong."""
     recording = context.runs.timeline.recording
     tour = context.reasons
     if recording is None or context.runs.state is not RunPhase.ENDED:

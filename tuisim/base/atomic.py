@@ -100,9 +100,13 @@ def drop_unfinished() -> list[Path]:
 
 
 def sweep(folder: Path, name: str = "*") -> None:
-    """Remove the temporary files of killed processes for files of a name in a folder; `*` is a wildcard.
+    """Remove temporary files that killed processes have left in a folder.
 
     Files younger than an hour are kept: a process may still be writing them.
+
+    Args:
+        folder: The folder.
+        name: The name of the files that they were to become; may contain `*`.
     """
     # The `*` at the end includes the further files that SQLite keeps beside a temporary database.
     for beside in folder.glob(f".{name}.*{_PART_SUFFIX}*"):

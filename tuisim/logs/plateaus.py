@@ -283,8 +283,8 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
         scaled: The log in units of the noise.
         places: The positions of possible cuts.
     """
-    # The modified criterion of Zhang and Siegmund (2007) takes 3 ln n for a change of the mean; Schwarz's takes 2 ln n.
-    # Of 300 logs of 300 samples of noise alone, ln n cuts 80 %, 2 ln n 4 %, and this none.
+    # The price of one more cut: Schwarz's criterion charges 2 ln n, the modified one of Zhang and Siegmund (2007)
+    # 3 ln n. Of 300 logs of 300 samples of noise alone, a price of ln n cuts 80 %, one of 2 ln n 4 %, this one none.
     price = float(3.0 * np.log(max(len(scaled), 8)) + 2.0)
     all_sums = np.concatenate(([0.0], np.cumsum(scaled)))[places]
     all_squares = np.concatenate(([0.0], np.cumsum(scaled**2)))[places]

@@ -44,7 +44,7 @@ def test_what_a_node_needs_is_added_along_its_axis() -> None:
     assert count_min_rows(ABOVE) == PANELS["world"].min_rows + deepest
 
 
-def test_the_world_is_shown_well_in_the_shape_of_the_mat() -> None:
+def test_fair_rows_count_the_worlds_ideal_rows_for_the_width() -> None:
     assert count_fair_rows(ABOVE, 80) == compute_ideal_rows(80) + max(
         PANELS["chart"].fair_rows, PANELS["output"].fair_rows
     )

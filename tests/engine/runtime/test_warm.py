@@ -135,7 +135,7 @@ def test_a_program_cannot_change_what_a_template_is_prepared_for() -> None:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("real_mats", "home")
-def test_a_template_does_not_keep_a_damaged_mat() -> None:
+def test_a_run_is_right_after_the_cached_mat_of_its_template_was_damaged() -> None:
     text = "print(colorLeft.reflected_light_intensity_pc)"
     (seen,) = printed(text, True, "preloaded")
     files = field_files(build_run_spec(Settings({"seed": 3, "noise.light": 10})))

@@ -71,7 +71,7 @@ def test_an_empty_chart_says_how_to_log(width: int, height: int) -> None:
     assert "print('Colour: '" in "\n".join(rows)
 
 
-def test_a_chart_without_a_tick_says_so() -> None:
+def test_a_chart_without_a_ticked_trace_says_so() -> None:
     logged = traces("Colour")
     measured = traces("gyro_deg")
     for made in (logged, measured):

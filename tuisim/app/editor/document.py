@@ -243,7 +243,7 @@ class Document:
         when = time.strftime("%d %b %H:%M", time.localtime(draft.written_s))
         lines = count_differing_lines(self._text, draft.text)
         text = f"{name} was edited on {when} and not saved: {counted(lines, 'line differs', 'lines differ')}."
-        # The answers have no keys of the app, which the user may press before the question is visible.
+        # No answer has a key of the app: the user may press such a key just before the question appears.
         answers = (("r", "Restore the edited text"), ("ctrl+d", "Discard it"))
         self._app.push_screen(
             Question("Unsaved work", text, answers),

@@ -81,7 +81,7 @@ def find_matches(lines: Sequence[str], search: str) -> list[tuple[int, int]]:
 
 
 def count_differing_lines(text: str, other: str) -> int:
-    """Return the number of lines that differ between two texts."""
+    """Return how many lines a diff of two texts changes; a replaced block counts as the longer of its sides."""
     matcher = SequenceMatcher(None, source_lines(text), source_lines(other), autojunk=False)
     changes = (op for op in matcher.get_opcodes() if op[0] != "equal")
     return sum(

@@ -57,7 +57,7 @@ class AnswerList(OptionList):
         self.scroll_home(animate=False)
 
     def fit(self, size: Size) -> None:
-        """Draw the answers for another size of the list, in columns and rows."""
+        """Draw the answers for a list of another size, in columns and rows, with as many lines of each as fit."""
         columns = max(size.width - _EDGES, _MIN_COLUMNS)
         index = self.highlighted
         for lines, gap in _LINES:

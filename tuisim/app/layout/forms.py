@@ -264,7 +264,7 @@ def build_board(panels: Sequence[str], width: int, height: int) -> Node:
 
 
 def _find_strip_rows(height: int) -> int:
-    """Return the height in rows of a strip with code below the board, in an area of `height` rows."""
+    """Return the height in rows of a strip below the board that contains code or brick; the area has `height` rows."""
     return _CODE_STRIP_ROWS if height >= 3 * _STRIP_ROWS else _LOW_CODE_STRIP_ROWS
 
 

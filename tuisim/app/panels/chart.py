@@ -105,7 +105,7 @@ class Chart(LinesPanel, can_focus=True):
         self._schedule_drawing()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Draw the data up to now, and the instant in view; at most a few updates per second."""
+        """Draw the data up to now, with a cursor at the shown time if that is past; at most a few times a second."""
         grows = snapshot.state in (RunPhase.RUNNING, RunPhase.PAUSED, RunPhase.WAITING)
         state = replace(self._state, grows=grows)
         if not self._dragging:

@@ -236,7 +236,8 @@ def find_first_difference_s(
 ) -> float | None:
     """Return the time in s at which the robots were first more than 1 mm or 1 degree apart; None if they never were.
 
-    Even then, one run may have ended before the other. Arguments as of `measure_divergence`.
+    None does not mean that the runs are equal: one may have ended earlier, and only the time of both is compared.
+    Arguments as of `measure_divergence`.
     """
     times, distance, turned = _measure_apart(left, right, tick_hz)
     is_apart = (distance > PARTED_MM) | (abs(turned) > PARTED_DEG)

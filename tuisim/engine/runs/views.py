@@ -310,7 +310,7 @@ class _View(ABC):
 
 
 def _are_few_sound(part: memoryview, begin: int, end: int) -> bool:
-    """Return whether records are valid: those of the ticks from `begin` to before `end`, with plausible numbers."""
+    """Return whether records have the ticks from `begin` to before `end`, in this order, and plausible numbers."""
     doubles = part.cast("d")
     floats = part.cast("f")
     columns = [doubles[index :: TICK_RECORD.size // 8] for index in range(1, 6)]

@@ -371,8 +371,8 @@ class Session:
         if not steering.wanted:
             self.flags &= ~LIVE
         while sim.tick < target:
-            # User actions take effect right before a tick, so they must wait if a motor's change lets the program go on
-            # first.
+            # User actions take effect right before a tick. If a motor's change lets the program go on now, no tick
+            # comes next, so they wait.
             if on_change and sim.notice_change():
                 return True
             # The clock shows the last tick, but never goes back.

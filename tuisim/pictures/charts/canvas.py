@@ -155,7 +155,7 @@ def _place_points(
             times_s, values = clip_line(times_s, values, x_limits)
     across = (times_s - x_limits[0]) / (x_limits[1] - x_limits[0]) * (columns - 0.5) * parts[0]
     down = axes.measure_row(values, y_limits, rows) * parts[1]
-    # Positions far outside are clipped: they are not drawn, and a line to them needs no dots there.
+    # Positions far off the canvas are limited, so that a line to one is not drawn dot by dot all the way.
     return across.clip(-columns, 4 * columns), down.clip(-4 * rows, 8 * rows)
 
 
@@ -174,8 +174,8 @@ def _draw_braille(
     """Return the dots of a curve as bits of a braille character for each cell, shape (rows, columns)."""
     across, down = _place_points(curve, columns, rows, x_limits, y_limits, (DOTS_X, DOTS_Y))
     is_thick = curve.joined and curve.rising
-    # A line over time is two dots thick: the dot above and the one below its place.
-    # There is a margin of one character, because plotext places limits in the middle of the outermost ones.
+    # A line over time is two dots thick: the dot above and the one below its place. All dots are moved by a margin of
+    # one character: the limits are in the middle of the outermost characters of the canvas, dots can lie beyond them.
     across = np.floor(across) + DOTS_X
     down = (np.rint(down) - 1 if is_thick else np.floor(down)) + DOTS_Y
     width, height = (columns + 2) * DOTS_X, (rows + 2) * DOTS_Y

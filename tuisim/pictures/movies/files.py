@@ -83,7 +83,7 @@ class _Palette:
     def reduce(self, frame: Image) -> Image:
         """Return a frame in which each colour is replaced by one of the palette."""
         reduced = frame.quantize(palette=self._image, dither=Dither.NONE)
-        # Pillow takes colours that differ little for the same, also where one of them is in the palette.
+        # Pillow may take a similar colour even if the palette has the exact one, which is therefore looked up here.
         packed = _pack_pixels(np.asarray(frame))
         nearest = np.minimum(np.searchsorted(self._frequent, packed), len(self._frequent) - 1)
         numbers = np.where(self._frequent[nearest] == packed, nearest, np.asarray(reduced)).astype(

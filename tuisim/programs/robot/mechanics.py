@@ -328,9 +328,9 @@ class _MechanicsReader:
     # Devices
 
     def _find_known(self, node: ast.expr, scope: Scope) -> list[str]:
-        """Return the ports of the motors that an expression can be.
+        """Return the ports of the motors that an expression may stand for.
 
-        The result is empty if it is one motor after another, as in a loop.
+        The result is empty if the expression stands for several motors in turn, as the variable of a loop does.
         """
         calls = [
             value.call

@@ -125,7 +125,7 @@ class Evidence:
         else:
             self.end = run.ended
             self.ended = run.ended is not None
-            # These answers were given before the run; those that the user typed are in the rows.
+            # Only the answers given before the run: those that the user typed are among the rows of its output.
             self.answers = run.answers
         self.records: Array = run.telemetry.array()
         self.memo: dict[str, Any] = {}

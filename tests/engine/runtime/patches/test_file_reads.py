@@ -101,7 +101,7 @@ def test_what_no_path_is_raises_the_errors_of_python(run: Run, folder: Path) -> 
     assert read_reads(done.run.folder).files == ()
 
 
-def test_a_name_that_is_no_text_is_noted(run: Run, folder: Path) -> None:
+def test_a_read_of_a_file_whose_name_is_not_utf_8_is_noted(run: Run, folder: Path) -> None:
     done = run(
         "import os\nopen(os.fsencode('a\\x1b') + b'\\xff', 'w').close()\nopen('b\\udcfe') ",
         prelude="none",

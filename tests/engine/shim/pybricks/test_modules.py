@@ -64,7 +64,7 @@ def test_a_class_that_is_not_simulated_can_be_used(name: str) -> None:
         ("pybricks.experimental", "run_parallel", "multitask() and run_task()"),
     ],
 )
-def test_the_ev3_does_not_say_in_a_sentence_what_only_others_have(
+def test_a_name_that_the_ev3_lacks_is_refused_with_a_hint(
     module: str, name: str, hint: str
 ) -> None:
     with pytest.raises(ImportError, match=re.escape(f"{module}.{name}")) as error:

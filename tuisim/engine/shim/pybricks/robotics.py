@@ -145,7 +145,7 @@ class DriveBase(Connected):
     # Readings
 
     def _read(self) -> int:
-        """Let the time of a reading of both motors pass, and return the simulated time in microseconds."""
+        """Advance the simulation by the time that reading both motors takes; return the time in microseconds."""
         return self.brick.read("position", *self.port_names)
 
     def distance(self) -> int:

@@ -25,7 +25,7 @@ class Motor(motor.Motor):
         self.control.limits(max_speed, acceleration)
 
     def set_dc_settings(self, duty_limit: float, duty_offset: float) -> None:
-        """Set the highest power, and the power that the controller adds, in percent."""
+        """Set the highest power, and the feed-forward power that the controller adds to its output, in percent."""
         self.control.limits(actuation=duty_limit)
         self.control.pid(feed_forward=duty_offset)
 

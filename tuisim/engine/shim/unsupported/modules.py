@@ -292,10 +292,10 @@ class HardwareFinder:
         )
 
     def create_module(self, spec: ModuleSpec) -> types.ModuleType:
-        """Return the module for hardware that a spec describes.
+        """Return a stand-in for a module of hardware that the brick has.
 
         Raises:
-            NotSimulated: it is for another computer, such as another board; the error is also an ImportError.
+            NotSimulated: the module is for other hardware only; the error is also an ImportError.
         """
         if (top := spec.name.partition(".")[0]) in ELSEWHERE:
             raise refused_as(ImportError, *_told(spec.name, ELSEWHERE[top].told_to(self._library)))
