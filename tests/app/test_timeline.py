@@ -90,7 +90,7 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
         assert app.debugger.view is not None
         record = recording.telemetry.record(200)
         line = app.debugger.view.paused.line
-        then = record.build_instant(recording.spec, recording.spec.world.noise)
+        then = recording.instant(record, recording.spec, recording.spec.world.noise)
         expected = Snapshot(
             RunPhase.ENDED,
             End.FINISHED,

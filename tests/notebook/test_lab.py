@@ -63,8 +63,8 @@ def test_instruments_and_world_are_shown(done: Done) -> None:
         "Instrumentation\n"
         "  LeftMotor        736 counts, 420 °/s\n"
         "  RightMotor       736 counts, 420 °/s\n"
-        "  Sensor1 (left)   red 0.0 %, mean 33.3 %, rgb (0, 255, 0), Green\n"
-        "  Sensor2 (right)  red 0.0 %, mean 33.3 %, rgb (0, 255, 0), Green\n"
+        "  Sensor1 (left)   red 0.0 %, mean 33.3 %, rgb (0, 255, 0), color Green\n"
+        "  Sensor2 (right)  red 0.0 %, mean 33.3 %, rgb (0, 255, 0), color Green\n"
         "  Ultrasonic       1882 mm\n"
         "  Gyro             0°, 0 °/s\n"
         "  Clock            2.00 s",

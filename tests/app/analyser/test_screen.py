@@ -22,6 +22,7 @@ from tuisim.app.dialogs.palette import Palette
 from tuisim.base.errors import LogError
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import load_run
 from tuisim.logs.frames import read_log
 from tuisim.programs.program_file import parse_program
 from tuisim.settings.build import build_run_spec
@@ -164,12 +165,12 @@ async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun)
     async with open_analyser(runs=(run.id,), size=(80, 24)) as (pilot, screen, _):
         await pilot.press("R")
         await until(pilot, lambda: pilot.app.screen is not screen and "prog.py" in text_of(pilot))
-        await pilot.press("space", "space", "enter")
+        await pilot.press("down", "up", "space", "space", "enter")
         await until(pilot, lambda: pilot.app.screen is screen and len(screen.request.runs) == 2)
         assert screen.request.runs[0] == handle.run_id
         await typed(pilot, "R")
         await until(pilot, lambda: pilot.app.screen is not screen and "prog.py" in text_of(pilot))
-        await typed(pilot, "=last", "tab")
+        await typed(pilot, f"={load_run(handle.run_id).number}", "tab")
         pilot.app.screen.query_one(Input).focus()
         await pilot.press("enter")
         await until(pilot, lambda: screen.request.runs == (handle.run_id,))

@@ -149,7 +149,7 @@ async def test_a_new_search_replaces_the_old_one() -> None:
 @pytest.mark.slow
 async def test_escape_leaves_the_search_first() -> None:
     async with open_guide() as (pilot, screen):
-        await pilot.press("slash", "x", "y", "z", "z")
+        await pilot.press("slash", "q", "j", "x", "v", "k")
         await until_shown(pilot, "No page has these words")
         await pilot.press("escape")
         assert lab(pilot).screen is screen

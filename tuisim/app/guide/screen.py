@@ -324,7 +324,7 @@ class GuideScreen(Dialog[None]):
         """The page in view, and the section to which the user went."""
         return self._page.place
 
-    def on_resize(self, event: events.Resize) -> None:
+    def on_resize(self) -> None:
         self._arrange(self._page.has_focus)
         # The widgets may be removed by then, and a query would fail.
         answers, room = self._answers, self.query_one("#both")
