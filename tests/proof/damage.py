@@ -79,7 +79,7 @@ _TEXTS = {
     "config.toml": '[simulation]\nbackground = "Grey_bands"\nrobot = "Explorer"\n\n[app]\ntheme = "tuisim-light"\n'
     '\n[keys]\nrun = ["x", "f5"]\n',
     "breaks.json": '{"breaks": ["7", "12 if x > 3"], "watches": ["x", "y + 1"]}',
-    "draft.json": '{"path": "program.py", "text": "print(1)", "written_s": 1.5}',
+    "draft.json": '{"path": "/program.py", "text": "print(1)", "written_s": 1.5}',
     "marks.jsonl": '{"key": "a", "outcome": {"seed": 1, "end": "finished", "line": 3, "time_s": 1.5, "goals": ['
     '{"name": "house", "met": true, "reason": "", "line": 0}]}}\n' * 2,
     ACTIONS_FILE: '{"tick": 5, "kind": "set_pose", "x_mm": 100.0, "y_mm": 200.0, "heading_deg": 90.0}\n'
@@ -206,7 +206,7 @@ def _breaks() -> Path:
 
 
 def _draft() -> Path:
-    return text_file.find_program_data(text_file.FOLDER, "program.py")
+    return text_file.find_program_data(text_file.FOLDER, "/program.py")
 
 
 def _journal(path: str) -> object:
@@ -274,7 +274,7 @@ FORMATS: Mapping[str, Format] = {
         "breaks.json", _home(lambda: kept_breaks.load_kept("program.py"), _breaks), Syntax.JSON
     ),
     "draft": Format(
-        "draft.json", _home(lambda: text_file.find_draft("program.py"), _draft), Syntax.JSON
+        "draft.json", _home(lambda: text_file.find_draft("/program.py"), _draft), Syntax.JSON
     ),
     "notes": Format("notes.jsonl", _reads(lambda path: read_notes(Path(path))), Syntax.ROWS),
     "marks": Format("marks.jsonl", _reads(_journal), Syntax.ROWS),
