@@ -199,7 +199,7 @@ PLANTED: tuple[Planted, ...] = (
     Planted(
         "what cannot be copied ends the marking",
         "tasks/marks/runs.py",
-        "except Exception as error:  # Whatever it is, the others go on.\n            uncopied",
+        "except Exception as error:  # Any error concerns this run only; the others go on.\n            uncopied",
         "except ZeroDivisionError as error:\n            uncopied",
         "class",
         ("faults:1",),
@@ -208,7 +208,7 @@ PLANTED: tuple[Planted, ...] = (
     Planted(
         "what cannot be judged ends the marking",
         "tasks/marks/runs.py",
-        "except Exception as error:  # Whatever it is, the others go on.\n                outcome",
+        "except Exception as error:  # Any error concerns this run only; the others go on.\n                outcome",
         "except ZeroDivisionError as error:\n                outcome",
         "class",
         ("faults:12",),
