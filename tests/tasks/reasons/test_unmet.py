@@ -138,6 +138,11 @@ for side in range(3):
 """
 
 
+def test_a_turn_to_a_constant_that_the_text_does_not_show_has_no_reason_and_no_error() -> None:
+    text = "class Turn:\n    ANGLE = 90\n" + SQUARE.replace("< 90", "< Turn.ANGLE")
+    assert find_stale_angle(run_text(text)) is None
+
+
 def test_a_turn_that_ends_at_once_names_the_gyro_that_nobody_reset() -> None:
     stale = find_stale_angle(run_text(SQUARE))
     assert stale is not None and stale.line == 5

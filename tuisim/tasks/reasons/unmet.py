@@ -276,7 +276,9 @@ class _Search:
         lines = self._records["line"]
         for loop in self._loops:
             series = self._measure(loop, (0, len(self._records)))
-            if series is None or not series.device.startswith("the gyro") or series.column != "deg":
+            if series is None or series.column != "deg" or isinstance(loop.limit, str):
+                continue
+            if not series.device.startswith("the gyro"):
                 continue
             left = np.cumsum((lines < loop.first_line) | (lines > loop.last_line))[series.ticks]
             begins = np.flatnonzero(np.diff(left)) + 1
