@@ -107,7 +107,8 @@ class Lab:
         self.reset()
 
     def __repr__(self) -> str:
-        world, robot = self._spec.world, self._spec.robot.name
+        world = self._spec.world
+        robot = self._spec.robot.name
         is_own = robot in ROBOTS and extract_settings(self._spec)["robot"] != robot
         own = " of own values" if is_own else ""
         boxes = f" with {counted(n, 'box', 'boxes')}" if (n := len(world.obstacles)) else ""

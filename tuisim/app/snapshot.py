@@ -47,7 +47,7 @@ AT_REST = frozenset({RunPhase.PAUSED, RunPhase.ENDED})
 GOOD_ENDS: frozenset[RunState | None] = frozenset({End.FINISHED, End.STOPPED})
 """Ways to end a run that are no failure."""
 
-TURNING = ", last speeds"
+LAST_SPEEDS = ", last speeds"
 """Follows the state where `Snapshot.ends_turning`."""
 
 _DARK = BrickState()

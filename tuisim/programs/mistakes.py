@@ -29,7 +29,9 @@ def find_fault(text: str) -> tuple[str, int] | None:
 def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
     """Yield for each kind of slip, such as a stop without `()`, the first line with it and a description."""
     for find_slip in (
-        *(_find_uncalled_method, _find_equal_branches, _find_idle_comparison),
+        _find_uncalled_method,
+        _find_equal_branches,
+        _find_idle_comparison,
         _find_short_wait,
     ):
         if slip := find_slip(tree):

@@ -220,7 +220,7 @@ def test_a_motor_shows_the_angle_and_the_speed_that_its_program_reads() -> None:
     assert "L -1234  -525°/s" in cells and "D    45   -10°/s" in cells
 
 
-def test_the_state_says_that_the_motors_turned_in_the_last_tick() -> None:
+def test_the_state_says_that_speeds_are_those_of_the_last_tick() -> None:
     end = moment(state=RunPhase.ENDED, end=End.FINISHED)
     still = replace(end.instant, left_speed_dps=0.0, right_speed_dps=0.0)
     words = "State finished, last speeds"

@@ -106,7 +106,12 @@ class RunWorld:
         self, instant: Instant, field: Field | None, line: int, pen_down: bool
     ) -> Snapshot:
         return Snapshot(
-            *(RunPhase.ENDED, None, self.spec, field, instant, line),
+            RunPhase.ENDED,
+            None,
+            self.spec,
+            field,
+            instant,
+            line,
             speed=1.0,
             pen_down=pen_down,
             program=self.program,

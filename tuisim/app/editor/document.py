@@ -128,7 +128,8 @@ class Document:
                 text, form = read_text(Path(program.path))
             except ConfigError:
                 # The file is new, or missing or invalid by now: show what was read of it.
-                text, form = "", TextFormat()
+                text = ""
+                form = TextFormat()
             if self._parse_text(text) == program.text:
                 self._text = text
                 self._form = form

@@ -30,10 +30,10 @@ def describe_blank_mat(run: StoredRun) -> str:
     """
     world = run.spec.world
     is_blank = world.background == EMPTY_MAT and not world.pen_marks
+    if not is_blank or run.end is None or run.end.end not in (End.FINISHED, End.RAISED):
+        return ""
     last = run.telemetry.last()
     if last is None or last.pose == world.start:
-        return ""
-    if not is_blank or run.end is None or run.end.end not in (End.FINISHED, End.RAISED):
         return ""
     rows = read_readings(run.folder).find(MODES_BY_KIND["color"])
     if len(rows) < _MIN_READINGS:
