@@ -95,8 +95,8 @@ MAX_ID_GAP = 32
 FILE_LOCKS = 10
 """Number of a limit that every process inherits on Linux, and that is unused since 2.4.25."""
 
-STACK_WRITTEN_WITHIN_S = 0.05
-STACK_AWAITED_S = 0.1
+STACK_WRITTEN_WITHIN_S = 0.5
+STACK_AWAITED_S = 1.0
 LOOK_AGAIN_S = 0.003
 """Time for a stuck child to write its stack; the same with its waits for a processor; interval of checks."""
 
