@@ -26,6 +26,13 @@ def test_a_label_that_another_one_would_cover_stands_below() -> None:
     assert _labels(*pins) == [(False, ["1"]), (True, ["2"]), (False, ["3"])]
 
 
+def test_a_place_outside_the_picture_is_marked_at_its_edge_with_its_distance() -> None:
+    view = build_world_view(RobotSpec())
+    (ring,) = place_pins([Pin("1", 12362, 500, False, "missed")], view)
+    assert ring.x_px + 7 == view.width_px
+    assert ring.pins[0].text == "missed\nrobot off the mat: 10000 mm to the right"
+
+
 def test_places_that_are_one_share_a_ring() -> None:
     pins = [Pin("1", 900, 500, True, ""), Pin("2", 902, 501, False, "")]
     assert _labels(*pins) == [(False, ["1", "2"])]

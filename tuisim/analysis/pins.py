@@ -5,9 +5,12 @@ from __future__ import annotations
 import base64
 import io
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
+from tuisim.engine.core.geometry import Pose
+from tuisim.pictures.scene.off_field import describe_off_field
 from tuisim.pictures.scene.view import Viewport
 
 if TYPE_CHECKING:
@@ -107,6 +110,21 @@ def encode_data(kind: str, content: bytes) -> str:
     return f"data:image/{kind};base64,{base64.b64encode(content).decode()}"
 
 
+def clamp_to_picture(view: Viewport, x_mm: float, y_mm: float) -> tuple[float, float, str]:
+    """Return where a place is marked on a picture: column and row in pixels, and in words how far off the mat it is.
+
+    A place that the picture does not show is marked at its edge; for others there are no words.
+    """
+    at_px = view.to_px(x_mm, y_mm)
+    sizes_px = view.width_px, view.height_px
+    col, row = (
+        min(max(px, _RING_PX), size_px - _RING_PX)
+        for px, size_px in zip(at_px, sizes_px, strict=True)
+    )
+    words = describe_off_field(Pose(x_mm, y_mm, 0.0)) if (col, row) != at_px else ""
+    return col, row, words
+
+
 def place_pins(pins: Sequence[Pin], view: Viewport) -> tuple[Ring, ...]:
     """Return rings around pins on a picture of the world; their labels do not overlap if there is room.
 
@@ -116,7 +134,8 @@ def place_pins(pins: Sequence[Pin], view: Viewport) -> tuple[Ring, ...]:
     """
     places: list[tuple[float, float, list[Pin]]] = []
     for pin in pins:
-        x, y = view.to_px(pin.x_mm, pin.y_mm)
+        x, y, away = clamp_to_picture(view, pin.x_mm, pin.y_mm)
+        pin = replace(pin, text=f"{pin.text}\n{away}") if away else pin
         near = next(
             (
                 place

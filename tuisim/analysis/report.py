@@ -45,6 +45,10 @@ MAX_BANDS = 100
 MAX_STATISTICS = 1000
 """Maximum number of rows of the table of statistics: a program may print a variable for each row."""
 _WIDTH_PX = 960
+_STRAY = "A stray is a sample far from its band; level and spread leave it out."
+_TRUE_LEVEL = (
+    "The true level is the level that the band would have if noise could pass 0 and 100 %."
+)
 _WAY = (230, 90, 0)
 _HALO = (255, 255, 255)
 
@@ -268,7 +272,8 @@ def _build_band_table(model: AnalysisModel) -> Mapping[str, Any]:
         ]
         for band in bands[:MAX_BANDS]
     ]
-    if any(report.has_true_levels for report, _ in pairs):
+    has_true_levels = any(report.has_true_levels for report, _ in pairs)
+    if has_true_levels:
         heads.append("true level")
         for row, band in zip(rows, bands[:MAX_BANDS], strict=True):
             row.append(f"{band.true_level:.2f}")
@@ -276,6 +281,10 @@ def _build_band_table(model: AnalysisModel) -> Mapping[str, Any]:
         "words": [words for report, words in pairs if report.bands],
         "table": Table(heads, rows, numbers=2),
         "more": len(bands) - len(rows),
+        "glossary": [
+            *([_STRAY] if any(band.strays for band in bands[:MAX_BANDS]) else []),
+            *([_TRUE_LEVEL] if has_true_levels else []),
+        ],
     }
 
 

@@ -141,7 +141,7 @@ def read_run_values(spec: RunSpec) -> dict[str, Scalar]:
 def list_chosen_values(spec: RunSpec) -> list[str]:
     """Return the values of a run that differ from their defaults, as texts such as `walls false`."""
     return [
-        f"{path} {quote(value)}"
+        f"{path} {value if isinstance(value, str) else quote(value)}"
         for path, value in read_run_values(spec).items()
         if value != toml_form(RUN_VALUES[path].value, RUN_VALUES[path].default)
     ]

@@ -157,7 +157,7 @@ def records_at(*places: tuple[float, float]) -> np.ndarray:
 def test_a_picture_shows_how_far_a_robot_has_left_the_field() -> None:
     on_floor = replace(SPEC, world=replace(SPEC.world, floor=True, walls=False))
     records = records_at((900.0, 480.0), (5362.0, 480.0), (900.0, -700.0), (nan, 0.0))
-    area = find_area(on_floor, records)
+    area = find_area(records)
     assert area == Area(0.0, -700.0, 5362.0, FIELD_HEIGHT_MM)
     away = Pose(5362.0, -700.0, 0.0)
     view = find_view(on_floor, area)
@@ -169,8 +169,9 @@ def test_a_picture_shows_how_far_a_robot_has_left_the_field() -> None:
     assert (np.asarray(picture)[row - 3 : row + 4, col - 9 : col] == COLORED.body).all(2).any()
 
 
-def test_without_a_floor_a_picture_shows_the_field() -> None:
-    assert find_area(SPEC, records_at((5362.0, 480.0))) == FIELD
+def test_a_robot_that_has_gone_very_far_does_not_make_the_field_tiny() -> None:
+    far = find_area(records_at((1e9, 480.0)))
+    assert FIELD.right < far.right < 4 * FIELD.right
 
 
 def test_a_damaged_record_has_no_pose() -> None:

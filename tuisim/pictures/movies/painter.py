@@ -94,7 +94,7 @@ def find_frame_view(
         size: Width and height in pixels; None for the size that fits the panels.
     """
     robot = recorded.run.spec.robot
-    area = find_area(recorded.run.spec, recorded.telemetry)
+    area = find_area(recorded.telemetry)
     size = size or _fit_size(panels, robot, area)
     room = _place_boxes(panels, size, len(robot.color_sensors))[ClipPanel.WORLD]
     fitted = fit_view(robot, room.width, room.height, area)
@@ -127,7 +127,7 @@ class FramePainter:
         run = recorded.run
         self._recorded = recorded
         self._panels = panels
-        area = find_area(run.spec, recorded.telemetry)
+        area = find_area(recorded.telemetry)
         self.size = size or _fit_size(panels, run.spec.robot, area)
         boxes = self._boxes = _place_boxes(panels, self.size, len(run.spec.robot.color_sensors))
         if ClipPanel.WORLD in boxes:

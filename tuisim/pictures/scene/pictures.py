@@ -15,7 +15,7 @@ from tuisim.engine.core.sensors.touch import pressed
 from tuisim.engine.core.sensors.ultrasonic import measure_rays_mm
 from tuisim.engine.core.spec import PenSpec, RobotSpec, RunSpec
 from tuisim.pictures.scene.painter import FRAME_PX, ScenePainter, SceneState
-from tuisim.pictures.scene.pen import FAR_MM, PenTrace, Piece, build_pen_trace
+from tuisim.pictures.scene.pen import PenTrace, Piece, build_pen_trace
 from tuisim.pictures.scene.robot import measure_reach_mm
 from tuisim.pictures.scene.view import FIELD, Area, Viewport, fit_field
 from tuisim.terminal.pixels import Pixels
@@ -29,24 +29,26 @@ if TYPE_CHECKING:
 
 MM_PER_PX = 3
 """Scale of the picture of a run."""
+_MAX_OFF_MM = 2 * FIELD.size_mm[0]
+"""What is farther from the field is not shown: the field would be too small."""
 
 RIM_RGB: Rgb = (232, 234, 238)
 """Colour around the field."""
 
 
-def find_area(spec: RunSpec, records: NDArray[Any]) -> Area:
+def find_area(records: NDArray[Any]) -> Area:
     """Return the area that a picture of a run shows: the field, extended to where the robot has been.
 
-    If the field has no floor around it, it is only the field.
+    It ends `_MAX_OFF_MM` beyond the field.
 
     Args:
-        spec: The run.
         records: Telemetry, structured as `TICK_FIELDS`.
     """
-    if not spec.world.is_open or not len(records):
+    if not len(records):
         return FIELD
     xs_mm, ys_mm = (
-        np.clip(np.nan_to_num(records[key]), -FAR_MM, FAR_MM) for key in ("x_mm", "y_mm")
+        np.clip(np.nan_to_num(records[key]), -_MAX_OFF_MM, side_mm + _MAX_OFF_MM)
+        for key, side_mm in zip(("x_mm", "y_mm"), FIELD.size_mm, strict=True)
     )
     return Area(
         min(FIELD.left, float(xs_mm.min())),
@@ -80,7 +82,7 @@ def find_view(spec: RunSpec, area: Area = FIELD) -> Viewport:
 
 def find_end_view(run: StoredRun) -> Viewport:
     """Return the view of the picture that `draw_end` makes."""
-    return find_view(run.spec, find_area(run.spec, run.telemetry.array()))
+    return find_view(run.spec, find_area(run.telemetry.array()))
 
 
 def fit_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD) -> Viewport:
@@ -179,7 +181,7 @@ def draw_end(run: StoredRun) -> Image:
     records = run.telemetry.array()
     mat = run.find_mat_files().read_pixels()
     trace = build_pen_trace(run.spec, records)
-    return draw_world(run.spec, mat, read_pose(last), (trace,), area=find_area(run.spec, records))
+    return draw_world(run.spec, mat, read_pose(last), (trace,), area=find_area(records))
 
 
 _PATH = PenSpec(color="red", width_mm=12.0)
@@ -200,7 +202,7 @@ def draw_path(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
     mat = run.find_mat_files().read_pixels()
     has_floor = run.spec.world.is_open
     painter = ScenePainter(mat, outside_rgb, trace, has_floor=has_floor)
-    area = find_area(run.spec, records)
+    area = find_area(records)
     if area != FIELD:
         port = fit_field(port.width_px, port.height_px, port.cell, area)
     return painter.paint(port, build_scene(run.spec, None))

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from tuisim.analysis.pins import Dot, Picture, encode_picture
+from tuisim.analysis.pins import Dot, Picture, clamp_to_picture, encode_picture
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import LogError, listed
+from tuisim.base.errors import LogError, counted, listed
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.pictures.scene.pictures import build_world_view, draw_world
 from tuisim.pictures.scene.view import Viewport
 
 _DOT_PX = 5.0
-_GRID_MM = 4.0
+_GRID_PX = 1.3
 """Places that are nearer to each other share a dot."""
 
 
@@ -67,7 +67,8 @@ def _build_map(runs: Sequence[MissesOfRun]) -> Picture | None:
     students = {miss.student for miss in misses}
     view = build_world_view(first.spec.robot)
     return Picture(
-        f"Where goals were missed: {len(misses)} places of {len(students)} students; each dot says whose it is",
+        f"Where goals were missed, {counted(len(misses), 'time')} by {counted(len(students), 'student')}: each dot "
+        "says whose it is; a dot at the edge may be farther off the mat, and says how far",
         encode_picture(picture),
         picture.size,
         view,
@@ -78,12 +79,14 @@ def _build_map(runs: Sequence[MissesOfRun]) -> Picture | None:
 def _place_dots(view: Viewport, misses: Sequence[Miss]) -> tuple[Dot, ...]:
     places: dict[tuple[str, int, int], list[Miss]] = {}
     for miss in misses:
-        key = (miss.goal, round(miss.x_mm / _GRID_MM), round(miss.y_mm / _GRID_MM))
+        x_px, y_px, _ = clamp_to_picture(view, miss.x_mm, miss.y_mm)
+        key = (miss.goal, round(x_px / _GRID_PX), round(y_px / _GRID_PX))
         places.setdefault(key, []).append(miss)
     dots = []
     for same in places.values():
         first = same[0]
-        x_px, y_px = view.to_px(first.x_mm, first.y_mm)
-        text = f"{first.goal}: {listed([miss.student for miss in same])}\n{first.reason}"
+        x_px, y_px, away = clamp_to_picture(view, first.x_mm, first.y_mm)
+        head = f"{first.goal}: {listed([miss.student for miss in same])}"
+        text = "\n".join(filter(None, (head, first.reason, away)))
         dots.append(Dot(x_px, y_px, _DOT_PX * len(same) ** 0.33, first.goal, text))
     return tuple(dots)
