@@ -148,7 +148,7 @@ class ActionHost(DOMNode):
     """The actions by id."""
 
     def take_keys(self, actions: Mapping[str, Action[Any, Any]]) -> None:
-        """Replace the table of actions by one with the same actions, and bind the keys that differ."""
+        """Use another table of actions, in which only keys differ: bind the new keys instead of the old ones."""
         changed = [
             action for name, action in actions.items() if action.key != self.ACTIONS[name].key
         ]
@@ -230,7 +230,10 @@ CLICKED_KEYS: tuple[KeyWord, ...] = (("letters", "edit"), ("esc", "keys"), ("^p"
 
 
 def find_panel_keys(focused: DOMNode | None) -> tuple[KeyWord, ...]:
-    """Return the `FOOTER_KEYS` of the focused widget, or of the nearest widget around it that has some; or none."""
+    """Return the `FOOTER_KEYS` of the focused widget, or of the nearest widget around it that has `FOOTER_KEYS`.
+
+    The tuple is empty if no widget has them, or no widget has the focus.
+    """
     around = focused.ancestors_with_self if focused else ()
     return next((node.FOOTER_KEYS for node in around if hasattr(node, "FOOTER_KEYS")), ())
 
@@ -250,12 +253,12 @@ def find_max_entries(columns: int) -> int:
 def fit_actions(
     actions: Sequence[Action[Any, Any]], width: int, max_count: int
 ) -> list[Action[Any, Any]]:
-    """Return the actions for which a footer has room, grouped, with help and quit at the end.
+    """Return the actions for which a footer has room: actions of the same group side by side, help and quit at the end.
 
     Args:
         actions: The available actions, the most useful first.
         width: Width of the footer in cells.
-        max_count: Most entries.
+        max_count: The largest number of actions to return; help and quit are returned in any case.
     """
     always = [action for action in actions if action.id in _ALWAYS]
     left = width - sum(map(_measure_action, always))
@@ -340,7 +343,10 @@ class KeyFooter(ActionWords):
 
     @on(events.Click)
     async def press_key_of_field(self, event: events.Click) -> None:
-        """If a word for a key of the focused text field was clicked, press that key, which a phone may lack."""
+        """Press a key of the focused text field if the user has clicked the key's word in the footer; else do nothing.
+
+        A phone may lack this key.
+        """
         if not self._of_dialog and (label := _find_key(event.x, self._typing)):
             # The click must not reach the app, which would move the focus from the field to the world.
             event.stop()

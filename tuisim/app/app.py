@@ -538,7 +538,10 @@ class LabApp(PanelMessages):
         self.pacer.record_interruption()
 
     def handle_situation_change(self) -> None:
-        """Update the footer; when the run has stopped, draw the panels with it, so that both change together."""
+        """Update the footer after the state of the app has changed.
+
+        If the run has just stopped, draw the panels together with the footer.
+        """
         self._wake()
         state = self.state()
         has_stopped = state.run.state in AT_REST and self._drawn[0][0] not in (
@@ -642,9 +645,9 @@ class LabApp(PanelMessages):
     # The following methods handle what the user does.
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Return whether a key runs an action of the app.
+        """Return whether a key runs an action of the app; if not, the focused widget gets the key.
 
-        The keys that scroll the lesson or the code go to the focused widget if they would scroll neither.
+        The keys that scroll the lesson or the code run no action while neither of them can be scrolled.
         """
         if action == "act" and parameters[0] in PAGES:
             return accept_page_keys(self.panel_area)

@@ -95,7 +95,10 @@ class Branch:
 
 
 def find_first_difference(before: Recording, now: Recording, tick: int) -> int | None:
-    """Return the first tick up to `tick` at which the worlds of two runs differ, or only one run goes on; or None."""
+    """Return the first tick up to `tick` at which the worlds of two runs differ; None if they do not differ.
+
+    If one run has ended before, it is the first tick that this run lacks.
+    """
     old, new = (run.telemetry.array()[: tick + 1] for run in (before, now))
     both = min(len(old), len(new))
     differs = np.zeros(both, bool)

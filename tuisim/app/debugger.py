@@ -199,7 +199,7 @@ class DebugController:
     # The following methods handle messages of the run.
 
     def run_changed(self) -> None:
-        """Reset the debugger, because another run is in view, or none any more."""
+        """Reset the debugger after the app has switched to another run, or to none."""
         self._app.notices.release()
         self._paused = self.position = self.view = self._run_controller.paused_line = None
         self._run_controller.chosen_line = None
@@ -218,7 +218,7 @@ class DebugController:
         self.show()
 
     def handle_end(self) -> None:
-        """Handle the end of the run, which is no longer paused; a past instant stays in view."""
+        """Handle the end of the run: the debugger shows no pause any more, unless a past instant is in view."""
         self._paused = None
         if not self.is_away:
             self._forget_steps()
@@ -358,9 +358,9 @@ class DebugController:
         return self._panel_area.is_shown("debug") or (is_own and self._panel_area.is_shown("code"))
 
     def choose_line(self, tick: int, line: int) -> None:
-        """Choose the line to show at the tick that is shown next, such as the line that printed a sample; 0 for none.
+        """Choose the line to show at a tick, such as the line that printed a sample; 0 for none.
 
-        It stays the line of this tick until another tick, or another line of it, comes into view.
+        The line stays highlighted until another tick, or another line of the same tick, comes into view.
         """
         self._run_controller.chosen_line = (tick, line) if line else None
         self.position = self._wanted = None
@@ -423,7 +423,10 @@ class DebugController:
         self._take_step()
 
     def _is_past(self, at: Position) -> bool:
-        """Return whether a position is before the newest one of the run; a re-run may get farther than that."""
+        """Return whether a position is before the newest position of the run.
+
+        A re-run of the program may compute positions that the run has not reached.
+        """
         now = self._paused
         if now is None or now.ordinal == UNKNOWN_ORDINAL:
             return at.tick <= (self._run_controller.timeline.newest if now is None else now.tick)
@@ -488,8 +491,7 @@ class DebugController:
     def go_on(self, command: Message) -> None:
         """Send a command that continues the program until it pauses again; without a run, start the program first.
 
-        While an earlier step has not ended, the command waits for it. If the past is in view, the step is a recorded
-        one.
+        The command waits until an earlier step has ended. If a past instant is in view, it steps to a recorded line.
         """
         if self.is_away:
             self._step_past(command)
@@ -568,7 +570,7 @@ def _mark(one: Breakpoint) -> str:
 
 
 def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
-    """Return the breakpoints that are on lines, by line; of several on a line, an enabled one."""
+    """Return the breakpoints that are on lines, by line; if a line has several, an enabled one is preferred."""
     by_line: dict[int, Breakpoint] = {}
     for point in sorted(breaks, key=lambda point: not point.disabled):
         line = point.find_line()

@@ -37,7 +37,7 @@ def find_run_before(later: Recording) -> Recording | None:
 
 
 def find_similar_run(program: Program, spec: RunSpec) -> StoredRun | None:
-    """Return the newest stored run of a program file; None if there is none, or its text or specification differs."""
+    """Return the newest stored run of a program file, if it had the same text and specification; else None."""
     with suppress(LogError):
         run = next(_load_runs(program, ""), None)
         if run and run.program.text == program.text and run.spec == spec:

@@ -54,7 +54,7 @@ def _list_parts(words: str) -> str | None:
 
 
 def fit_words(words: str, width: int) -> str:
-    """Return the longest wording of an error with at most `width` letters, else the part that helps most."""
+    """Return the longest wording of an error with at most `width` letters; if all are longer, the shortest one, cut."""
     wordings = list(_list_wordings(words))
     return next(
         (wording for wording in wordings if len(wording) <= width), cut(wordings[-1], width)
@@ -64,7 +64,8 @@ def fit_words(words: str, width: int) -> str:
 def find_remedy(words: str) -> str:
     """Return what the user can do in the app about an error, with ids of actions in braces.
 
-    An error about a mistyped name already says the right name.
+    For parts that the robot lacks, it is the choice of another robot; for any other error, it is the key that goes to
+    the error.
     """
     if (parts := _list_parts(words)) is None:
         return "{went-wrong} goes there"

@@ -96,7 +96,7 @@ class Feed:
     def chart_series(self, mat: Field) -> Series:
         """Return the telemetry of the ticks since the last call, as times in s and values by column.
 
-        Of many ticks it returns only the first ones, and not every one.
+        If there are many such ticks, a call returns only the first of them, and thins them out.
 
         Args:
             mat: The mat that the sensors read.
@@ -201,7 +201,7 @@ class PanelFeed:
 
     Args:
         panel_area: The panels.
-        runs: Has the run in view, and the instant of it.
+        runs: Has the run in view, and the instant in view.
     """
 
     def __init__(self, panel_area: PanelArea, runs: RunController) -> None:
@@ -268,7 +268,7 @@ class PanelFeed:
     def _send_telemetry(self, feed: Feed) -> None:
         """Pass telemetry on to the chart as often as the chart is drawn.
 
-        Much waiting telemetry, or that of a run that does not go on, is passed on without a delay.
+        There is no delay if much telemetry waits, or the run is not running.
         """
         now_s = time.monotonic()
         is_soon = now_s < self._charted_s + CHART_PERIOD_S and not feed.is_far_behind

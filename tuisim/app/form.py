@@ -282,7 +282,7 @@ class Slider(_Control):
         return min(max(value, 0), self.maximum)
 
     def on_key(self, event: events.Key) -> None:
-        """Set the number that the user types digit by digit; enter, another key or the loss of the focus ends it."""
+        """Set the number to the digits that the user types one after another; any other key ends the number."""
         if event.character and event.character.isdecimal() and event.character.isascii():
             event.stop()
             event.prevent_default()

@@ -483,7 +483,7 @@ class Loader:
         self._open_source(build_program(text, None, name))
 
     def _apply_program(self, source: ProgramSource) -> None:
-        """Apply a changed text of the open program, with changes in its magic line and in the robot that it needs."""
+        """Apply the changed text of the open program, with its changed settings and the robot that it now needs."""
         new, magic = _split_source(source)
         program = self._run_controller.program
         as_said = (
@@ -551,7 +551,10 @@ def _split_source(source: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
 def _plan_in_world(
     source: ProgramSource | None, magic: Mapping[str, Any], world: Mapping[str, Any]
 ) -> tuple[NextRun, Decided]:
-    """Return the plan of a program in a world, without earlier choices, and what the text of the program decides."""
+    """Return the plan of a program in a world, and the settings that the text of the program decides.
+
+    The user's choices for earlier runs have no effect on the plan.
+    """
     free = find_free_paths(merge_settings(magic, world))
     plan = plans.apply_choices(
         plans.apply_choices(plans.build_plan(Settings(), free), magic), world

@@ -177,7 +177,7 @@ class PanelArea(Container):
         return beside and panel != self.front and self._can_focus(panel)
 
     def open(self, panel: str) -> None:
-        """Show a panel in this session; the next start does not show it because of this."""
+        """Show a panel in this session only: it is not stored for the next start."""
         if self.is_single:
             self.front = panel
             self.lay_out()
@@ -280,7 +280,7 @@ class PanelArea(Container):
         }
 
     def request(self, panels: Mapping[str, bool | None]) -> None:
-        """Show and hide panels, and show a notice of what does not fit or had to go.
+        """Show and hide panels, and show a notice about panels that have no room or were hidden to make room.
 
         Args:
             panels: Panels by id: True shows one, False hides it, None leaves that to the size of the terminal. Panels

@@ -59,7 +59,7 @@ class PlotView(LinesView):
     """A widget with lines of text and charts; a chart has pixels if the terminal can show them, else characters.
 
     Args:
-        redraw: Draws all lines again, with pixels or characters as `graphics` says then.
+        redraw: Draws all lines again, with pixels if `graphics` is not None, else with characters.
     """
 
     def __init__(self, redraw: Callable[[], None]) -> None:

@@ -282,7 +282,10 @@ class RunController:
         return instant, line, down
 
     def _find_pressed(self, record: TickRecord | None) -> frozenset[str]:
-        """Return the buttons that the user holds down, else those of a record; in the past, only the latter."""
+        """Return the buttons that the user holds down; without any, or in the past, those of a record.
+
+        The set is empty if no instant of a run is in view.
+        """
         recording = self.timeline.recording
         if record is None or recording is None or not self._is_of_run:
             return frozenset()
@@ -299,7 +302,10 @@ class RunController:
         )
 
     def find_mat(self, spec: RunSpec) -> Field | None:
-        """Return the mat of the next run or of the run in view, whichever is prepared for a specification; or None."""
+        """Return the mat that is prepared for a specification: that of the next run or that of the run in view.
+
+        The result is None if neither is.
+        """
         recording = self.timeline.recording
         mats = (self.mat, self._mat_of_run)
         if recording and self.mat and self.mat.serves(recording.spec):
@@ -337,7 +343,7 @@ class RunController:
         self._show_run(start_run(program, self.next_run.spec, options))
 
     def prepare_next(self) -> None:
-        """Start a process for the next run in advance, so that it begins sooner; in another world it is of no use."""
+        """Start a process for the next run in advance, so that the run begins sooner; it serves only the same world."""
         if self.run:
             self.run.prepare_next()
 

@@ -311,7 +311,7 @@ class TerminalApp(BufferedApp):
 
     @on(ActionAsked)
     def act_as_asked(self, event: ActionAsked) -> None:
-        """Run the action of a button of the web page, also while the user types; not above an open dialog."""
+        """Run the action of a button of the web page, also while the user types; a dialog must be closed first."""
         host = self.screen if isinstance(self.screen, ActionHost) else self
         if isinstance(self.screen, Dialog):
             self.notify("A dialog is open: escape closes it", markup=False)

@@ -413,7 +413,9 @@ def _read_printed_names(recording: Recording) -> list[str]:
 
 
 def _find_change(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
-    """Return the nearest tick at which a column begins to meet a condition, or of a printed sample that meets it.
+    """Return the nearest tick, in the direction of a search, at which a condition becomes true.
+
+    For the name of a printed sample, it is the tick of the nearest sample that meets the condition.
 
     Raises:
         ConfigError: there is none, or no such name.
@@ -453,10 +455,10 @@ def _find_printed(search: _Search, condition: ValueCondition) -> int:
 
 
 def find_begins(condition: ValueCondition, true: Array) -> Array:
-    """Return the ticks at which a condition becomes true, in order.
+    """Return the ticks at which a condition becomes true, in order; for a momentary condition, all at which it is true.
 
     Args:
-        condition: The condition; of a momentary one, every tick at which it is true.
+        condition: The condition.
         true: Whether it is true, for each tick.
     """
     import numpy as np

@@ -41,7 +41,7 @@ def enlarge(context: ActionContext) -> None:
 
 
 def undo(context: ActionContext) -> None:
-    """Undo the last change that can be undone."""
+    """Undo the last change by the user that can be undone; if there is none, do nothing."""
     if take_back := context.app.undo:
         context.app.offer_undo(None)
         take_back()
@@ -90,7 +90,10 @@ def keep_layout(context: ActionContext) -> None:
 
 
 def focus_next_panel(context: ActionContext, by: int) -> None:
-    """Focus the panel that is `by` panels after the focused one; an area with room for one panel shows it instead."""
+    """Move the focus to the panel that is `by` panels after the focused one.
+
+    In an area with room for one panel, that panel is also shown in place of the present one.
+    """
     if panel := context.panels.show_next_panel(by):
         context.app.handle_situation_change()
         context.app.call_after_refresh(context.panels.focus_opened, panel)

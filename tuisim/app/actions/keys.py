@@ -704,7 +704,7 @@ TEXT_KEYS = frozenset({"lesson-back", "lesson-on"})
 def list_footer_actions(
     table: Mapping[str, LabAction], names: Iterable[str], now: Situation, playing: bool
 ) -> list[LabAction]:
-    """Return actions with the words that the footer shows for them now; that of the pause key depends on the run.
+    """Return actions with the words that the footer shows for them now; the word of the pause key depends on the run.
 
     Keys of lessons that do nothing in the current step are left out, and so is `run` while a program is paused.
 

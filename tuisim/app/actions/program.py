@@ -17,7 +17,7 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 0.0)
 
 
 def run(context: ActionContext) -> None:
-    """Start the program, or restart it if it is paused; in the past, ask whether to branch there or to restart."""
+    """Start the program, or restart a paused one; if a past instant is in view, ask whether to branch or restart."""
     if context.runs.in_past:
         propose_branch(context, None, restart=True)
     elif context.runs.state is RunPhase.PAUSED:

@@ -28,7 +28,7 @@ def switch_pen(context: ActionContext) -> None:
 
 
 def home(context: ActionContext) -> None:
-    """Put the robot at the start pose, that of the mat or of the command line."""
+    """Put the robot at its start pose, which the mat or the command line defines."""
     _move(context, context.runs.home)
 
 

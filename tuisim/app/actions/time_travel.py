@@ -68,7 +68,8 @@ def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -
     Args:
         context: The parts of the app.
         time_s: Simulated time in s; None for the newest instant.
-        sample: Name of a sample printed at that time, to whose line in the program to go as well; empty for none.
+        sample: Name of a sample printed at that time: the line of the program that printed it is highlighted; empty for
+            none.
     """
     tick = None if time_s is None else round(time_s * context.runs.timeline.tick_hz)
     recording = context.runs.timeline.recording
@@ -95,9 +96,9 @@ def skip_ticks(context: ActionContext, ticks: int) -> None:
 
 
 def step_tick(context: ActionContext) -> None:
-    """Go forward one tick: to the next recorded one in the past, else by simulating one.
+    """Go forward one tick: if a past tick is in view, show the next recorded one; else simulate one.
 
-    From an earlier line of the newest tick, go to the newest instant instead.
+    If an earlier line of the newest tick is in view, go to the newest instant instead.
     """
     if context.runs.in_past:
         skip_ticks(context, 1)
@@ -189,10 +190,10 @@ def go_to_sample(context: ActionContext, words: str) -> None:
 
 
 def go_wrong(context: ActionContext) -> None:
-    """Go to the first reason why the run went wrong; each further press goes to the next one, the last to the end.
+    """Go to the first reason why the run went wrong; each further press goes to the next reason, and then to the end.
 
-    A running program is paused; its reasons are those of the run so far. If the text in the editor cannot run, that is
-    the reason.
+    A running program is paused; its reasons are those of the run so far. If the text in the editor cannot run, show the
+    mistake in that text instead.
     """
     timeline = context.runs.timeline
     recording = timeline.recording
@@ -268,7 +269,7 @@ def propose_branch(
 
     Args:
         context: The parts of the app.
-        then: A change by the user at that instant, such as another pose; None for none but perhaps an edited program.
+        then: The action with which the user changes the branch at that instant, such as another pose; None without one.
         restart: Whether the dialog also offers to run the program from its start.
     """
     from tuisim.app.dialogs.question import BRANCH, RESTART, BranchQuestion

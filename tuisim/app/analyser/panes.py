@@ -250,7 +250,7 @@ PANES: Mapping[str, Pane] = {
 
 
 def build_frame(name: str, model: AnalysisModel) -> pd.DataFrame:
-    """Return the rows of a pane as a data frame, the bands with all their properties; not for the table."""
+    """Return the rows of any pane but the table as a data frame; for the bands, it has all their properties."""
     import pandas as pd
 
     if name == "bands":
@@ -336,7 +336,7 @@ def _build_continuation(
 ) -> list[Line]:
     """Return the columns that do not fit as a second table below the first one, which repeats the first column.
 
-    It is empty if there are no rows left for it.
+    The list is empty if that table is too high or too wide.
     """
     columns_below = [0, *columns]
     wide = [widths[index] for index in columns_below]
@@ -380,7 +380,10 @@ def _split_below(
 
 
 def describe_place(name: str, model: AnalysisModel, chosen: int, width: int, height: int) -> str:
-    """Return in words the number of the selected row, of a pane other than the table; empty if all rows are visible."""
+    """Return the number of the selected row of a pane in words, such as `row 3 of 20`; empty if all rows are visible.
+
+    The pane must not be the table.
+    """
     count = len(PANES[name].rows(model))
     fits = count <= _split_below(PANES[name], model, width, height)[1]
     return "" if fits else f"↑↓ row {chosen + 1:,} of {count:,}"
@@ -422,7 +425,7 @@ def _build_rows(
 def _fit_columns(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
     """Return the columns that fit into a width, at least the first one.
 
-    A column with wide texts may be the last of them, and is cut.
+    The last of them may be a column with wide texts that fits only in part: its texts are cut.
     """
     left = width
     seen: list[int] = []
@@ -443,10 +446,7 @@ def _build_row(texts: Sequence[str], widths: Sequence[int], gap: int, style: Sty
 
 
 def _wrap_texts(texts: Sequence[str], width: int, max_lines: int) -> list[str]:
-    """Return texts wrapped to a width, at most `max_lines` lines; a text that is cut ends in an ellipsis.
-
-    Only the visible part of each text is wrapped.
-    """
+    """Return texts wrapped to a width, at most `max_lines` lines; a text that is cut ends in an ellipsis."""
     wide = max(width, 10)
     seen = (text[: (max_lines + 1) * wide] for text in texts)
     lines = [line for text in seen for line in wrap(text, wide, subsequent_indent="  ")]

@@ -52,8 +52,8 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     Args:
         request: The log to open.
-        beside: A widget for the right edge, such as the lesson that the log is for. Where there is little room, it
-            takes the place of the world until the key of the world is pressed.
+        beside: A widget for the right edge, such as the lesson that the log is for. In a narrow terminal, it is shown
+            in place of the world until the user presses the key of the world.
     """
 
     DEFAULT_CSS = f"""
@@ -302,7 +302,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     # Selection
 
     def choose(self, number: int) -> None:
-        """Select a row of the pane, which is not the table, and move the cursor to the time of that row."""
+        """Select a row of the pane and move the cursor to the time of that row; the pane must not be the table."""
         model = self.model
         name = self.pane.name_shown
         count = len(PANES[name].rows(model))

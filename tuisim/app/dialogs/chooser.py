@@ -532,6 +532,6 @@ class _MatPicture(PixelView):
 
 
 def find_field_view(view: PixelView) -> Viewport:
-    """Return the viewport in which a widget shows the whole field with its smallest points, such as pixels."""
+    """Return the viewport in which a widget shows the whole field, with the finest dots that the terminal can draw."""
     cell = view.choose_cell(view.graphics)
     return fit_field(cell.cols * view.size.width, cell.rows * view.size.height, cell)

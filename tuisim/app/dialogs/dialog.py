@@ -209,7 +209,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
             yield from self.compose_content()
 
     def on_resize(self) -> None:
-        """Show as many hints as fit in the frame; those in the middle go first, as the footer shows the keys, too."""
+        """Show as many hints as fit in the frame; if not all fit, those before the last are left out first."""
         frame = self.query_one(".dialog")
         hints = self.HINT.split(_BETWEEN)
         while len(_BETWEEN.join(hints)) > frame.region.width - _HINT_EDGES and len(hints) > 2:
@@ -242,7 +242,10 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
         ]
 
     async def on_click(self, event: Click) -> None:
-        """If a word for a key was clicked in the footer below the dialog, press that key, which a phone may lack."""
+        """Press a key of the dialog if the user has clicked the key's word in the footer below the dialog.
+
+        A phone may lack this key.
+        """
         keys = {
             _shorten_label(key): key
             for binding in self._collect_bindings()

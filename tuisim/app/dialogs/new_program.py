@@ -18,7 +18,7 @@ from tuisim.programs.program_file import replace_mat
 
 
 class Skeleton(StrEnum):
-    """The text with which a new program begins."""
+    """What a new program contains at first, such as a loop that logs a sensor; `EMPTY` is a program without a loop."""
 
     LOG = "log"
     UNTIL = "until"
@@ -197,7 +197,7 @@ class NewProgramDialog(Dialog[str]):
     """The dialog with the mats, sensors and skeletons of a new program; it returns the text of the program.
 
     Args:
-        mats: The mats that can be chosen: titles by the word that names one in a magic line.
+        mats: The titles of the mats to choose from, by the word for the mat in a magic line.
         current: The word of the current mat, which is selected at first.
     """
 

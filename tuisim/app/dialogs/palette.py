@@ -61,11 +61,11 @@ class Entry(NamedTuple):
 def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
     """Return the entries that contain every word of a text; an unknown word is replaced by the most similar known one.
 
-    The small words of a question are left out.
+    Small words of a question, such as `how`, are ignored.
 
-    They are ranked by where the words are: the start of the title, or of what it shows or hides; the starts of words of
-    the title; anywhere in title or group; among the further words. Of equals, entries that show or hide something come
-    first.
+    The first entries are those whose title, or what follows "Show or hide" in it, starts with the text. Then come those
+    with each word at the start of a word of the title, then those with all words in title and group, then those with
+    all words among their further words. Among equals, entries that show or hide something are first.
     """
     typed_words = typed.lower().rstrip("?").split()
     words = [word for word in typed_words if word not in _QUESTION_WORDS] or typed_words

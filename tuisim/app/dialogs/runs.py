@@ -306,7 +306,7 @@ class RunsChooser(RunChooser):
         """Ids of the marked runs, in the order in which they were marked."""
 
     def on_descendant_focus(self) -> None:
-        """Show in the frame which key marks runs: in the text field, space separates words instead."""
+        """Show in the frame the keys that mark runs: while the text field has the focus, they are `↓`, then space."""
         marks = "space" if self._receives_key("space") else "↓, then space"
         self.HINT = f"Enter opens · {marks} marks several · type to search · Escape closes"
         Dialog.on_resize(self)
@@ -358,7 +358,7 @@ class Differences(Dialog[bool]):
         first: Name of the first run.
         second: Name of the other one.
         diff: The differences.
-        samples: Whether the caller can go to a sample that differs, if no tick does.
+        samples: Whether the user may also go to the first sample that differs, if no tick differs.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", "Go there", show=False)]

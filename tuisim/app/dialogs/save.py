@@ -132,7 +132,7 @@ class SaveDialog(FileDialog):
     Args:
         what: The subject, such as `robot`.
         proposed: Initial text of the field.
-        save: Writes the file completely or not at all, or begins to; raises TuisimError.
+        save: Writes the file completely or not at all, or starts to write it in the background; raises TuisimError.
         suffixes: What the name may end in, in words; empty for the `SUFFIXES` of the class.
         check: Raises a TuisimError for a file that cannot be written.
         forms: Suffixes, and what they mean.

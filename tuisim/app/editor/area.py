@@ -66,7 +66,7 @@ EDITOR_KEYS = (
 
 
 class EditorCommand(StrEnum):
-    """A command of a key in the text that the code panel carries out, not the text itself."""
+    """A command of a key that was pressed in the text, such as opening a file; the code panel carries it out."""
 
     TYPE = "type"
     STOP_TYPING = "stop_typing"
@@ -209,7 +209,7 @@ class CodeArea(TextArea):
         return True
 
     def scroll_cursor_visible(self, center: bool = False, animate: bool = False) -> Offset:
-        """Scroll to the cursor, and as far left as the cursor stays visible; see `TextArea`."""
+        """Scroll to the cursor; if the line fits up to the cursor, scroll to the start of the lines."""
         scrolled = super().scroll_cursor_visible(center, animate)
         x = self.wrapped_document.location_to_offset(self.cursor_location).x
         if x + _CURSOR_COLS + self.gutter_width <= self.scrollable_content_region.width:
@@ -457,7 +457,10 @@ class CodeArea(TextArea):
             self._consume_event(event)
 
     def _begin_typing(self, event: events.Key) -> None:
-        """Start typing on enter; after a click also on a letter, which is typed. Escape ends typing."""
+        """Start typing on enter, or on a letter after a click on the text; that letter is typed.
+
+        After a click, escape makes letters keys of the app again.
+        """
         is_letter = self.awaits_letters and event.is_printable
         if event.key == "enter" or is_letter:
             self._consume_event(event)

@@ -34,7 +34,7 @@ _HELP_GROUND = Style(bgcolor=design.RAISED)
 
 
 def list_lines(candidates: Sequence[Candidate], chosen: int, width: int) -> list[Line]:
-    """Return the rows of a list of names, `width` cells wide: those around the chosen one, and the help for that."""
+    """Return the rows of a list of names, `width` cells wide: the names around the chosen one, and its help."""
     room = min(MAX_ROWS, len(candidates))
     first = find_first_row(chosen, len(candidates), room)
     lines: list[Line] = []
@@ -204,10 +204,10 @@ class CandidateList(Widget):
         )
 
     def takes_key(self, event: events.Key) -> bool:
-        """Return whether the list handles a key, and not the text.
+        """Return whether the list handles a key; if not, the text gets the key.
 
-        Enter goes to the text, and begins a line, if it was pressed before the list was visible, or after a whole name
-        in a list that opened by itself.
+        Enter begins a new line in the text if it was pressed before the list was visible. It also does after a whole
+        name, if the list has opened by itself.
         """
         is_whole = self.is_offered and self._has_whole_name(self._word)
         ends_line = event.key == "enter" and (is_whole or event.time < self._opened_s)

@@ -188,7 +188,9 @@ def find_signature(text: str, path: str, row: int, column: int) -> Signature | N
 
 
 def find_members(text: str, path: str, row: int, column: int) -> frozenset[str] | None:
-    """Return the names of all attributes of the object before a dot, which is of a library; None if not all are known.
+    """Return the names of all attributes of the object before a dot.
+
+    The result is None if the object is not of a library, or may have attributes that Jedi does not know.
 
     Args:
         text, path: As for `find_candidates`.

@@ -105,7 +105,7 @@ class Document:
             output.note(f"— {words}")
 
     def show_program(self) -> None:
-        """Show the next program to run in the code panel; another one, or a changed text, is loaded."""
+        """Show the program of the next run in the code panel; load its text if the panel shows another text."""
         program = self._run_controller.program
         if program is not self._program:
             same = program is not None and self._program is not None and program.path == self._path
@@ -157,7 +157,7 @@ class Document:
             return None
 
     def show(self) -> None:
-        """Show the text and its state in the code panel."""
+        """Show the text, the name of its program, unsaved changes and an error in the code panel."""
         if code := self._panel_area.code:
             code.set_program(self._name, self._text, self._path or self._name)
             code.set_title(self._name, self.dirty)

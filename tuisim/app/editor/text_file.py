@@ -37,7 +37,7 @@ class TextFormat:
 
 
 def read_text(path: Path) -> tuple[str, TextFormat]:
-    """Return a program's text with `\n` as line ends, and its format.
+    """Return a program's text with newlines as line ends, and its format.
 
     Raises:
         ConfigError: the file cannot be read, or is not Python text.

@@ -161,7 +161,7 @@ class _Page(VerticalScroll):
 
     Args:
         keys: The page with every key.
-        topic: What is shown first.
+        topic: The page that is shown first.
     """
 
     def __init__(self, keys: KeyPage, topic: Topic) -> None:
@@ -232,7 +232,7 @@ class GuideScreen(Dialog[None]):
 
     Args:
         keys: The page with every key.
-        topic: What is shown first.
+        topic: The page that is shown first.
     """
 
     TITLE_TEXT = "Guide"
@@ -338,7 +338,7 @@ class GuideScreen(Dialog[None]):
         self._arrange(event.widget is self._page)
 
     def _arrange(self, reading: bool) -> None:
-        """Show the answers of a search, or the contents, or the page; beside a page, the contents if there is room.
+        """Show the answers of a search, or the page; without a search, the contents are also shown if there is room.
 
         Args:
             reading: Whether the user reads a page.

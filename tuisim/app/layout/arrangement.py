@@ -330,7 +330,9 @@ def stack_panels(upper: str, lower: str, width: int, height: int) -> PanelLayout
 def arrange_beside_world(
     panel: str, panels: Sequence[str], width: int, height: int
 ) -> PanelLayout | None:
-    """Return boxes with a panel beside the world, and as many others below the world as fit; None if it does not fit.
+    """Return boxes with a panel beside the world, and as many other panels below the world as fit.
+
+    The result is None if the screen is too narrow, the world is hidden, or a lesson is shown.
 
     Args:
         panel: The one that gets most of the width.
@@ -366,7 +368,7 @@ def make_room(
 ) -> list[str]:
     """Return the panels to show so that one panel gets a minimum size.
 
-    They are all panels, or if it is too small with these, all but those beside it, or it alone.
+    First all panels are tried, then the panel with those in other areas of the screen, then the panel alone.
 
     Args:
         panel: The one that needs room.

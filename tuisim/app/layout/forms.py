@@ -162,7 +162,10 @@ def _build_output_stack(width: int) -> Node:
 
 
 def _find_strip_shares(stacks: Sequence[Node], width: int) -> list[float]:
-    """Return the shares of a strip's width that leave enough to a chart beside code; none for the usual shares."""
+    """Return the widths of the columns of a strip as shares, so that a chart beside code is wide enough.
+
+    The list is empty if the usual widths suffice, or other panels are in the strip.
+    """
     if not {"chart", "code"}.issubset(stacks) or not {"chart", "code", "output"}.issuperset(stacks):
         return []
     columns = {"chart": _CHART_COLS, "output": PANELS["output"].min_cols}
@@ -235,7 +238,7 @@ _MAX_EMPTY_ROWS = 3
 def build_board(panels: Sequence[str], width: int, height: int) -> Node:
     """Return a node with the world and the readings side by side, above a strip with the chart.
 
-    If there is no room for that, or another set of panels, return that of `build_wide`.
+    If there is no room for that, or the set of panels is not one of a board, return the node of `build_wide`.
     """
     side = select_panels(panels, PanelPlace.SIDE)
     main = select_panels(panels, PanelPlace.MAIN)
@@ -264,12 +267,12 @@ def build_board(panels: Sequence[str], width: int, height: int) -> Node:
 
 
 def _find_strip_rows(height: int) -> int:
-    """Return the height in rows of a strip below the board that contains code or brick; the area has `height` rows."""
+    """Return the height in rows of a strip with code or brick, which is below the world in an area of `height` rows."""
     return _CODE_STRIP_ROWS if height >= 3 * _STRIP_ROWS else _LOW_CODE_STRIP_ROWS
 
 
 def _build_board_strip(roomy: Sequence[str], has_output: bool, height: int) -> Node:
-    """Return a node with the chart and the output side by side; beside other panels, they are stacked."""
+    """Return a node with the chart and the output: side by side, or stacked to the right of code and brick."""
     if not roomy:
         parts = ["chart", "output"] if has_output else ["chart"]
         return join_nodes(Axis.COLUMNS, parts, shares=(_CHART_SHARE, 1 - _CHART_SHARE))
@@ -396,7 +399,7 @@ def build_low(panels: Sequence[str], width: int, height: int) -> Node:
 
 
 def _find_roomy_rows(roomy: Sequence[str], beside: Sequence[str], height: int) -> int:
-    """Return the rows for the panels in the whole width, below the world and the panels beside that."""
+    """Return the rows of the panels that have the whole width; above them are the world and the panels beside it."""
     fair = max(_sum_fair_rows(roomy), height // 2)
     return max(fair - _MAX_YIELDED_ROWS, min(fair, height - sum(_list_read_rows(beside))))
 

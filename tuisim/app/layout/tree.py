@@ -64,7 +64,7 @@ class PanelLayout:
     """Panels that get rows first, the most wanted first; the world is before them."""
 
     def rank(self, node: Node) -> int:
-        """Return the rank of a node when rows are divided: lower ranks get theirs first; -1 is the world."""
+        """Return the rank of a node: nodes with lower ranks get their rows first. The rank is -1 with the world."""
         panels = list_panels(node)
         ranks = [self.wanted.index(panel) for panel in panels if panel in self.wanted]
         return -1 if "world" in panels else min(ranks, default=len(self.wanted))
@@ -91,7 +91,7 @@ def join_nodes(axis: Axis, parts: Sequence[Node], shares: Sequence[float] = ()) 
     Args:
         axis: The direction.
         parts: The nodes.
-        shares: Their shares of the extent; none for the usual ones.
+        shares: The share of the width or height for each node; empty for the usual shares.
     """
     if len(parts) == 1:
         return parts[0]

@@ -88,7 +88,7 @@ class Chart(LinesPanel, can_focus=True):
         """Add points to a trace, which is made if it does not exist.
 
         Args:
-            name: A logged NAME, or the name of a column of telemetry, which is off at first.
+            name: A logged NAME, or the name of a column of telemetry, whose trace is hidden at first.
             times_s: Simulated times.
             values: The values at these times.
             logged: Whether the program has printed them.
@@ -149,7 +149,7 @@ class Chart(LinesPanel, can_focus=True):
         )
 
     def _find_bands(self) -> None:
-        """Find the bands of the chosen trace; if that has fewer than two, those of the first trace with several.
+        """Find the bands of the chosen trace; if it has fewer than two, those of another trace with at least two.
 
         While the run goes on, there are no bands.
         """
@@ -323,9 +323,10 @@ class Chart(LinesPanel, can_focus=True):
         self._dragging = False
 
     def _find_sample(self, time_s: float, picture: ChartPicture) -> tuple[float, str]:
-        """Return the time and the name of the sample at a time, or of the one nearest to it in its band.
+        """Return the time and the name of the sample at a time.
 
-        If there is neither, return the time itself and an empty name.
+        On a band, it is the band's sample that is nearest to the time. If there is no sample, return the time itself
+        and an empty name.
         """
         span = next((span for span in self._state.spans if span.start <= time_s <= span.stop), None)
         of_span = (

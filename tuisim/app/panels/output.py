@@ -298,7 +298,7 @@ class Log(Widget, can_focus=True):
 
     @property
     def _all(self) -> int:
-        """Return the number of lines to scroll through; the first may only count rows that are not stored any more."""
+        """Return the number of lines to scroll through; one line may stand for older rows that are no longer stored."""
         return len(self._lines) + (1 if self._count > len(self._rows) else 0)
 
     def _find_line(self, index: int) -> Line:

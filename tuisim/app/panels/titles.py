@@ -24,7 +24,7 @@ def build_title(app: App[Any], panel: str, name: str = "") -> str:
     """Return the title of a panel as markup.
 
     Args:
-        app: Decides about the key in the title.
+        app: The app, whose action for the panel has the key that the title shows.
         panel: Id of the panel.
         name: Name of the panel's content, shown behind the title; empty for none.
     """

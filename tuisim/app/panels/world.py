@@ -141,7 +141,7 @@ class World(Widget, can_focus=True):
             self._say()
 
     def _say_below(self) -> None:
-        """Show in the lower border what the mouse does, where a robot off the field is, or what other robots are."""
+        """Show in the lower border what the mouse does, or how far the robot is off the field, or the other robots."""
         words = "drag to draw or move an obstacle" if self._edits_boxes else ""
         if (now := self._snapshot) is not None and not words:
             room = self.size.width - _FRAME

@@ -102,9 +102,10 @@ _MIN_ROWS = 4
 
 
 def find_asked_lines(now: Snapshot, before: frozenset[int]) -> frozenset[int]:
-    """Return the lines of the program whose thresholds are compared again and again at an instant; before a run, all.
+    """Return the lines of the program whose thresholds it compares again and again at an instant.
 
-    While a function runs, the loop that has called it continues; the text does not say which loop that is.
+    Before a run, these are all lines with thresholds. While a function runs, the loop that has called it continues: its
+    lines are taken from `before`, since the text does not tell which loop that is.
 
     Args:
         now: The instant.
@@ -133,7 +134,7 @@ def build_face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool)
         face: What the sensor sees.
         width: Columns.
         rows: Most lines.
-        has_limits: Whether there is a line for thresholds, those of any sensor.
+        has_limits: Whether to include a line for thresholds, because at least one sensor has some.
     """
     lines = [_build_value_line(face, width), _scale_line(face, width)]
     lines += [[(cut(face.limit_words(width), width), _LIMIT)]] if has_limits else []
@@ -177,7 +178,7 @@ def _scale_line(face: DiscFace, width: int) -> Line:
 
 
 def _ring_lines(face: DiscFace, width: int) -> list[Line]:
-    """Return the mean values of the rings of a sensor's area with their label, in two lines if one is too short."""
+    """Return the mean value of each ring of a sensor's area, behind a label; if one line is too short, below it."""
     values: Line = [
         part
         for word in face.ring_words

@@ -78,7 +78,10 @@ class GoalsPicture:
 
 
 def find_current_goal(states: tuple[GoalState, ...]) -> int:
-    """Return the index of the goal whose details are shown by default: the first missed one, else the first open."""
+    """Return the index of the goal whose details are shown by default.
+
+    It is the first missed goal; without one, the first open goal; if all are met, the first of all.
+    """
     for state in (GoalState.MISSED, GoalState.OPEN):
         if state in states:
             return states.index(state)

@@ -31,10 +31,10 @@ Corners = Sequence[tuple[float, float]]
 
 
 def choose_random_pose(spec: RunSpec, chance: random.Random) -> Pose | None:
-    """Return a random pose in whole mm and degrees at which the whole robot is on the field.
+    """Return a random pose in whole mm and degrees at which the robot is on the field and touches no solid obstacle.
 
     Args:
-        spec: Robot and world; the robot touches no solid obstacle.
+        spec: Robot and world.
         chance: The random number generator.
 
     Returns:

@@ -64,7 +64,7 @@ def switch(screen: LogScreen, option: str) -> None:
 
 
 def align(screen: LogScreen) -> None:
-    """Ask by what runs are aligned in the chart, such as time or distance, and draw it again."""
+    """Ask what the runs in the chart are aligned by, such as time or distance, and draw the chart again."""
 
     def go(text: str) -> None:
         screen.model.align(text or TIME)

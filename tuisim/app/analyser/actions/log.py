@@ -119,7 +119,10 @@ def note(screen: LogScreen) -> None:
 
 
 def _mark_time_s(model: AnalysisModel) -> float:
-    """Return the time in s, in its run, of the sample nearest to the second cursor; without one, that at the cursor."""
+    """Return the time in s of the sample nearest to the second cursor, counted from the start of its run.
+
+    Without a second cursor, return the time of the sample at the first one.
+    """
     trace = model.trace_of_row(model.row)
     if model.mark_s is None or not len(trace.pyramid.times_s):
         return model.find_time_s(model.row)

@@ -86,7 +86,7 @@ def choose(screen: LogScreen, step: int) -> None:
 
 
 def sort(screen: LogScreen) -> None:
-    """Sort the table by the selected column: ascending, at the next call descending, then no longer."""
+    """Sort the table by the selected column: ascending first, descending at the next call, unsorted at the third."""
     model = screen.model
     rows = screen.model.rows
     if rows.view.sorted_by != rows.chosen:
