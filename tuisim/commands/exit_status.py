@@ -104,7 +104,13 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
 
 def describe_last_state(facts: dict[str, Any]) -> str:
     """Return the status line of a run, given the result of `describe`."""
-    what = describe_state(facts["state"], facts["summary"])
+    # The error itself is told by its traceback.
+    line = f" in line {facts['error_line']}" if facts["error_line"] else ""
+    what = (
+        f"{facts['state']}{line}"
+        if facts["state"] == End.RAISED and facts["error"]
+        else describe_state(facts["state"], facts["summary"])
+    )
     pose = Pose(facts["x_mm"], facts["y_mm"], facts["heading_deg"])
     stood = f"{Standstill(**facts['standstill']).words} · " if facts["standstill"] else ""
     pushed = f"{Push(**facts['push']).words} · " if facts["push"] else ""
@@ -117,10 +123,15 @@ def describe_last_state(facts: dict[str, Any]) -> str:
     )
 
 
+def has_shown_error(run: StoredRun) -> bool:
+    """Return whether a run's output contains error texts, which end with the traceback of the error that ended it."""
+    return any(row.stream == Stream.STDERR for row in run.output.rows())
+
+
 def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
     """Print the end of a run: traceback and status line on stderr, or JSON on stdout."""
     facts = describe(run)
-    if facts["error"] and not any(row.stream == Stream.STDERR for row in run.output.rows()):
+    if facts["error"] and not has_shown_error(run):
         echo_error_lines(facts["error"].rstrip("\n"))
     if facts["error"].rstrip("\n").endswith(NO_ANSWER):
         echo_error(

@@ -26,7 +26,7 @@ from tuisim.commands.echo import (
     size,
     tell,
 )
-from tuisim.commands.exit_status import describe, describe_last_state
+from tuisim.commands.exit_status import describe, describe_last_state, has_shown_error
 from tuisim.commands.movies import movie, picture
 from tuisim.commands.rerun import list_changed_files, rerun, same
 from tuisim.engine.core.drift import describe_errors
@@ -209,7 +209,7 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
         echo(
             f"{row.time_ns / 1e9:10.3f} s  {'! ' if row.stream == Stream.STDERR else ''}{row.format_line()}"
         )
-    if facts["error"]:
+    if facts["error"] and not has_shown_error(run):
         echo_lines(facts["error"].rstrip("\n"))
 
 

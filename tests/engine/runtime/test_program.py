@@ -86,7 +86,7 @@ def test_end_of_a_program(run: Run, text: str, end: str, exit_code: int) -> None
 HINTS = {
     "say": "into its first line.",
     "tank_drive": "or make it: `tank_drive = MoveTank(OUTPUT_B, OUTPUT_C)`",
-    "SpeedPercent": "or `from ev3dev2.motor import SpeedPercent`",
+    "SpeedPercent": "into its first line.",
     "sensor_val": "",
 }
 
@@ -95,7 +95,7 @@ HINTS = {
 def test_a_name_of_the_prelude_that_is_missing_names_the_prelude(
     run: Run, name: str, how: str
 ) -> None:
-    done = run(f"import ev3dev2\nprint('A: 1')\n{name}\n", prelude="none")
+    done = run(f"print('A: 1')\n{name}\n", prelude="none")
     told = done.errors[-1]
     if name == "sensor_val":
         assert told == "NameError: name 'sensor_val' is not defined"
@@ -103,6 +103,20 @@ def test_a_name_of_the_prelude_that_is_missing_names_the_prelude(
     assert told.startswith(f"`{name}` is a predefined name")
     assert "put `# %%sim_magic_preloaded` into its first line" in told
     assert how in told
+
+
+IMPORTED = {
+    "SpeedPercent": "Did you forget `from ev3dev2.motor import SpeedPercent`?",
+    "tank_drive": "To use `tank_drive`, make it: `tank_drive = MoveTank(OUTPUT_B, OUTPUT_C)`.",
+}
+
+
+@pytest.mark.parametrize("name, how", IMPORTED.items(), ids=IMPORTED)
+def test_a_program_with_imports_is_not_told_to_use_predefined_names(
+    run: Run, name: str, how: str
+) -> None:
+    done = run(f"from ev3dev2.motor import MoveTank\n{name}\n", prelude="none")
+    assert done.errors[-1].endswith(how)
 
 
 def test_error_shows_the_programs_lines_only(run: Run) -> None:

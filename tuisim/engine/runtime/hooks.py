@@ -66,7 +66,7 @@ class ErrorHooks:
     def report(self, error: BaseException, alone: bool = False) -> ErrorReport:
         """Return the report of an error, with notes that may help; `alone` as of `report_error`."""
         if not alone:
-            add_prelude_note(error)
+            add_prelude_note(error, self._source())
             add_namesake_note(error, self._session.program_file)
             point_at_package(error, os.path.dirname(self._session.program_file) or os.curdir)
             point_at_gamepads(error)

@@ -4,6 +4,7 @@ from __future__ import annotations
 import __future__
 
 import ast
+import re
 import types
 from collections.abc import Iterator
 from typing import Any, NoReturn
@@ -146,21 +147,30 @@ def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:
                 yield "", code
 
 
-def add_prelude_note(error: BaseException) -> None:
-    """Add a note to an error about a predefined name that the program has not enabled: how it can get that name."""
+_IMPORT = re.compile(r"^\s*(?:from|import)\s+ev3dev2\b", re.MULTILINE)
+
+
+def add_prelude_note(error: BaseException, text: str) -> None:
+    """Add a note to an error about a predefined name that the program has not enabled: how it can get that name.
+
+    The error's own message names the missing import.
+
+    Args:
+        error: The error.
+        text: The program: one that imports the library makes its parts itself.
+    """
     if not isinstance(error, NameError) or not error.name:
         return
     statement = _find_statement(error.name)
     if statement is None:
         return
+    make = f"make it: `{ast.unparse(statement)}`" if isinstance(statement, ast.Assign) else ""
+    if _IMPORT.search(text) and not isinstance(statement, ast.FunctionDef):
+        if make:
+            error.add_note(f"To use `{error.name}`, {make}.")
+        return
     magic = "put `# %%sim_magic_preloaded` into its first line"
-    match statement:
-        case ast.ImportFrom(module=str(module)):
-            how = f", or `from {module} import {error.name}`"
-        case ast.Assign():
-            how = f", or make it: `{ast.unparse(statement)}`"
-        case _:
-            how = ""
+    how = f", or {make}" if make else ""
     error.add_note(
         f"`{error.name}` is a predefined name, which this program has not enabled: {magic}{how}."
     )
