@@ -61,7 +61,10 @@ BAD = {
         "run rows.csv",
         "rows.csv: is a log, not a program (`tuisim analyse rows.csv` opens it)",
     ),
-    "a log in the app": ("rows.csv", "rows.csv: is a log, not a program"),
+    "a log in the app": (
+        "rows.csv",
+        "the analyser needs a terminal (without one, use `tuisim log`)",
+    ),
     "an option that is gone": (
         "doctor --clean",
         "no such option: --clean (tuisim removes the files of killed processes when it runs again)",

@@ -142,13 +142,20 @@ def _check_open_files() -> None:
 
 
 class _Root(Group):
-    """The command `tuisim`: a word that is no command is for `open`."""
+    """The command `tuisim`: a word that is no command is for `open`, or for `analyse` if it names a log."""
 
     def insert_command(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Return the words with `open` first, unless they begin with a command or an option of `tuisim` itself."""
+        """Return the words with `open` or, for a log, `analyse` first.
+
+        They are returned as they are if they begin with a command or an option of `tuisim` itself.
+        """
         if args and (args[0] in COMMANDS or args[0] in ("-h", "--help", "--version")):
             return args
         if args and not args[0].startswith("-") and not ctx.resilient_parsing:
+            from tuisim.programs.program_file import LOG_SUFFIXES
+
+            if Path(args[0]).suffix.lower() in LOG_SUFFIXES:
+                return ["analyse", *args]
             _check_command(args[0], args[1:])
         return [self.default, *args]
 

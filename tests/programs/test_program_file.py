@@ -10,6 +10,7 @@ from tests.cases import cases
 from tuisim.base.errors import ConfigError
 from tuisim.programs.program_file import (
     MAX_PROGRAM_BYTES,
+    describe_new_file,
     find_magic,
     find_program,
     list_programs,
@@ -58,6 +59,23 @@ def test_a_file_that_is_no_program_says_why(
         read_program(path)
     if name == "bytes.py":
         assert read_program(path, as_python=True).program.text == "x = '\udcff'\n"
+
+
+@pytest.mark.parametrize(
+    "name, notice",
+    {
+        "square2.py": "new file square2.py; did you mean square.py?",
+        "log_gerys.py": "new file log_gerys.py; did you mean log_greys.py?",
+        "xylophone.py": "new file xylophone.py",
+    }.items(),
+)
+def test_a_new_file_names_similar_files_and_examples(
+    name: str, notice: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "square.py").touch()
+    monkeypatch.chdir(tmp_path)
+    assert describe_new_file(Path(name)) == notice
+    assert describe_new_file(tmp_path / name) == notice
 
 
 def test_a_program_may_be_in_a_file_of_text(tmp_path: Path) -> None:

@@ -492,7 +492,17 @@ def _suggest_neighbours(path: Path) -> str:
     """Return the hint for a missing file: similar names in its folder, else similar examples, else how to list them."""
     close = close_beside(path, (".py",))
     if not close and path.parent == Path():
-        # A word without a folder may also be meant as an example's name, without a suffix.
-        stems = [file.path.stem for file in list_programs()]
-        close = [f"{stem}{path.suffix}" for stem in closest(path.stem, stems)]
+        close = _find_near_examples(path)
     return did_you_mean(close) or "see `tuisim programs` for examples"
+
+
+def _find_near_examples(path: Path) -> list[str]:
+    # A word may be meant as an example's name, without a suffix.
+    stems = [file.path.stem for file in list_programs()]
+    return [f"{stem}{path.suffix}" for stem in closest(path.stem, stems)]
+
+
+def describe_new_file(path: Path) -> str:
+    """Return a notice that a program's file will be new, and which names of files or examples are similar."""
+    hint = did_you_mean((close_beside(path, (".py",)) or _find_near_examples(path))[:2])
+    return f"new file {path.name}" + (f"; {hint}" if hint else "")

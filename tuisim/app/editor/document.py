@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -20,7 +21,7 @@ from tuisim.app.editor.text_file import (
 from tuisim.app.editor.text_lines import LineMap, count_differing_lines
 from tuisim.base.errors import ConfigError, TuisimError, counted
 from tuisim.base.source import source_lines
-from tuisim.programs.program_file import find_wrong_mat
+from tuisim.programs.program_file import describe_new_file, find_wrong_mat
 from tuisim.settings.options import Settings
 
 if TYPE_CHECKING:
@@ -94,6 +95,8 @@ class Document:
         """
         self.show_program()
         self.open_at_mistake()
+        if self._path and not (self._text or os.path.lexists(self._path)):
+            self._app.say(describe_new_file(Path(self._path)))
         if asks and self._program is None and (draft := find_draft("")):
             self._offer(draft)
 
