@@ -58,6 +58,7 @@ def test_what_is_shown_of_an_answer_fits_its_width(width: int) -> None:
 
 def test_a_mistyped_word_finds_the_page_of_the_right_one() -> None:
     assert search("brekpoint")[0].name == "breakpoints"
+    assert not search("xyzz")
 
 
 @pytest.mark.parametrize(

@@ -56,6 +56,8 @@ _NO_ANSWER = re.compile(r"# .*|")
 """Matches the title of a page, which is no passage."""
 _MIN_PREFIX_LETTERS = 3
 """Letters from which a word may be the beginning of another."""
+_MIN_MISTYPED_LETTERS = 5
+"""A shorter word is too much like many others to be corrected."""
 _ALIKE = 0.8
 """A word with a typing error is as much like the right one, as `difflib` compares them."""
 _PASSAGE_WEIGHT = 1.0
@@ -226,7 +228,9 @@ class _Index:
 
     def _find_alike(self, stem: str) -> Iterable[str]:
         begun = [known for known in self.stems if known.startswith(stem)]
-        return begun or get_close_matches(stem, sorted(self.stems), 1, _ALIKE)
+        if begun or len(stem) < _MIN_MISTYPED_LETTERS:
+            return begun
+        return get_close_matches(stem, sorted(self.stems), 1, _ALIKE)
 
 
 def _count_passages(

@@ -45,6 +45,10 @@ def test_words_that_people_use_find_an_action(typed: str, first: str) -> None:
     assert find_entries(ENTRIES, typed)[0].id == first
 
 
+def test_a_word_like_no_other_finds_nothing() -> None:
+    assert not find_entries(ENTRIES, "xyzz")
+
+
 def test_the_analyser_offers_all_that_saves_a_picture() -> None:
     entries = [
         Entry(one.id, one.title, one.group, one.key_label, one.words)

@@ -41,6 +41,8 @@ _QUESTION_WORDS = (
     "in",
     "is",
 )
+_ALIKE = 0.75
+"""How much a mistyped word is like the right one, at least, as `difflib` compares them."""
 _MIN_ROWS, _OTHER_ROWS = 16, 5
 """Minimum number of rows of a long list, and the number of rows of the frame around it."""
 
@@ -72,7 +74,7 @@ def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
     texts = {entry.id: " ".join(entry[1:5]).lower() for entry in entries}
     known = " ".join(texts.values())
     words = [
-        word if word in known else (get_close_matches(word, known.split(), 1) or [word])[0]
+        word if word in known else (get_close_matches(word, known.split(), 1, _ALIKE) or [word])[0]
         for word in words
     ]
 
