@@ -36,7 +36,7 @@ class View:
 def build_chart(model: AnalysisModel, view: View, columns: int, rows: int) -> ChartData:
     """Return the chart of a model's visible variables in its visible time range.
 
-    Points are left out that a picture of `columns` by `rows` pixels, or parts of characters, could not show apart.
+    Points that a picture of `columns` by `rows` pixels, or parts of characters, could not show apart are left out.
 
     Raises:
         LogError: a variable to draw against another one does not exist.

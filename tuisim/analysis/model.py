@@ -108,7 +108,12 @@ class AnalysisModel:
         return float(trace.places[self._sample(trace, self.row)])
 
     def find_place(self, row: int, time_s: float) -> float:
-        """Return the position on the x axis of a time in s, in the run to which a row belongs."""
+        """Return the position on the x axis for a time of a run.
+
+        Args:
+            row: A row of the log that belongs to the run.
+            time_s: The time in the run.
+        """
         if self.alignment == TIME:
             return time_s
         trace = self.trace_of_row(row)
@@ -350,7 +355,7 @@ class AnalysisModel:
     def list_unsummed(self) -> list[str]:
         """Return the names of the visible variables whose statistics are not computed yet.
 
-        There are none for the range between two cursors, whose statistics take no time.
+        With two cursors, the list is empty: the statistics between them take no time.
         """
         if self.find_measured_span() is not None:
             return []
@@ -367,7 +372,10 @@ class AnalysisModel:
             self._summaries[name] = compute_summary(self.traces.find_trace(name).series.values)
 
     def build_summary(self, name: str) -> Summary:
-        """Return the statistics of a variable: between the two cursors, or else over all samples, which are stored."""
+        """Return the statistics of a variable between the two cursors; without the second cursor, over all samples.
+
+        The statistics over all samples are computed only once.
+        """
         span = self.find_measured_span()
         if span is not None:
             pyramid = self.traces.find_trace(name).pyramid

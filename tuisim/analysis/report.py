@@ -106,7 +106,8 @@ def build_report(
 
     Args:
         opened, names, search: As for `write_report`.
-        title: The title of a page that is the same for identical runs: it names no run and no date.
+        title: Title of the page, which then names no run and no date: it is the same for identical runs. Empty for the
+            title of the log.
         movie: Whether the page has a movie of each run.
         pins: Places that are marked on the pictures.
         goals: What the run has met and missed.

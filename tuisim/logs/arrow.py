@@ -127,7 +127,7 @@ def _convert_mask(truths: Any) -> BoolArray:
 
 
 def sort_places(column: pa.ChunkedArray, descending: bool) -> IntArray:
-    """Return the rows of a column's cells in sorted order, shape (n,)."""
+    """Return the indices of a column's cells in the order of the sorted cells, shape (n,)."""
     column = convert_to_texts(column) if pa.types.is_dictionary(column.type) else column
     way = "descending" if descending else "ascending"
     places: IntArray = pc.sort_indices(column, sort_keys=[("", way)]).to_numpy().astype(np.int64)
@@ -210,7 +210,7 @@ def read_parquet(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
 def read_arrow(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
     """Yield the record batches of an Arrow file or stream, each with the fraction of the file that has been read.
 
-    If the file was cut off, only the complete ones are yielded.
+    If the file was cut off, only its complete batches are yielded.
 
     Raises:
         LogError: not even the names of the columns can be read.

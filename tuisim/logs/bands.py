@@ -91,7 +91,7 @@ class BandReport:
 
     @cached_property
     def has_true_levels(self) -> bool:
-        """Whether true levels differ from levels, as noise was clamped at the end of the scale."""
+        """Whether some true levels differ from the levels, because noise was clamped at an end of the scale."""
         return bool(np.any(self.columns["true_level"] != self.columns["level"]))
 
     @cached_property
@@ -317,7 +317,8 @@ def _find_edges(
 def _find_pairs(last: IntArray, first: IntArray) -> tuple[IntArray, IntArray]:
     """Return the pairs of neighbouring samples from the last sample of each level to the first sample of the next.
 
-    Returns: For each pair, the index of the level, and the row of the pair's first sample.
+    Returns:
+        For each pair, the index of the level, and the row of the pair's first sample.
     """
     sizes = first - last
     level = np.repeat(np.arange(len(sizes)), sizes)

@@ -133,12 +133,12 @@ class Times(NamedTuple):
 
 
 def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool) -> Times:
-    """Return a time column in seconds: dates since the first of them, numbers times their unit.
+    """Return a time column in seconds: dates count from the first date, numbers are multiplied by their unit.
 
     Args:
         column: Numbers, dates, time spans, or texts with dates or time spans.
         unit_s: Unit of numbers in seconds.
-        since_first: Whether numbers are dates, too, and count from the first.
+        since_first: Whether numbers are times since 1970: they then count from the first number.
     """
     kind = column.type
     if is_text(kind):
@@ -182,7 +182,10 @@ def _unwrap(seconds: FloatArray, period: float, words: str) -> Times:
 
 
 def parse_times(column: pa.ChunkedArray) -> Times:
-    """Return texts as times: spans and times of day as they are, dates since the first; NaN for other texts."""
+    """Return texts as times: time spans and times of day in seconds, dates in seconds since the first date.
+
+    Each time that the time of day begins again at 0, a day is added. The time is NaN for other texts.
+    """
     import pandas as pd
 
     texts = normalize_dates(column.cast(pa.string()))

@@ -46,12 +46,13 @@ def read_log(
 ) -> pd.DataFrame:
     """Return the table in a file.
 
-    Without choices, a file that `out=` or `tuisim log export` has written, with the file `.json` beside a CSV or JSONL
-    file, is as it was, to the last bit, except that empty texts of a CSV file are no values.
+    A file that `out=` or `tuisim log export` has written is returned as it was, to the last bit, if no other argument
+    is given; only empty texts in a CSV file become missing values. Beside a CSV or JSONL file, this needs its `.json`
+    file.
 
-    Of any other file, such as one of your own `to_csv`, or with choices, the index is the time in seconds, if there is
-    one, else the number of the row: dates count from the first row, times of day from midnight. Warnings say what was
-    guessed or left out, and name the argument that decides.
+    Any other file, such as one of your own `to_csv`, gets an index, and so does each file if another argument is given:
+    the time in seconds or, without a time, the number of the row. Dates count from the first row, times of day from
+    midnight. Warnings say what was guessed or left out, and name the argument that decides.
 
     Args:
         path: A CSV, Parquet, JSON, JSONL, Arrow or text file.

@@ -91,7 +91,7 @@ def _escape_surrogates(text: str) -> str:
 def parse_value(line: str) -> Any:
     """Return the value of a line in JSON, or in the form in which Python prints dictionaries and lists.
 
-    The result is None for others.
+    The result is None for a line in neither form.
     """
     text = line.strip().removesuffix(",")
     # Values that are nested too deeply for a parser raise RecursionError or MemoryError.

@@ -50,7 +50,10 @@ def count_samples(pieces: Pieces) -> IntArray:
 
 
 def group_by_length(values: FloatArray, pieces: Pieces) -> Iterator[tuple[IntArray, FloatArray]]:
-    """Yield the pieces of a log grouped by length, in limited groups: their indices, and samples, shape (m, length)."""
+    """Yield groups of pieces of the same length: the pieces' indices, and their samples, shape (m, length).
+
+    A group has a limited number of samples: many pieces of one length are yielded in several groups.
+    """
     lengths = count_samples(pieces)
     order = np.argsort(lengths, kind="stable")
     for alike in np.split(order, np.flatnonzero(np.diff(lengths[order])) + 1) if len(order) else ():
@@ -108,8 +111,8 @@ def _join_seams(
     Args:
         values: The log.
         pieces: Its pieces.
-        seams: Shape (n, 2): for each seam the index of the piece after the left one, and of the right one, which is the
-            same or, if strays are between, a later one.
+        seams: Shape (n, 2): for each seam the index of the piece after the left one, and the index of the right one.
+            They are equal if the two pieces are neighbours, and differ if strays are between them.
         min_samples: Fewest samples on either side.
         min_step: The smallest step between levels.
         sigma: Standard deviation of the noise.

@@ -212,7 +212,10 @@ def _join_pieces(
 def _settle(
     values: FloatArray, plateaus: PlateauArray, parts: PlateauArray, ground: Ground, min_step: float
 ) -> PlateauArray:
-    """Return plateaus, extended to their ends and joined, together with `parts`, the level parts of slopes."""
+    """Return plateaus that are extended at their ends and joined where one continues another, without moving ones.
+
+    Those of `parts`, the level parts of slopes, that overlap no plateau are added.
+    """
     if len(plateaus):
         # After they were extended, two plateaus may be separated only by a stray, so they are joined again.
         grown = _extend_pieces(values, read_spans(plateaus), ground.sigma)

@@ -212,7 +212,7 @@ def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
 def split_still(
     values: FloatArray, plateaus: PlateauArray, cut: Pieces, ground: Ground
 ) -> tuple[PlateauArray, PlateauArray]:
-    """Return the plateaus that have a level, and the parts of the other plateaus that have one.
+    """Return the plateaus that have a level; and of the other plateaus, those parts that have a level.
 
     Args:
         values: The log.

@@ -315,9 +315,9 @@ def read_exported_csv(text: str) -> pa.Table:
 
 
 def _convert_texts(texts: pa.ChunkedArray) -> pa.ChunkedArray:
-    """Return texts as whole numbers, numbers or truth values if all of them are such.
+    """Return texts as whole numbers, numbers or truth values if all of them can be converted; else return the texts.
 
-    It is empty ones are missing numbers.
+    Among numbers, empty texts become missing values.
     """
     cells = pc.if_else(pc.equal(texts, ""), pa.scalar(None, pa.string()), texts)
     for kind in (pa.int64(), pa.float64()) if len(texts) else (pa.float64(),):

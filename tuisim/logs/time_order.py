@@ -83,9 +83,9 @@ def _join_parts(table: pa.Table, seconds: str, parts: str, unit_s: float) -> pa.
 
 
 def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
-    """Return the unit in s of a time column that names no unit, if its whole steps are too large for seconds.
+    """Return the unit in s of a time column that names no unit, if its times are whole numbers with large steps.
 
-    Otherwise the result is None.
+    The steps must be too large for seconds. Otherwise the result is None.
     """
     if layout.time in (ROW, *COUNTS) or layout.since_first or "line" in table.column_names:
         return None
@@ -165,8 +165,8 @@ def _is_one_clock(table: pa.Table, layout: Layout, back: IntArray) -> bool:
     Args:
         table: The table.
         layout: The roles of its columns.
-        back: The rows at which time is less than in the row before. If no variable is on both sides of such a row,
-            another variable begins there.
+        back: The rows at which time is less than in the row before. If no variable has rows on both sides of such a
+            row, the samples of another variable begin there.
     """
     if not layout.variable:
         return True
