@@ -48,7 +48,7 @@ _MORE_PARTS = 4
 
 
 def find_ticks(limits: Limits, count: int) -> list[float]:
-    """Return at most about `count` round positions inside limits, but at least two, so that they show a distance."""
+    """Return round positions inside limits: at most about `count` of them, but at least two."""
     low, high = limits
     positions: list[float] = []
     for parts in range(count, count + _MORE_PARTS):
@@ -158,10 +158,10 @@ shorter than one with more ticks to be taken instead of it. The numbers are set 
 def extend_limits(limits: Limits, rows: int) -> Limits:
     """Return limits for a vertical axis on which round ticks are in the middle of rows, at equal distances.
 
-    The given limits are extended as little as possible. For 2 to 6 parts, the axis begins at a multiple of the round
-    step below the values; the rows between two ticks are as many as fit. The shortest axis is chosen; `_SPARSE` is
-    added to the length of one with few parts, and the whole span of the values to one whose ticks are in neighbouring
-    rows.
+    The limits are extended as little as possible. The axis has 2 to 6 parts: it begins at the multiple of a round step
+    that is not above the values, and has as many rows between two ticks as fit. The shortest of these axes is chosen;
+    an axis with few parts counts as longer by `_SPARSE`, and one with ticks in neighbouring rows by the span of the
+    values.
 
     Args:
         limits: The lowest and the highest value.

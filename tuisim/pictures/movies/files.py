@@ -130,7 +130,7 @@ class Clip:
 
     @property
     def view(self) -> Viewport:
-        """A view of the whole frame that shows the world at the same place as the movie's world panel.
+        """A view of the whole frame, in which a point of the world has the same pixel as in the movie's world panel.
 
         The movie must have this panel.
         """

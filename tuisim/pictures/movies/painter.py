@@ -84,7 +84,7 @@ def _fit_size(panels: Sequence[ClipPanel], robot: RobotSpec, area: Area) -> Size
 def find_frame_view(
     recorded: ClipRun, panels: Sequence[ClipPanel], size: Size | None = None
 ) -> Viewport:
-    """Return a view of the whole frame that shows the world at the same place as the frame's world panel.
+    """Return a view of the whole frame, in which a point of the world has the same pixel as in the world panel.
 
     A picture drawn in this view fits over the frame.
 

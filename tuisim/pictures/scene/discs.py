@@ -59,7 +59,7 @@ class DiscFace:
 
     @property
     def unit(self) -> str:
-        """The unit of the value that the program reads, with the value on white where that is not 100 %."""
+        """The unit of the value that the program reads: `%`; for reflected light, `of` and the value on white."""
         return f"of {self.reflected_max}" if self.read is LightRead.REFLECTED else "%"
 
     @property
@@ -85,7 +85,8 @@ class DiscFace:
         The program may not make these comparisons at this moment.
 
         Args:
-            width: Room in letters: to fit, the lines are left out, else all but the first comparison, else both.
+            width: The number of letters that fit. A longer text loses the numbers of the lines, or has only the first
+                comparison, with or without its line.
         """
         texts = []
         for threshold in self.thresholds:

@@ -40,9 +40,9 @@ def shrink(
 ) -> Pixels:
     """Return the picture of a mat in a viewport.
 
-    Each picture pixel is the mean of the mat pixels under it. Where a pixel is as wide as a cell or half of it, it has
-    the colour of one area, so that edges are sharp, or that of a thin line: a black line of 10 mm is black where a
-    pixel covers 30 mm, and looks the same whether it lies in one row of pixels or between two.
+    Each picture pixel is the mean of the mat pixels under it. A pixel that is as wide as a cell, or half of a cell, has
+    the colour of one area instead, so that edges are sharp, or the colour of a thin line: a black line of 10 mm is
+    black where a pixel covers 30 mm, and looks the same whether it lies in one row of pixels or between two.
 
     Args:
         mat: The mat, one pixel a mm, row 0 at the top of the field.
@@ -50,7 +50,7 @@ def shrink(
         outside_rgb: Colour of what lies off the mat.
         whole_cells: End the mat where a cell ends, for glyphs that do not fill their cells: half of a cell in another
             colour would be a column of dots or brackets beside it.
-        exact: Leave every mean as it is.
+        exact: Draw every pixel as the mean, however wide it is.
 
     Returns:
         Shape (view.height_px, view.width_px, 3).
@@ -154,7 +154,8 @@ def _keep_detail(mean: _Numbers, low: _Numbers, high: _Numbers, middle: _Numbers
 
     Args:
         mean, low, high: Mean, lowest and highest of each channel below each pixel, shape (rows, columns, 3).
-        middle: What is below the middle of each pixel, of the same shape. Beside a straight edge, it covers most of it.
+        middle: The colour of the mat below the middle of each pixel, of the same shape. Beside a straight edge, this
+            colour covers most of the pixel.
     """
     span = high - low
     has_contrast = span.max(axis=2) > _MIN_CONTRAST
@@ -180,7 +181,7 @@ def _find_lines(mean: _Numbers, ground: _Numbers, way: _Numbers) -> _Flags:
     Args:
         mean: Mean colours, shape (rows, columns, 3).
         ground: The colour beside the line, of the same shape.
-        way: From there to the line's colour, divided by the square of its length, of the same shape.
+        way: The difference from `ground` to the line's colour, divided by the square of its length, of the same shape.
     """
     is_line = np.zeros(mean.shape[:2], bool)
     # Nothing of a line is off the mat.

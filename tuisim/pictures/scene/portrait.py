@@ -28,7 +28,7 @@ def draw_portrait(
     mono: bool = False,
     grey: bool = False,
 ) -> Pixels:
-    """Return the picture of a robot, heading up, which fills it, with all sensors that have a position.
+    """Return a picture that a robot, heading up, fills; all sensors that have a position are on it.
 
     Args:
         robot: The robot.

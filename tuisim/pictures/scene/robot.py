@@ -143,7 +143,8 @@ def draw_robot(
         colors: Colours of its parts.
         opacity: 0 … 1.
         pressed: Whether each bumper is pressed; empty for none.
-        detail_cols: Pixels across a cell for which details are chosen, 1 or 2; None for those of the view.
+        detail_cols: For how many pixels across a cell the details are chosen, 1 or 2; None for as many as the view has,
+            at most 2.
     """
     detail_cols = detail_cols or min(view.cell.cols, 2)
     scale = choose_scale(outline, view)
