@@ -26,8 +26,7 @@ def set_constants(source: ProgramSource, values: Mapping[str, object]) -> Progra
 
     Raises:
         ConfigError: the program has no such constant, assigns several values to it, has already computed another
-            constant
-            from it, or is not Python; or a value cannot be written in a program.
+            constant from it, or is not Python; or a value cannot be written in a program.
     """
     if not values:
         return source

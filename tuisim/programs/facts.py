@@ -91,7 +91,7 @@ def _list_pairs(tree: ast.Module) -> Iterator[tuple[ast.Call, ast.Call]]:
 def _find_pair_angle(*calls: ast.Call) -> float:
     """Return the angle in degrees by which two calls of `run_angle` turn two motors in opposite directions.
 
-    The result is 0 for others.
+    The result is 0 for any other calls.
     """
     motors = set[str]()
     turns_deg: list[float] = []
@@ -182,7 +182,7 @@ def _count_lines(tree: ast.Module) -> int:
 
 
 def _list_span(statement: ast.stmt) -> Iterator[int]:
-    """Yield the numbers of a statement's lines; for a block only that of the first."""
+    """Yield the numbers of a statement's lines; for a statement with a block, such as a loop, only its first line's."""
     is_block = isinstance(statement, _BLOCKS)
     yield from range(
         statement.lineno, statement.lineno + 1 if is_block else (statement.end_lineno or 0) + 1

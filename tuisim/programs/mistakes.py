@@ -156,7 +156,10 @@ _STOPS = ("stop", "brake", "hold")
 
 
 def _find_short_wait(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line that waits for seconds, as it seems, between start and stop, where Pybricks has ms."""
+    """Return the first line that waits a few ms between start and stop of a motor, and a description; None without one.
+
+    The number of ms is so small that it was probably meant in seconds.
+    """
     for node in ast.walk(tree):
         block = getattr(node, "body", [])
         body = block if isinstance(block, list) else []

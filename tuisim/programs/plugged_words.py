@@ -11,11 +11,9 @@ from tuisim.programs.robot.library import DEVICES, SENSES_WALLS
 
 
 def describe_plugged(run: StoredRun) -> str:
-    """Return in a sentence which parts were plugged in during a run, as the program's text did not show them.
+    """Return a sentence about the parts that were plugged in during a run because the program's text did not show them.
 
-    Otherwise the text is empty.
-
-    It also says how to have them from the start.
+    The sentence also says how to have them from the start. It is empty if no part was plugged in.
     """
     parts = list_parts(run.plugged)
     if not parts:

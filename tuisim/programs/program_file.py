@@ -415,8 +415,7 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
     Args:
         path: The file.
         as_python: Whether to read a file that is not UTF-8, too, with wrong bytes as lone surrogates: when it is run,
-            it
-            raises the error that Python raises.
+            it raises the error that Python raises.
         alone: Whether other files in its folder are not its modules, as in a folder with the files of a whole class.
 
     Raises:

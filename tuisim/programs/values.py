@@ -40,8 +40,7 @@ class ValueWriter:
 
         Raises:
             ConfigError: it is no constant, member of an Enum, function or class of the user's or of Python, container
-                of
-                these, or object that they make up; or the same object would be created twice.
+                of these, or object that they make up; or the same object would be created twice.
         """
         if getattr(value, "shape", None) == ():
             value = value.item()

@@ -111,9 +111,9 @@ def read_modules(program: Program) -> dict[str, Module]:
 
 
 def find_missing_module(program: Program, modules: dict[str, Module]) -> str:
-    """Return the folder of its repository with a module that a program imports and cannot find.
+    """Return in words which module a program imports and cannot find, and in which folder of its repository it is.
 
-    The result is empty if there is none.
+    The result is empty if there is no such module.
     """
     known = {"", *modules, *LIBRARIES, *SPIKE_MODULES, *sys.stdlib_module_names}
     named = (name.split(".")[0] for module in modules.values() for name in _list_imported(module))

@@ -246,7 +246,7 @@ def _add_medium(
     """Return the kinds of motors, in which `others` of unknown kind become medium unless their names say large.
 
     This is done only for Pybricks on an EV3, and only for up to `_MAX_MEDIUM` others, as EV3 sets have few medium
-        motors.
+    motors.
 
     Args:
         kinds: The kind of each motor, by port.

@@ -70,7 +70,7 @@ def _parse_comparison(text: str, key: str) -> ValueCondition:
 
 @dataclass(frozen=True, slots=True)
 class KeepCondition(Condition):
-    """A condition of a goal: comparisons with columns or output of the run stay true, perhaps for a share of it."""
+    """A condition of a goal: comparisons with columns or output of the run stay true, or for a share of the time."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
     SHORT: ClassVar[str] = "comparisons"

@@ -134,7 +134,7 @@ def add_line_to_errors(path: Path, text: str | None = None) -> Iterator[None]:
 
     Args:
         path: The file, as errors name it.
-        text: Its TOML; None reads it.
+        text: The TOML in the file; None reads the file.
     """
     try:
         yield

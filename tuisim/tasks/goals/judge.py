@@ -419,7 +419,7 @@ def _invert(name: str, outcome: _Outcome) -> _Outcome:
 def _pick_deciding(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
     """Return which of several outcomes decides their combination: the earliest with the state `deciding`.
 
-    Without one, it is an open or unknown outcome; if all have the other state, the latest.
+    Without one, return the first open outcome, or else the first unknown one; if all have the other state, the latest.
     """
     decided = [part for part in parts if part.state is deciding]
     if decided:

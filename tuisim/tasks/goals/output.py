@@ -229,7 +229,7 @@ def _explain_missing_line(
 
 
 def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the samples of a variable had had all levels of a condition, or which level is missing."""
+    """Return when the samples of a variable had reached all levels of a condition, or which level is missing."""
     samples = [
         (number, sample)
         for number, sample in evidence.samples

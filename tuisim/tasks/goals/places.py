@@ -122,7 +122,7 @@ def _describe_miss(
 
 
 def _describe_side(condition: ReachCondition, record: Any) -> str:
-    """Return on which side of a condition's place the robot is, such as `left of` a line; for a point `from`."""
+    """Return the side of a condition's place on which the robot is, such as `left of` a line; `from` for a point."""
     if condition.x_mm is None:
         return "below" if record["y_mm"] < condition.y_mm else "above"
     if condition.y_mm is None:
@@ -311,9 +311,9 @@ def find_touch(condition: TouchNothingCondition, evidence: Evidence, span: Evide
 def _find_first_contact(
     records: Array, solids: Solids, gap_mm: float, *, forgiven: bool
 ) -> tuple[int, int] | None:
-    """Return the first index at which the robot is too near to something, and the index of that in `solids`; else None.
+    """Return the first index at which the robot is too near to an obstacle or wall, and that one's index in `solids`.
 
-    Ticks during which the robot cannot have come so near are skipped.
+    The result is None if the robot is never too near. Ticks during which it cannot have come so near are skipped.
 
     Args:
         records: Telemetry.

@@ -220,7 +220,10 @@ def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
 
 
 def _is_weightier(goal: GoalOutcome, before: GoalOutcome | None) -> bool:
-    """Return whether a goal's outcome in a world replaces the one before: a miss replaces any, an unknown a good."""
+    """Return whether a goal's outcome in a world replaces the one before.
+
+    A good outcome is replaced by any other, an unknown outcome only by a miss.
+    """
     if before is None or before.is_good:
         return True
     return before.is_unknown and not (goal.is_good or goal.is_unknown)
@@ -251,7 +254,10 @@ def make_portable(text: str, folder: Path | str) -> str:
 
 
 def _find_cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgement:
-    """Return the judgement with the reason for a missed goal: its own or, for `all`, that of its first goal not met."""
+    """Return the judgement with the reason for a missed goal.
+
+    It is the goal's own or, for a goal with `all`, the judgement of the first of those goals that is not met.
+    """
     if isinstance(judgement.goal.condition, AllOf):
         for name in judgement.goal.condition.goals:
             if judgements[name].state is not GoalState.MET:

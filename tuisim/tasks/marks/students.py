@@ -197,7 +197,8 @@ def _make_names_unique(students: Iterable[_Submission]) -> Iterator[Student]:
     """Yield the students with unique names.
 
     The name of a file without `.py` keeps the suffix if a neighbour has the name, too. Equal names from several folders
-    get the name of the folder in front; those from a gradebook get its number behind; others get a number.
+    get the name of the folder in front, and equal names from a gradebook its numbers behind. Names that are still equal
+    are numbered.
     """
     every = [(_resolve_links(folder), student, own) for folder, own, student in students]
     beside = Counter((folder, student.name) for folder, student, _ in every)
@@ -329,12 +330,10 @@ def _explain_refusal(folder: Path, name: str, search: _Search) -> str:
 
 
 def find_outside_option(student: Student) -> str:
-    """Return the option of the student's magic line that names a file outside the student's folder.
+    """Return the option of the student's magic line that names a file outside the student's folder; empty for none.
 
-    It is empty if there is none.
-
-    That file would be read with the rights of the tutor. If the hand-in is a single file, other files in its folder are
-    outside, too, as they are other students'.
+    A file outside would be read with the rights of the tutor. If the hand-in is a single file, other files in its
+    folder are outside, too, as they are other students'.
     """
     assert student.source is not None
     is_file = not student.path.is_dir()

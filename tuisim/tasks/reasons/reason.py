@@ -94,8 +94,7 @@ def find_reasons(
     Args:
         run: The run; it may still be running.
         judgements: The judgements of the goals of its task. For a run that met them all, obstacles and lost lines are
-            no
-            reasons.
+            no reasons.
         earlier: The run to compare with, if this one repeats it; None for none.
         mat: The mat of the run; None opens it.
 

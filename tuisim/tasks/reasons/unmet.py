@@ -110,9 +110,8 @@ def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     """Return where a finished loop just missed the light that it waited for.
 
-    The result is None if no loop did, or if that is not known.
-
-    No reading quite reached the light, or it was there only between two readings.
+    No reading quite reached the light, or it was there only between two readings. The result is None if no loop missed
+    it so, or if that is not known.
 
     Args:
         run: The run.
@@ -124,7 +123,7 @@ def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 def find_stale_angle(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     """Return a loop that ended at its first reading because the gyro was not reset.
 
-    It is None if there is none or it is not known.
+    The result is None if there is no such loop, or if that is not known.
 
     Args:
         run: The run.

@@ -37,7 +37,7 @@ class WaitWatch:
     ) -> list[str]:
         """Return a line on what the program waits for, with action ids in braces.
 
-        The result is empty if nothing, or if already reported.
+        The list is empty if the program waits for nothing, or if that was reported before.
 
         Args:
             recording: The recording in view.
