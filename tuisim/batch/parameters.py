@@ -187,7 +187,7 @@ def _list_values(
 def parse_values(text: str, key: str) -> Choice:
     """Return the values of a parameter in a text such as `0,20,50`, `54:58:0.5`, `0..199` or `random(0, 50, 20)`.
 
-    For `random` and the like, it is a SampleValues, which draws the values later.
+    Random values are returned as a `SampleValues`, which draws them later.
 
     Args:
         text: The text.

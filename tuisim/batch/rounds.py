@@ -64,8 +64,8 @@ def parse_precision(text: str, key: str, plan: Plan, columns: Iterable[str]) -> 
 class Rounds(Iterator[int]):
     """An iterator over the indices of the tasks to run until each mean is known precisely enough.
 
-    It stops when it has to wait for results, and can be continued after them. Which tasks come next depends only on the
-    rows of their combination, not on the order in which rows arrive.
+    The iteration stops when it has to wait for results; once they have arrived, it can be continued. Which tasks come
+    next depends only on the rows of their combination, not on the order in which rows arrive.
 
     Args:
         plan: All runs that may be necessary.

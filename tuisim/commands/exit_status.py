@@ -51,7 +51,7 @@ def choose_exit_code(end: End, exit_code: int) -> int:
 
 
 def choose_unstored_code(code: int) -> int:
-    """Return the exit code of a run that could not be stored: `code` if a signal ended it, else that of bad output."""
+    """Return the exit code of a run that could not be stored: `code` if a signal ended it, else `EXIT_BAD_OUTPUT`."""
     return code if code > SIGNALLED else EXIT_BAD_OUTPUT
 
 

@@ -362,8 +362,7 @@ def search(question: str) -> list[SearchResult]:
 
     Args:
         question: Words; a word that is on no page may be the beginning of another, or mistyped. If the question is
-            about
-            several things, the best answers to its parts follow the first two.
+            about several things, the best answers to its parts follow the first two.
     """
     index = _load_index()
     rows = _rank_passages(index, question)

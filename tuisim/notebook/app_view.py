@@ -115,8 +115,7 @@ class AppView:
             home: Whether to put the robot back to its start.
             runs: Whether the app also runs the program; `told` gets the run, or why there is none.
             speed: The speed of that run, as in `RunOptions`; None for the speed that the app's user has set, else as
-                fast as
-                possible.
+                fast as possible.
 
         Raises:
             HostError: the app does not start.

@@ -56,10 +56,10 @@ _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066
 
 
 class Sanitize(LineFilter):
-    """A filter that replaces control characters, and those that change the direction of writing, before drawing."""
+    """A filter that, before drawing, replaces control characters and those that change the direction of writing."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the segments with a blank in place of each such character, so that their width stays the same."""
+        """Return the segments with a blank in place of each replaced character, so that their width stays the same."""
         if all(segment.text.isprintable() or segment.control for segment in segments):
             return segments
         return [
@@ -197,7 +197,7 @@ class BufferedApp(HookedApp):
             loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
 
     def on_terminal_answered(self, event: TerminalAnswered) -> None:
-        """Switch to pixels if the terminal's answers allow it; if it may know kitty's protocol, ask whether it does."""
+        """Switch to pixels if the terminal's answers allow it; ask about kitty's protocol if that is still in doubt."""
         if event.facts.asks_for_kitty and self.own_driver is not None:
             AnswerParser.is_asked = True
             self.own_driver.write(KITTY_QUESTIONS)

@@ -73,8 +73,9 @@ class BrowserDriver(WebDriver):
     def on_meta(self, packet_type: str, payload: dict[str, object]) -> None:
         """Handle a message of the server, such as another size of the page, or another page that shows the app.
 
-        Another page gets everything that the first one got. Size and focus wait for what the app itself has queued: at
-        the start it queues those of the beginning, which would override an early report.
+        A new page gets the same codes as the first one. A size or a focus is handled after the events that the app has
+        queued
+        at its start: these would override it.
         """
         match packet_type:
             case "focus" | "blur":

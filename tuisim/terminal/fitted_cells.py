@@ -113,10 +113,10 @@ def _draw_half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
 def _find_typical(
     lab: npt.NDArray[np.float32], covered: npt.NDArray[np.float32]
 ) -> list[npt.NDArray[np.intp]]:
-    """Return for each cell the typical point of the covered points, and that of the others.
+    """Return the index of the typical point in each cell, first among its covered points, then among its other points.
 
-    It is the point nearest to the mean of its group, of two the darker one. The point has a colour of the picture; the
-    mean of three colours often is none of them, and looks blurred. With the lighter one, the ground would be a notch in
+    It is the point nearest to the mean of its group. The mean itself often is no colour of the picture, and looks
+    blurred. Of two points that are as near, it is the darker one: with the lighter one, the ground would be a notch in
     the edge of a band beside a robot's corner.
     """
     points: list[npt.NDArray[np.intp]] = []

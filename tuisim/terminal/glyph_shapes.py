@@ -181,7 +181,7 @@ def _draw_arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> 
     }
 
     def find_edges(sides: tuple[str, str], axis: str) -> tuple[int, int]:
-        """Return across two opposite arms where their lines start and end, in pixels of the cell."""
+        """Return where the lines of two opposite arms begin and end across the arms, in pixels of the cell."""
         lines = [strip for side in sides if side in arms for strip in strips[arms[side]]] or [
             (0, thick)
         ]

@@ -213,7 +213,10 @@ def _follow_turns() -> None:
 
 
 def takes_letters(widget: Widget) -> bool:
-    """Return whether a widget takes every letter as text: its attribute of this name, else whether it is a field."""
+    """Return whether a widget takes every letter as text.
+
+    Its attribute `takes_letters` says so; a widget without this attribute does if it is an `Input`.
+    """
     return bool(getattr(widget, "takes_letters", isinstance(widget, Input)))
 
 

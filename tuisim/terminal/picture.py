@@ -250,8 +250,8 @@ class TilePicture:
         """Return the codes that send the changed tiles of some cells, and write the placeholders of these tiles.
 
         Args:
-            down: Row of the screen of the picture's first row.
-            right: Column of the screen of the picture's first column.
+            down: The row of the screen with the picture's first row.
+            right: The column of the screen with the picture's first column.
             cells: The cells.
         """
         tiles = {

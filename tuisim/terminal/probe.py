@@ -152,11 +152,11 @@ def is_multiplexer(terminal: str) -> bool:
 
 
 def has_all_colors(environment: Mapping[str, str]) -> bool:
-    """Return whether the environment of a multiplexer says that it shows all colours.
+    """Return whether tmux says that the terminal around it shows all colours; False without tmux.
 
-    COLORTERM does not say so: it was inherited from the terminal around it. GNU screen before version 5 takes the
-    numbers of such a colour for blinking, underlined and coloured text, and cannot be asked. tmux can; inside GNU
-    screen (STY) it may be the one around it.
+    COLORTERM does not say so: it was inherited from the terminal around a multiplexer. GNU screen before version 5
+    takes the numbers of such a colour for blinking, underlined and coloured text, and cannot be asked. Inside GNU
+    screen (STY), tmux may be the program around it.
     """
     return _ALL_COLORS in _ask_tmux("client_termfeatures", environment).split(",")
 

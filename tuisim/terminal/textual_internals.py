@@ -255,7 +255,7 @@ class MadeOnDemand(Strip):
 
     # The base class's caches are omitted: every method that uses one is overridden by the subclasses.
     def begin(self, cells: int) -> None:
-        """Set the width in cells; subclasses call this in their `__init__`, in place of that of the base class."""
+        """Set the width in cells; subclasses call this in their `__init__`, in place of `Strip.__init__`."""
         if not SUPPORTED:
             super().__init__(self.make(), cells)
             return

@@ -33,7 +33,7 @@ _NO_ROOM = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
 
 
 class Door:
-    """A listening socket that closes connections which do not send the token in time, and those that are too many.
+    """A listening socket that closes connections if they do not send the token in time; of too many, the oldest.
 
     Args:
         report: Called with a message for the server's terminal.
