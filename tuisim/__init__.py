@@ -54,7 +54,7 @@ if not TYPE_CHECKING:  # For mypy, a misspelt name would be anything.
 
 
 def load_ipython_extension(shell: InteractiveShell) -> None:
-    """Give a notebook the magics, `roboSim` and `eds`: what `%load_ext tuisim` calls."""
+    """Add the magics, `roboSim` and `eds` to a notebook; `%load_ext tuisim` calls this function."""
     from tuisim.notebook.kernel import tell_old_simulator
     from tuisim.notebook.magics import install
 

@@ -36,7 +36,7 @@ EXIT_INTERRUPTED = SIGNALLED + 2
 
 @dataclass(frozen=True, slots=True)
 class CommandEntry:
-    """One line of `COMMANDS`."""
+    """What the command line knows of a command without importing it: where its function is, and what it does."""
 
     path: str
     """MODULE:NAME, imported on use."""
@@ -107,7 +107,12 @@ _SYNONYMS = {"compare": "diff", "delete": "rm", "remove": "rm", "chart": "plot",
 
 
 def _find_commands(word: str, others: Sequence[str]) -> list[str]:
-    """Return the lines that may have been meant by a word and those after it, best first; at most two."""
+    """Return the commands that a user may have meant by a mistyped word, as text, the best first; at most two.
+
+    Args:
+        word: The first word of the command line.
+        others: The words after it.
+    """
     action = _SYNONYMS.get(word, word)
     rest = "".join(f" {other}" for other in others)
     if action == "export" and "--out" not in others:

@@ -97,7 +97,12 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Vector, dict[str, Any]]:
-        """Begin again, without a seed with one that follows from the last; return the observation, and all columns."""
+        """Return to the start; return the observation there, and all columns by name.
+
+        Args:
+            seed: Seed of noise and drift; None draws the next seed from the generator of the seed before.
+            options: Not used.
+        """
         super().reset(seed=seed)
         drawn = int(self.np_random.integers(MAX_SEED)) if seed is None else seed
         self._before = self.lab.reset(drawn)
@@ -105,7 +110,14 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         return self._observe(self._before), dict(self._before)
 
     def step(self, action: Vector) -> tuple[Vector, float, bool, bool, dict[str, Any]]:
-        """Drive for a period; return observation, reward, whether it is over, False, and all columns."""
+        """Drive for a period.
+
+        Args:
+            action: The speed of each wheel, from -1 to 1.
+
+        Returns:
+            The observation, the reward, whether the task has ended, False for `truncated`, and all columns by name.
+        """
         left, right = (float(share) * self.lab.max_speed_dps for share in action)
         values = self.lab.step(left, right, period_s=self._period_s)
         points, has_all = self._judge()
@@ -138,10 +150,15 @@ def _build_space(columns: Sequence[str]) -> Box[Any]:
 
 
 def check_call(function: Callable[..., object] | None, call: str, *values: str) -> None:
-    """Check that a function can be called with so many values; `call` is its name for users.
+    """Check that a function takes as many values as it will be called with.
+
+    Args:
+        function: The function; None is not checked.
+        call: The name of the argument that gives the function, for errors.
+        values: The names of the values, for errors.
 
     Raises:
-        ConfigError: it cannot.
+        ConfigError: the function takes others.
     """
     if function is None:
         return
@@ -163,9 +180,9 @@ def measure_progress(before: Values, after: Values) -> float:
 
 
 def follow_line(**how: Any) -> LabEnv:
-    """Return the task to drive along the edge of a line, which the left sensor sees half: mm of progress on it.
+    """Return the task to drive along the edge of a line; it ends when the robot leaves the mat.
 
-    It is over off the mat.
+    The reward is the progress in mm: all of it where the left sensor reads 50 %, none of it at 0 % or 100 %.
     """
 
     def reward(before: Values, after: Values) -> float:
@@ -181,7 +198,10 @@ def follow_line(**how: Any) -> LabEnv:
 
 
 def stop_on_band(**how: Any) -> LabEnv:
-    """Return the task to stand on a dark band: percent of light that it sees less of."""
+    """Return the task to stop on a dark band; it ends when the left sensor reads less than 10 % and both wheels stand.
+
+    The reward is by how many percent the reading of the left sensor has fallen in a step.
+    """
 
     def reward(before: Values, after: Values) -> float:
         return before["left_red_pc"] - after["left_red_pc"]
@@ -196,7 +216,10 @@ def stop_on_band(**how: Any) -> LabEnv:
 
 
 def avoid_obstacles(**how: Any) -> LabEnv:
-    """Return the task to drive without coming too close to anything: mm of progress."""
+    """Return the task to drive past obstacles; it ends when the ultrasonic sensor reads less than 30 mm.
+
+    The reward is the progress in mm.
+    """
 
     def is_over(values: Values) -> bool:
         return values["ultrasonic_mm"] < 30.0
@@ -217,7 +240,7 @@ def _build_task(
     is_over: Callable[[Values], bool] | None = None,
     **how: Any,
 ) -> LabEnv:
-    """Return a task on its usual mat, on the mat of a name, or in a world."""
+    """Return a task on the mat `mat`, unless `how` names another mat or a world; `how` has arguments of `LabEnv`."""
     usual = {} if how.get("world") else {"background": mat}
     return LabEnv(columns, reward, is_over, **{**usual, **how})
 

@@ -265,16 +265,16 @@ def experiment(
         program: As for `simulate`; or several.
         seeds: The seeds, such as `range(200)`; by default 0.
         constants: Values of the program's constants, what it assigns to a name outside its functions:
-            `{"GAIN": [0.2, 0.4]}`. A robot that is read from a program is that of the values that stand in it.
+            `{"GAIN": [0.2, 0.4]}`. A robot that is read from a program has the values of its text.
         parameters: Values by key of a world or robot file: `{"robot.wheel_diameter_mm": [54, 56]}`; a text is read as
             after `--set`, such as `"latin(54, 58, 20)"`.
-        metrics: Further columns by name, as functions of a run: `{"end_x_mm": lambda run: run.pose.x_mm}`. What one
-            raises ends the experiment; where the program has raised too, the metric has no value.
+        metrics: Further columns by name, as functions of a run: `{"end_x_mm": lambda run: run.pose.x_mm}`. An
+            exception in one ends the experiment; if the program has raised one too, the metric has no value.
         columns: Columns of the telemetry, such as `x_mm`: the table then has one row for each tick of each run, and of
             the values of a run only metrics and expressions.
         expressions: Further columns by name, such as `{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}`.
         goals: A goals file; its world is used without a `world`, where no option says otherwise.
-        keep: Which runs to store: `load_run` takes what the column `id` then has, and with `all` also the column `run`.
+        keep: Which runs to store: `load_run` takes their values of the column `id`, with `all` also those of `run`.
         jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
         out: A file for the table, in any format of a log; an interrupted experiment that is called again goes on with
             the rows so far.

@@ -155,8 +155,8 @@ class Lab:
         """Move the robot on by one tick or longer, and return the columns at the end. Does not block.
 
         Args:
-            left, right: The speed for each wheel's motor in degrees per second, positive forwards; beyond
-                `max_speed_dps` it is that. Under `robolab` a motor gains at most 5000 / `weight` of the robot in each
+            left, right: The speed for each wheel's motor in degrees per second, positive forwards, at most
+                `max_speed_dps`. Under `robolab` a motor gains at most 5000 / `weight` of the robot in each
                 second: 833 for the default robot; a weightless one has its speed at once. Without speeds, both motors
                 go on as before.
             period_s: Simulated seconds, rounded to ticks; at least one tick.
@@ -199,7 +199,7 @@ class Lab:
     def judge(self) -> tuple[float, bool]:
         """Return the points if the run ended now, and whether the goals are decided.
 
-        They are if each goal that was not met at the start is met, or missed for good.
+        They are decided if each goal that was not met at the start is met now, or missed for good.
 
         Raises:
             ConfigError: the lab has no goals.
