@@ -22,7 +22,7 @@ from tuisim.tasks.lessons.progress import (
 FAULTY = {
     "model answer": (
         ("500 / (3.14159 * 56)", "1"),
-        "line 75: the model answer does not pass “Drive them”: there: At the end the robot was 324 mm left of x = ",
+        "line 78: the model answer does not pass “Drive them”: there: At the end the robot was 324 mm left of x = ",
     ),
     "wrong program": (
         ("SpeedPercent(30), 5)", "SpeedPercent(30), 2.842)"),
@@ -254,7 +254,7 @@ def test_a_lesson_without_a_wrong_way_is_a_warning(here: Command, tmp_path: Path
     )
     done = here("learn", "check", "mine.md", "--no-runs")
     assert (
-        "warning: mine.md, line 74: step “Drive them” does not try the wrong way “no sensor”, or name it in `excludes`"
+        "warning: mine.md, line 77: step “Drive them” does not try the wrong way “no sensor”, or name it in `excludes`"
         in done.stdout
     )
     assert (

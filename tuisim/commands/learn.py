@@ -329,4 +329,11 @@ def find_warnings(lesson: Lesson) -> list[str]:
             warnings.append(
                 f"{place}: step “{step.title}” has no `why`, which says why an answer or a run is right"
             )
+        if isinstance(step.check, QuestionCheck):
+            answers = dict.fromkeys((*step.wrong, *step.check.choices))
+            warnings += [
+                f"{place}: step “{step.title}” gives no reason for the wrong answer “{answer}” in `[step.wrong]`"
+                for answer in answers
+                if answer != step.check.answer and not step.wrong.get(answer)
+            ]
     return warnings

@@ -300,7 +300,7 @@ async def test_answer_that_is_not_right_says_what_to_do(tmp_path: Path) -> None:
             return words in message_of(app)
 
         await type_answer(pilot, app, "41")
-        wrong = "41 is not right. Try again: escape, then Y shows a hint"
+        wrong = "41 is too small. Try again. Escape, then Y shows a hint"
         await until(pilot, partial(says, wrong))
         await pilot.press(*"Q0", "enter")
         await until(pilot, partial(says, "Q0: type a number, such as 12.5"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -28,9 +29,11 @@ GOAL = Goal("far", FinishCondition(), say="Drive.")
 BACK = TrialWorld("from farther back", {"start.x_mm": 460.0}, ("far",))
 
 
-def _session(*checks: Check, hints: tuple[str, ...] = ()) -> LessonSession:
+def _session(
+    *checks: Check, hints: tuple[str, ...] = (), wrong: Mapping[str, str] | None = None
+) -> LessonSession:
     steps = tuple(
-        LessonStep(f"step {at}", f"Step {at}", "", check, 1, hints)
+        LessonStep(f"step {at}", f"Step {at}", "", check, 1, hints, wrong=wrong or {})
         for at, check in enumerate(checks, start=1)
     )
     lesson = Lesson("try", Path("try.md"), "Try", "", "", steps, "", (GOAL,), settings=WORLD)
@@ -134,7 +137,7 @@ def test_only_an_answer_that_is_about_the_question_counts_as_a_try(home: Path) -
         ("", 620.0, "Type an answer"),
         ("five", 620.0, "five: type a number"),
         ("5", 500.0, "The robot is at x = 500 mm. The question is about the right: → moves it."),
-        ("6", 620.0, "6 is not right. Try again: escape, then Y shows a hint"),
+        ("6", 620.0, "6 is too large. Try again. Escape, then Y shows a hint"),
     ):
         with pytest.raises(TuisimError, match="^" + words.replace(".", r"\.")):
             session.answer(text, x_mm, sight)
@@ -144,6 +147,21 @@ def test_only_an_answer_that_is_about_the_question_counts_as_a_try(home: Path) -
     progress = session.progress.of("step 1")
     assert (progress.tries, progress.hints) == (2, 1)
     assert session.answer("5", 620.0, sight) is Change.GO_ON
+
+
+def test_a_likely_wrong_answer_is_told_its_reason(home: Path) -> None:
+    wrong = {"6": "That is the start.", "7": ""}
+    choice = QuestionCheck("What?", "a", choices=("a", "b", "c"))
+    for check, reasons, text, words in (
+        (QuestionCheck("What?", 5), wrong, "x = 6 mm", "x = 6 mm is not right. That is the start"),
+        (QuestionCheck("What?", 5), wrong, "7", "7 is too large. Try again"),
+        (choice, {"b": "It is not."}, "2", "2 is not right. It is not"),
+        (choice, {"b": "It is not."}, "3", "3 is not right. Try again"),
+    ):
+        session = _session(check, wrong=reasons)
+        with pytest.raises(TuisimError) as error:
+            session.answer(text, 620.0, Sight(frozenset()))
+        assert str(error.value) == words
 
 
 def test_what_was_on_the_screen_since_the_step_began_is_seen(home: Path) -> None:

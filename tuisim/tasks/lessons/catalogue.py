@@ -60,14 +60,17 @@ log = { name = "X", levels = [1000], within = 5, reading = "motor", x_mm = [[995
 #   visit = { from_s = 1, to_s = 2 }                        a past instant of a run is in view
 #   show = "instrumentation"     a panel is on the screen; also { panel = "debug", paused = true }
 # Further keys: hints, a list of texts; why, a sentence that appears when the step is done and says why that is right;
-# model and wrong, texts that pass and that do not, to test the check; excludes, the wrong ways that the step does not
-# admit, each with the reason. There are four: a literal answer, no sensor, wrong order, wrong place. A goal keeps them
-# out with reading, x_mm, as_read, once, after … in log and print, with read, use and also: `tuisim guide goal-files`.
+# model and wrong, texts that pass and that do not, to test the check; [step.wrong], the same with the reasons that the
+# student reads; excludes, the wrong ways that the step does not admit, each with the reason. There are four: a literal
+# answer, no sensor, wrong order, wrong place. A goal keeps them out with reading, x_mm, as_read, once, after … in log
+# and print, with read, use and also: `tuisim guide goal-files`.
 [[step]]
 name = "turns"
 hints = ["One rotation moves the robot by the circumference of a wheel.", "That is 56 mm times pi."]
-wrong = ["5", "500"]
 why = "One rotation is 3.14159 × 56 = 175.9 mm, and 500 / 175.9 = 2.842."
+[step.wrong]
+"8.93" = "Divide by the circumference of the wheel, not by its diameter."
+"0.352" = "That is 175.9 / 500: divide the other way round."
 [step.question]
 ask = "How many rotations of a 56 mm wheel are 500 mm?"
 answer = 2.842

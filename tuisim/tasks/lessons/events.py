@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TypeAlias, assert_never
 
 from tuisim.base.data_class import dataclass
@@ -188,14 +188,18 @@ def find_passed_runs(check: RunCheck, events: Sequence[Event]) -> list[JudgedRun
 
 def is_right(question: QuestionCheck, text: str) -> bool:
     """Return whether a typed text answers a question. A number may have a unit; a choice may be given by its number."""
-    match question.answer:
-        case int() | float() as answer:
-            number = _parse_number(text)
-            return number is not None and abs(number - answer) <= question.within + 1e-9
-        case str() as answer:
-            return _is_same(_resolve_choice(question, text), answer)
-        case several:
-            return any(_is_same(text, answer) for answer in several)
+    answer = question.answer
+    return any(
+        _is_answer(question, text, right)
+        for right in (answer if isinstance(answer, tuple) else (answer,))
+    )
+
+
+def _is_answer(question: QuestionCheck, text: str, answer: float | str) -> bool:
+    if isinstance(answer, str):
+        return _is_same(_resolve_choice(question, text), answer)
+    number = _parse_number(text)
+    return number is not None and abs(number - answer) <= question.within + 1e-9
 
 
 def explain_unready(question: QuestionCheck, event: Typed) -> str:
@@ -213,6 +217,25 @@ def explain_unready(question: QuestionCheck, event: Typed) -> str:
     if x_mm is not None and places and not any(left <= x_mm <= right for left, right in places):
         return f"The robot is at x = {x_mm:.0f} mm. The question is about {question.where}."
     return ""
+
+
+def explain_wrong(question: QuestionCheck, wrong: Mapping[str, str], text: str) -> str:
+    """Return in words why a typed answer is wrong: the lesson's reason, or for another number, its direction.
+
+    Args:
+        question: The question.
+        wrong: Wrong answers with their reasons.
+        text: The answer, which is wrong and has the form that the question needs.
+    """
+    right = question.answer if isinstance(question.answer, int | float) else None
+    for answer, reason in wrong.items():
+        other = answer if right is None else _parse_number(answer)
+        if reason and other is not None and _is_answer(question, text, other):
+            return f"{text} is not right. {reason.rstrip('.')}"
+    number = _parse_number(text)
+    if right is None or number is None:
+        return f"{text} is not right. Try again"
+    return f"{text} is too {'small' if number < right else 'large'}. Try again"
 
 
 def describe_form(question: QuestionCheck, text: str) -> str:

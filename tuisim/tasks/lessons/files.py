@@ -50,7 +50,8 @@ MAX_MINUTES = 600
 MAX_WRONG = 20
 
 _LESSON_KEYS = ("title", "why", "minutes", "step")
-_STEP_KEYS = ("name", "hints", "why", "model", "wrong", "excludes")
+_WRONG = "wrong"
+_STEP_KEYS = ("name", "hints", "why", "model", _WRONG, "excludes")
 _NUMBERED = re.compile(r"^\d+[-_ ]+")
 _CODE_FENCE = re.compile(r"^(`{3,}|~{3,})\s*(.*?)\s*$")
 
@@ -341,7 +342,7 @@ def _parse_step(data: object, section: _Section, location: Location, file: str) 
         model=files.convert(table.get("model", ""), str, location.at("model"))
         if "model" in table
         else "",
-        wrong=_parse_texts(table, "wrong", location, MAX_WRONG),
+        wrong=_parse_wrong(table, location),
         wrong_programs=tuple(
             WrongProgram(block.text, block.line, block.way) for block in section.of(Role.WRONG)
         ),
@@ -358,6 +359,16 @@ def _parse_step(data: object, section: _Section, location: Location, file: str) 
 def _parse_excludes(data: object, location: Location) -> dict[Way, str]:
     table = files.table(data, location, tuple(Way))
     return {Way(way): files.convert(reason, str, location.at(way)) for way, reason in table.items()}
+
+
+def _parse_wrong(table: Any, location: Location) -> dict[str, str]:
+    """Return the wrong answers of a step with their reasons, from a table; those of a list have no reason."""
+    if not isinstance(table.get(_WRONG), dict):
+        return dict.fromkeys(_parse_texts(table, _WRONG, location, MAX_WRONG), "")
+    return {
+        answer: files.convert(reason, str, location.at(f"{_WRONG}.{answer}"))
+        for answer, reason in table[_WRONG].items()
+    }
 
 
 def _parse_texts(table: Any, key: str, location: Location, max_count: int) -> tuple[str, ...]:
@@ -395,7 +406,7 @@ def _check_goals(check: Check, goals: set[str], location: Location) -> None:
 def _check_models(step: LessonStep, location: Location) -> None:
     """Raise ConfigError if a step's model answer does not pass the step's check, or a wrong answer passes it."""
     if isinstance(step.check, RunCheck):
-        for key in ("model", "wrong"):
+        for key in ("model", _WRONG):
             if getattr(step, key):
                 raise location.at(key).wrong(
                     "is not for a step that runs a program", f"a block ```python {key}"
@@ -405,7 +416,7 @@ def _check_models(step: LessonStep, location: Location) -> None:
         raise location.at("model").wrong("is missing", "give what a student would type")
     for key, text in (
         ("model", step.model),
-        *((f"wrong[{number}]", answer) for number, answer in enumerate(step.wrong, 1)),
+        *((f"{_WRONG}[{number}]", answer) for number, answer in enumerate(step.wrong, 1)),
     ):
         try:
             event = (
@@ -455,7 +466,7 @@ def merge_telling(other: Any, own: Any) -> Any:
             return {
                 **other,
                 **{
-                    key: merge_telling(other.get(key), value)
+                    key: value if key == _WRONG else merge_telling(other.get(key), value)
                     for key, value in own.items()
                     if key != TELLS
                 },

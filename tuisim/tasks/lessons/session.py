@@ -35,6 +35,7 @@ from tuisim.tasks.lessons.events import (
     count_good_runs,
     describe_form,
     explain_unready,
+    explain_wrong,
     find_passed_runs,
     is_met,
     note_fault,
@@ -287,8 +288,8 @@ class LessonSession:
         if self._take(typed):
             return Change.GO_ON
         self._count_try(step)
-        hint = ": escape, then Y shows a hint" if len(step.hints) > self.hints else ""
-        raise TuisimError(f"{text} is not right. Try again{hint}")
+        hint = ". Escape, then Y shows a hint" if len(step.hints) > self.hints else ""
+        raise TuisimError(f"{explain_wrong(check, step.wrong, text)}{hint}")
 
     def _count_try(self, step: LessonStep) -> None:
         tries = self.progress.of(step.name).tries + 1

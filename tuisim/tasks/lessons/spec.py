@@ -313,8 +313,8 @@ class LessonStep:
     """The model answer, a program, if the check is about runs."""
     model: str = ""
     """An answer that passes a check which is not about runs: a text, a breakpoint, an expression; see `parse_event`."""
-    wrong: tuple[str, ...] = ()
-    """Answers that must not pass such a check."""
+    wrong: Mapping[str, str] = field(default_factory=dict)
+    """Answers that must not pass such a check, and why each is wrong, in a sentence; it may be empty."""
     wrong_programs: tuple[WrongProgram, ...] = ()
     excludes: Mapping[Way, str] = field(default_factory=dict)
     """The wrong ways that are impossible in this step, each with the reason."""
