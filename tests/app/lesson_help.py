@@ -65,12 +65,12 @@ SMALL = (80, 24)
 LARGE = (120, 40)
 
 
-def opened(tmp_path: Path, check: str = "show = 'chart'") -> AppSettings:
-    """What `tuisim learn` makes of a lesson whose last step has a check."""
+def opened(tmp_path: Path, check: str = "show = 'chart'", text: str = "") -> AppSettings:
+    """What `tuisim learn` makes of a lesson whose last step has a check, and of the text of steps after it."""
     folder = tmp_path / "lessons"
     folder.mkdir(exist_ok=True)
     path = folder / "try.md"
-    path.write_text(LESSON % check)
+    path.write_text(LESSON % check + text)
     lesson = load_lesson(path)
     made = settings(lesson=lesson, goals=lesson.task, lessons_folder=str(folder), speed=0.0)
     spec = build_run_spec(merge_settings(lesson.settings))

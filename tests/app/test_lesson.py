@@ -87,6 +87,23 @@ async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("size, is_kept", [(SMALL, False), (LARGE, True)], ids=["80", "120"])
+async def test_in_a_low_terminal_the_text_gets_the_rows_of_the_panel_of_an_earlier_step(
+    size: tuple[int, int], is_kept: bool, tmp_path: Path
+) -> None:
+    check = """show = 'instrumentation'
+[[step]]
+name = "see"
+show = 'arrays'"""
+    async with open_lab(opened(tmp_path, check, "## See\n"), size=size) as (pilot, app):
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await pilot.press("i")
+        await until(pilot, lambda: states().get("do") == "done")
+        await until(pilot, lambda: app.panel_area.is_shown("instrumentation") is is_kept)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("size, has_world", [(SMALL, False), (LARGE, True)], ids=["80", "120"])
 async def test_lesson_is_beside_the_log(
     size: tuple[int, int], has_world: bool, tmp_path: Path

@@ -156,8 +156,12 @@ class LessonController:
         session.begin_step(recording.run_id if recording else "")
         match session.step.check if session.step is not None else None:
             case ShowCheck(panel=panel):
-                # It is the student's task to open this panel.
-                self._panel_area.request({panel: False})
+                # It is the student's task to open this panel. In a low terminal the text needs the rows of those that
+                # earlier steps asked for.
+                is_low = self._panel_area.size.height < _ROOMY_ROWS
+                former = session.lesson.steps[: session.at] if is_low else ()
+                asked = [step.check.panel for step in former if isinstance(step.check, ShowCheck)]
+                self._panel_area.request(dict.fromkeys((*asked, panel), False))
             case QuestionCheck(at_x_mm=(_, *_)):
                 # The arrow keys are to move the robot, not the lines of the program.
                 self._panel_area.leave_code()

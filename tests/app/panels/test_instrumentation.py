@@ -148,7 +148,7 @@ def test_names_of_parts_are_not_cut(width: int, height: int) -> None:
             "reflected_light_intensity",
             "red 220/255 mean 86.3 %",
             "red 220/255 White",
-            "in2 220/255",
+            "Sensor1 220/255",
         ),
         "percent": (
             "reflected_light_intensity_pc",
@@ -308,10 +308,11 @@ def test_further_motors_and_sensors_have_rows() -> None:
 @pytest.mark.parametrize(
     "width, height, shown",
     [
-        (78, 2, "L R in2 in3 US Gyro x y"),
+        (78, 2, "L R Sensor1 Sensor2 US Gyro x y"),
         (46, 3, "L R in2 in3 US Gyro x y h"),
+        (38, 2, "L R Sensor1 Sensor2 US Gyro"),
         (30, 2, "L R in2 in3"),
-        (78, 1, "L R in2 in3"),
+        (78, 1, "L R Sensor1 Sensor2"),
     ],
 )
 def test_in_few_lines_the_readings_stand_side_by_side(width: int, height: int, shown: str) -> None:

@@ -162,14 +162,18 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
     """Return the readings in columns, with as much detail as the width allows.
 
     If the width is too small, the names of colours are left out; then the pose instead; then both; then the speeds as
-    well; at last whole columns.
+    well; at last whole columns. Colour sensors have their names if these still fit, otherwise their ports.
     """
     for detail, with_pose in ((2, True), (1, True), (2, False), (1, False), (0, False)):
         columns, sensing = _arrange_cells(now, height, detail)
         widths = [max(_measure_line(cell) for cell in column) for column in columns]
         needed = widths if with_pose else widths[:sensing]
-        if sum(needed) + _GAP * (len(needed) - 1) <= width:
+        if _measure_columns(needed) <= width:
             break
+    named, _ = _arrange_cells(now, height, detail, with_sensor_names=True)
+    named_widths = [max(_measure_line(cell) for cell in column) for column in named]
+    if _measure_columns(named_widths[: len(needed)]) <= width:
+        columns, widths = named, named_widths
     lines: list[Line] = [[] for _ in range(height)]
     used = 0
     for column, cells in zip(widths, columns, strict=True):
@@ -188,6 +192,10 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
     return lines
 
 
+def _measure_columns(widths: list[int]) -> int:
+    return sum(widths) + _GAP * (len(widths) - 1)
+
+
 def _build_color_names(now: Snapshot, width: int) -> Line:
     """Return one line with the names of the colours that the sensors see, as many as fit."""
     line: Line = []
@@ -203,17 +211,23 @@ def _build_color_names(now: Snapshot, width: int) -> Line:
     return line
 
 
-def _arrange_cells(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]], int]:
+def _arrange_cells(
+    now: Snapshot, height: int, detail: int, *, with_sensor_names: bool = False
+) -> tuple[list[list[Line]], int]:
     """Return the readings as columns of cells, and how many of these columns the motors and sensors fill.
 
     Args:
         now: The instant.
         height: Most cells of a column.
         detail: 2 with speeds and names of colours, 1 without names, 0 without both.
+        with_sensor_names: Whether the colour sensors have their names, and not their ports.
     """
     robot = now.spec.robot
     motors = build_motor_cells(now, with_speed=detail > 0)
-    sensors = [build_color_cell(port, seen, detail > 1) for _, port, seen in list_seen(now)]
+    sensors = [
+        build_color_cell(name if with_sensor_names else port, seen, detail > 1)
+        for name, port, seen in list_seen(now)
+    ]
     ranging: list[Line] = []
     if now.ultrasonic_mm is not None:
         ranging.append(

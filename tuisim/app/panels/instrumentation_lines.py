@@ -103,18 +103,18 @@ def list_seen(now: Snapshot) -> list[tuple[str, str, LightSeen | None]]:
     return lines
 
 
-def build_color_cell(port: str, seen: LightSeen | None, with_name: bool) -> Line:
+def build_color_cell(label: str, seen: LightSeen | None, with_name: bool) -> Line:
     """Return the reading of a colour sensor as a cell of a column.
 
     Args:
-        port: Port of the sensor.
+        label: Port or name of the sensor.
         seen: Its reading; None while the mat is unknown.
         with_name: Whether to add the name of the colour.
     """
     if seen is None:
-        return [format_label(port, PORT_CELLS), format_unit("–")]
+        return [format_label(f"{label} ", PORT_CELLS), format_unit("–")]
     cell: Line = [
-        format_label(port, PORT_CELLS),
+        format_label(f"{label} ", PORT_CELLS),
         format_value(seen.value),
         format_unit(seen.unit),
         build_swatch(seen.color),
