@@ -217,6 +217,15 @@ def test_a_robot_that_stands_still_has_no_movie(here: Command, home: Path, tmp_p
     assert "details" not in page_of(tmp_path / "still-report.html").tags
 
 
+def test_a_report_says_where_a_run_went_wrong(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "wrong.py").write_text("# %%sim_magic_preloaded\nprint(1 / 0)\n")
+    here("run", "wrong.py")
+    here("log", "report", "last", "--out", "wrong.html")
+    page = (tmp_path / "wrong.html").read_text()
+    assert "Where it went wrong" in page
+    assert page.count("line 2: ZeroDivisionError") == 1
+
+
 def test_several_runs_stand_side_by_side(here: Command, tmp_path: Path, driven: Driven) -> None:
     assert here("log", "report", driven.run.id, driven.run.id, "--out", "two.html").returncode == 0
     page = page_of(tmp_path / "two.html")

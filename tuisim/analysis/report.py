@@ -8,7 +8,7 @@ import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from tuisim.analysis.chart import View, build_chart, build_spans
 from tuisim.analysis.model import AnalysisModel
@@ -39,6 +39,7 @@ from tuisim.settings.options import list_chosen_values
 if TYPE_CHECKING:
     from PIL.Image import Image
 
+Explain: TypeAlias = Callable[[StoredRun], Sequence[str]]
 SUFFIXES = (".html", ".htm")
 MAX_BANDS = 100
 """Maximum number of rows of the table of bands, and of shaded bands of a variable: more hide its curve."""
@@ -73,7 +74,11 @@ def check_report(path: Path) -> None:
 
 
 def write_report(
-    opened: OpenedLog, path: Path, names: Sequence[str] = (), search: Search = find_plateaus
+    opened: OpenedLog,
+    path: Path,
+    names: Sequence[str] = (),
+    search: Search = find_plateaus,
+    explain: Explain | None = None,
 ) -> None:
     """Write the report on a log to a file, which may exist.
 
@@ -82,6 +87,7 @@ def write_report(
         path: The file.
         names: Variables of chart and bands, none for those that the analyser shows first.
         search: Finds the bands, such as `find_plateaus`, or `find_plateaus_in_subprocess` for long logs.
+        explain: Returns why a run went wrong, such as `describe_reasons`.
 
     Raises:
         ExportError: the file cannot be written; an existing one is unchanged.
@@ -89,7 +95,9 @@ def write_report(
     """
     check_report(path)
     # A program may contain lone surrogates, which the page has replaced.
-    write_whole(path, build_report(opened, names, search, movie=len(opened.runs) == 1).encode())
+    is_single = len(opened.runs) == 1
+    page = build_report(opened, names, search, explain=explain, movie=is_single)
+    write_whole(path, page.encode())
 
 
 def build_report(
@@ -98,6 +106,7 @@ def build_report(
     search: Search = find_plateaus,
     title: str = "",
     *,
+    explain: Explain | None = None,
     movie: bool = False,
     pins: Sequence[Pin] = (),
     goals: Table | None = None,
@@ -105,7 +114,7 @@ def build_report(
     """Return the page that `write_report` writes.
 
     Args:
-        opened, names, search: As for `write_report`.
+        opened, names, search, explain: As for `write_report`.
         title: Title of the page, which then names no run and no date: it is the same for identical runs. Empty for the
             title of the log.
         movie: Whether the page has a movie of each run.
@@ -132,6 +141,7 @@ def build_report(
         facts=known if runs else list_log_facts(log),
         errors=[run.end.error.rstrip() for run in runs if run.end and run.end.error],
         goals=goals,
+        reasons=_list_reasons(runs, explain) if explain else (),
         pictures=pictures,
         movies=[picture for picture in movies if picture is not None],
         chart=_draw_chart(model),
@@ -141,6 +151,11 @@ def build_report(
         reading_notes=log.notes,
         programs=[(program.name, source_lines(program.text)) for program in programs],
     )
+
+
+def _list_reasons(runs: Sequence[StoredRun], explain: Explain) -> list[str]:
+    which = {run.id: f"run {run.number}: " if len(runs) > 1 else "" for run in runs}
+    return [f"{which[run.id]}{reason}" for run in runs for reason in explain(run)]
 
 
 def _find_bands(opened: OpenedLog, names: Sequence[str], search: Search) -> AnalysisModel:

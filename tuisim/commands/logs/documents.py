@@ -144,6 +144,7 @@ def report(arguments: Arguments) -> int:
     """
     # Imported on demand: it imports the code for pictures and movies, which a chart does not need.
     from tuisim.analysis.report import build_default_name, check_report, write_report
+    from tuisim.tasks.reasons.reason import describe_reasons
 
     if not arguments.words:
         raise ConfigError(
@@ -162,6 +163,6 @@ def report(arguments: Arguments) -> int:
     source = replace(source, log=add_named_columns(source.log, " ".join(arguments.variable)))
     names = choose_names(source.log, arguments) if arguments.variable else ()
     target = Path(arguments.out or build_default_name(source))
-    write_report(source, target, names)
+    write_report(source, target, names, explain=describe_reasons)
     echo_written(target)
     return 0

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.protocol import End
@@ -114,6 +115,14 @@ def find_reasons(
     if earlier is not None and is_repeat(run, earlier):
         reasons += _find_difference(run, earlier)
     return sort_by_cause(reasons)
+
+
+def describe_reasons(run: StoredRun) -> list[str]:
+    """Return the reasons of `find_reasons` as sentences with their instants; none if the mat no longer exists."""
+    try:
+        return [reason.words for reason in find_reasons(run)]
+    except LogError:
+        return []
 
 
 _CAUSES = frozenset({ReasonKind.LOST, ReasonKind.MISTAKEN})

@@ -145,5 +145,6 @@ def report(screen: LogScreen) -> None:
 
 def _write_report(opened: OpenedLog, target: Path, names: Sequence[str]) -> None:
     from tuisim.analysis.report import write_report
+    from tuisim.tasks.reasons.reason import describe_reasons
 
-    write_report(opened, target, names, build_band_search(opened.log.rows))
+    write_report(opened, target, names, build_band_search(opened.log.rows), describe_reasons)
