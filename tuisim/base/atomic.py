@@ -20,7 +20,7 @@ _OWNER_FOLDER, _OWNER_FILE = 0o700, 0o600
 
 
 def private(path: str, flags: int) -> int:
-    """Open a file as `opener` of `open`; a new file gets owner-only permissions. Return its descriptor."""
+    """Open a file as the `opener` argument of `open` must; return its descriptor. Only the owner may use a new file."""
     return _open(path, flags, _OWNER_FILE)
 
 
@@ -106,7 +106,7 @@ def sweep(folder: Path, name: str = "*") -> None:
 
     Args:
         folder: The folder.
-        name: The name of the files that they were to become; may contain `*`.
+        name: The name of the file that a temporary file was to replace; `*` in it matches any text.
     """
     # The `*` at the end includes the further files that SQLite keeps beside a temporary database.
     for beside in folder.glob(f".{name}.*{_PART_SUFFIX}*"):

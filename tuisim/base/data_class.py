@@ -20,7 +20,7 @@ _Class = TypeVar("_Class", bound=type)
 
 
 class _Factory:
-    """The default that a signature shows for a field whose value `default_factory` creates for each object."""
+    """What a signature shows as default, `<factory>`, for a field that has a `default_factory`."""
 
     def __repr__(self) -> str:
         return "<factory>"
@@ -118,13 +118,16 @@ _LATE: list[_LateInit] = []
 
 
 def prepare() -> None:
-    """Compile every `__init__` that was not used yet, so that processes forked from this one need not do so."""
+    """Compile the `__init__` of all data classes that have no object yet.
+
+    Processes forked from this one then need not compile them.
+    """
     while _LATE:
         _LATE.pop().write()
 
 
 def _contents(all_fields: tuple[Field[Any], ...]) -> Callable[[Any], tuple[Any, ...]]:
-    """Return a function that returns the values of an object's fields that `==` compares."""
+    """Return a function that takes an object, and returns a tuple of the fields that `==` compares."""
     names = [one.name for one in all_fields if one.compare]
     if len(names) > 1:
         return attrgetter(*names)

@@ -31,7 +31,10 @@ MOST_NAME = 80
 
 
 def shortened(text: str, most: int = MOST_REASON) -> str:
-    """Return a text of at most `most` characters, with `…` for the rest: a damaged file may contain a long one."""
+    """Return a text, cut after `most` characters, with `…` at the end if it was cut.
+
+    A damaged file may contain a name of any length.
+    """
     return text if len(text) <= most else f"{text[:most]}…"
 
 
@@ -60,7 +63,7 @@ def closest(name: str, known: Iterable[str], most: int = 3, likeness: float = 0.
         name: The name to compare.
         known: The known names.
         most: How many names to return, at most.
-        likeness: The least similarity, from 0 to 1, as of `difflib`.
+        likeness: Names with a lower similarity are left out: from 0 to 1, as `difflib` computes it.
     """
     from difflib import get_close_matches
 
@@ -69,18 +72,18 @@ def closest(name: str, known: Iterable[str], most: int = 3, likeness: float = 0.
 
 
 def nearest(name: str, allowed: Iterable[str]) -> str:
-    """Return the hint for an unknown name: the most similar allowed names, or all if none is similar."""
+    """Return the hint for an unknown name: the allowed names most similar to it, or all if none is similar."""
     names = list(allowed)
     return did_you_mean(closest(name, names, 3, 0.5)) or f"one of {', '.join(names)}"
 
 
 def among(name: str, allowed: Iterable[str], unlisted: Iterable[str] = ()) -> str:
-    """Return the hint for an unknown name in data: the most similar name, and all allowed ones.
+    """Return the hint for an unknown name in a file: the name most similar to it, if any, and then all allowed names.
 
     Args:
         name: The unknown name.
         allowed: The names to list.
-        unlisted: Other names that are also compared.
+        unlisted: Other names that may be the similar one.
     """
     names = list(allowed)
     close = closest(name, [*names, *unlisted], 1)

@@ -36,9 +36,9 @@ def home_folder() -> Path:
 
 
 def session_folder() -> Path:
-    """Return the folder with the panels, unsaved texts and the like that an app restores at its next start.
+    """Return the folder in which an app stores its panels and unsaved texts, to restore them at its next start.
 
-    It is `TUISIM_SESSION` for an app with its own session, else `home_folder`.
+    It is `TUISIM_SESSION`, which is set for an app with a session of its own; otherwise it is `home_folder`.
     """
     session = os.environ.get("TUISIM_SESSION")
     return Path(session) if session else home_folder()

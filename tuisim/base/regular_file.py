@@ -19,8 +19,7 @@ def open_regular(path: Path, follow_links: bool = False) -> BinaryIO:
     Args:
         path: The file.
         follow_links: Whether the path may end in a link, as users expect of their own files; False where a program
-            could
-            have put a link.
+            could have put a link.
 
     Raises:
         OSError: it cannot be opened; ELOOP for a link, EINVAL for a pipe, a device, a socket or a folder.

@@ -11,7 +11,9 @@ _MAX_FOLDERS = 200
 
 
 def find_module_folder(name: str, folder: str) -> str:
-    """Return the folder of a repository that contains a module, as a path relative to `folder`; empty if there is none.
+    """Return the folder that contains a module, among those of the repository that contains the program.
+
+    The result is a path relative to `folder`. It is empty if no folder, or only `folder` itself, contains the module.
 
     Args:
         name: The name of the module, without dots.

@@ -43,7 +43,9 @@ def place_robot(choice: RobotChoice, mat: Background) -> RobotSpec:
 
 
 def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) -> Pose:
-    """Return the start pose: the mat's, moved so that the robot can turn within solid walls, or that of the settings.
+    """Return the start pose. Its coordinates and heading are those of the settings, where they are set, else the mat's.
+
+    Within solid walls, the mat's position is moved so that the robot can turn there.
 
     Args:
         settings: The settings.
@@ -87,7 +89,10 @@ def _place_obstacles(settings: Settings, mat: Background) -> tuple[Obstacle, ...
 
 
 def _drop_scale_of_ev3(drift: DriftSpec) -> DriftSpec:
-    """Return a drift for a hub: typical sizes without that of `gyro_scale_pc`, whose source is about the EV3."""
+    """Return the drift of a robot with a hub: if it is `typical`, with a `gyro_scale_pc` of 0.
+
+    The typical value of `gyro_scale_pc` comes from measurements of the EV3's gyro.
+    """
     text = list_values(WorldSpec)["drift"].format_text(drift)
     is_of_ev3 = text.startswith("typical") and "gyro_scale_pc" not in text
     return replace(drift, gyro_scale_pc=0.0) if is_of_ev3 else drift

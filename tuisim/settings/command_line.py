@@ -50,7 +50,7 @@ class WordType(click.ParamType):  # type: ignore[type-arg]
         self._names = names
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the value of a text; a default is returned as it is."""
+        """Return the value that a text stands for; return any other value, such as a default, unchanged."""
         return self._convert(value) if isinstance(value, str) else value
 
     def shell_complete(
@@ -67,7 +67,10 @@ class WordType(click.ParamType):  # type: ignore[type-arg]
 
 
 def _add_files(completions: list[CompletionItem], incomplete: str) -> list[CompletionItem]:
-    """Return completions with the files that match; without any, leave files to the shell, which quotes them."""
+    """Return the completions of a word, and after them the paths of the files that begin with the word.
+
+    If there are no completions, return one that makes the shell complete files itself, with quotes where needed.
+    """
     if not completions:
         return [CompletionItem(incomplete, type="file")]
     return (
@@ -344,7 +347,10 @@ class Group(click.Group):
             formatter.write_dl(list(self.listing.items()))
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse the group's words, which may begin with a subcommand's options, or leave out the default subcommand."""
+        """Parse the words after the group's name.
+
+        The name of a subcommand may come after its options; the default subcommand need not be named.
+        """
         if args or not ctx.resilient_parsing:
             args = self.insert_command(ctx, args)
         try:
@@ -353,7 +359,10 @@ class Group(click.Group):
             raise _convert_error(error, ctx) from None
 
     def insert_command(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Return the words with the subcommand's name first, even if its options came before it."""
+        """Return the words with the subcommand's name first, even if its options came before it.
+
+        If no subcommand is named, the default one is added; without a default, the words are returned unchanged.
+        """
         if args and (not args[0].startswith("-") or args[0] in ctx.help_option_names):
             return args
         every = [

@@ -37,7 +37,7 @@ PERSISTENT = frozenset({"background", "mats", "robot", "obstacles", "profile", *
 
 @dataclass(frozen=True, slots=True)
 class AppWords:
-    """The words of a magic line about the app in a cell: its height, and who may show it."""
+    """The options of the magic that shows the app in a cell: its height, and which web pages may show it."""
 
     height_px: int = DEFAULT_HEIGHT_PX
     origins: tuple[str, ...] = ()
@@ -264,7 +264,9 @@ def parse_log_line(line: str, magic: str) -> Arguments:
 
 
 def update_persistent(before: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings that later cells of a notebook keep; a cell that sets a mat first drops `RESET_BY_MAT`.
+    """Return the settings that a notebook keeps after a cell, for its later cells.
+
+    If the cell sets a mat, those of `RESET_BY_MAT` that were kept before are dropped.
 
     Args:
         before: The settings that were kept before the cell.

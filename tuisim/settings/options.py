@@ -44,7 +44,7 @@ DEFAULT_FPS = 20
 
 
 def parse(value: Value, text: str, key: str) -> Any:
-    """Return the value of an option's text.
+    """Return the value that the text of an option stands for.
 
     Args:
         value: The kind of value.
@@ -97,7 +97,7 @@ class Name(Value):
 
 
 class RunValue(NamedTuple):
-    """A value of a run that has a setting of its own: one of the world or the pen, or the seed."""
+    """A value of a run specification that has a setting of its own: a value of the world or the pen, or the seed."""
 
     spec_path: str
     """Its path in the specification."""
@@ -131,7 +131,7 @@ RUN_VALUES: Mapping[str, RunValue] = dict(_run_values())
 
 
 def read_run_values(spec: RunSpec) -> dict[str, Scalar]:
-    """Return the values of a run by path, in the form of files."""
+    """Return the values of a run that have a setting of their own, by the path of the setting, as in TOML files."""
     return {
         path: toml_form(run_value.value, get_value(spec, run_value.spec_path))
         for path, run_value in RUN_VALUES.items()

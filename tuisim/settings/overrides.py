@@ -79,7 +79,7 @@ def resolve_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dic
 def _nest(values: Mapping[str, Any], location: Location) -> dict[str, Any]:
     """Return keys with dots as nested tables.
 
-    If a robot or profile has a name besides keys, the name is under the key `robot=` or `profile=`.
+    If both `robot` (or `profile`) and keys such as `robot.name` are given, the value of `robot` is under `robot=`.
     """
     table: dict[str, Any] = {}
     for key, value in values.items():

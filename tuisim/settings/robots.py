@@ -319,9 +319,9 @@ _WITHOUT_EFFECT = ("baseWeight", "width", "height")
 def parse_json_robot(data: object, name: str, location: Location) -> RobotChoice:
     """Return the robot in a file that the course's browser simulator saved.
 
-    Missing keys are as in Default_Robot; its noise settings become those of the run. A key that the simulator does
-    not know either is ignored, with a note. Keys are translated to those of a robot's TOML table, so both formats are
-    checked by the same rules.
+    Missing keys are as in Default_Robot. The file's noise settings become those of the run. Keys that neither that
+    simulator nor tuisim knows are ignored, and listed in the robot's notes. The other keys are translated to those of a
+    robot's TOML table, so both formats are checked by the same rules.
 
     Args:
         data: The contents of the file.
@@ -478,7 +478,7 @@ def format_robot(
 
 
 def _is_left_out(spec: RobotSpec, key: str) -> bool:
-    """Return whether robot files leave out a value: older files do not have it, and it equals its default."""
+    """Return whether robot files leave out a value: the first robot files lacked it, and it equals its default."""
     return _VALUES[key].later and getattr(spec, key) == RobotSpec.__dataclass_fields__[key].default
 
 

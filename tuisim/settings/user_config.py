@@ -162,10 +162,10 @@ class UserConfig:
         )
 
     def list_effective(self, *above: Mapping[str, Any]) -> list[str]:
-        """Return a line for each setting of the simulation in the file that no layer above overrides.
+        """Return a line `NAME = VALUE` for each setting of `[simulation]` in the file that no other layer overrides.
 
         Args:
-            above: Layers of settings, by path.
+            above: The layers with precedence over the file: settings by path.
         """
         return [
             f"{setting.name} = {quote(self.written[path])}"
@@ -389,7 +389,7 @@ def save_setting(setting: Setting, value: Scalar | None) -> None:
         value: Its new value; None to remove it.
 
     Raises:
-        ConfigError: the value is wrong, or the file is no TOML or cannot be read or written. It is unchanged.
+        ConfigError: the value is wrong, or the file is no TOML or cannot be read or written. The file is unchanged.
     """
     path = find_config_file()
     text = read_config_text(path)

@@ -258,7 +258,10 @@ def _parse_argument(word: object, location: Location) -> str:
 
 
 def _find_program(word: str, folder: Path, resolve: Resolver) -> str:
-    """Return the resolved path of a world's program; an example's name unless its folder has a file of that name."""
+    """Return the program that a world file names: the name of an example, or else a resolved path.
+
+    A file of that name in the world file's folder takes precedence over an example.
+    """
     known = os.sep not in word and not os.path.exists(folder / word)
     if known and any(os.path.isfile(programs_folder() / name) for name in (word, f"{word}.py")):
         return word
@@ -296,7 +299,10 @@ def _parse_mat(
 def _resolve_name(
     word: str, location: Location, resolve: Resolver, load: Callable[[str], object]
 ) -> str:
-    """Return a name, or the resolved path of a file, after loading it once so that errors name this file and key."""
+    """Return a name unchanged; for the path of a file, return it resolved.
+
+    `load` is called once, so that its errors name the file and key of `location`.
+    """
     if files.means_file(word):
         word = resolve(word)
     with files.errors_at(location.file, location.key):
