@@ -58,7 +58,7 @@ _NO_CONDITION = {
 
 @dataclass(frozen=True, slots=True)
 class LineBreak:
-    """Pauses when a line of the program is about to run."""
+    """The rule of a breakpoint that pauses the program when one of its lines is about to run."""
 
     line: int
     condition: str = ""
@@ -67,14 +67,14 @@ class LineBreak:
 
 @dataclass(frozen=True, slots=True)
 class TimeBreak:
-    """Pauses when a simulated time is reached."""
+    """The rule of a breakpoint that pauses the program when a simulated time is reached."""
 
     time_s: float
 
 
 @dataclass(frozen=True, slots=True)
 class StallBreak:
-    """Pauses when a running motor is blocked."""
+    """The rule of a breakpoint that pauses the program when a running motor is blocked."""
 
 
 BreakRule = LineBreak | ValueCondition | TimeBreak | StallBreak
@@ -90,19 +90,19 @@ class Breakpoint:
     disabled: bool = False
 
     def written(self) -> str:
-        """The text from which `parse_break` makes this breakpoint again, also a disabled one."""
+        """The breakpoint as a text that `parse_break` can read; the text of a disabled breakpoint begins with `# `."""
         return f"# {self.text}" if self.disabled else self.text
 
     def check_line(self, lines: Sequence[str]) -> None:
-        """Check that a line breakpoint can be hit: its line, or one after it, must have code.
+        """Check that the program has code on the line of a line breakpoint, or on a later line.
 
-        One without a line passes.
+        Other breakpoints have no line, and are not checked.
 
         Args:
             lines: The lines of the program.
 
         Raises:
-            ConfigError: it can never be hit.
+            ConfigError: there is no code on or after the line.
         """
         line = self.find_line()
         if line and not find_code_line(lines, line):
@@ -215,7 +215,18 @@ def _condition(text: str, word: str, run: RunSpec | None) -> ValueCondition:
 
 
 def _column(text: str, written: str, run: RunSpec | None) -> str:
-    """Return the name of the column that is written; without a run, the written text if it can be a name."""
+    """Return the name of the column that the word `written` names.
+
+    Without a run, return the word itself, if a column can have such a name.
+
+    Args:
+        text: The text of the breakpoint, for errors.
+        written: The word in it that names the column.
+        run: The run whose columns are searched.
+
+    Raises:
+        ConfigError: there is no such column.
+    """
     if run is None:
         if not _NAME.fullmatch(written):
             raise _refuse(text, f"there is no {written!r}")

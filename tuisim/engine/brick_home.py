@@ -22,9 +22,15 @@ def parts_in_home(path: str, own_folder: str) -> list[str] | None:
 
 
 def find_beside(parts: Sequence[str], own_folder: str) -> str:
-    """Return the file or folder beside the program that a path in the home folder means; empty if there is none.
+    """Return the file or folder in the program's folder to which a path below the home folder leads.
 
-    The program's folder may be anywhere in the home folder: leading parts of the path are left out until it is found.
+    It is not known where in the home folder the program's folder is. So leading parts of the path are left out, one
+    after
+    another, until the rest exists in the program's folder. The result is empty if nothing exists.
+
+    Args:
+        parts: The parts of the path below the home folder.
+        own_folder: The program's folder.
     """
     ends = (parts[first:] for first in range(len(parts)))
     paths = (os.path.join(own_folder, *end) for end in ends)
@@ -32,7 +38,11 @@ def find_beside(parts: Sequence[str], own_folder: str) -> str:
 
 
 def place_folder(path: str, own_folder: str) -> str:
-    """Return the folder that a path of the program means; a missing folder of the home folder is the program's own."""
+    """Return the folder on this computer to which a path of the program leads.
+
+    If the path is in the brick's home folder and nothing in the program's folder matches it, return the program's
+    folder.
+    """
     parts = parts_in_home(path, own_folder)
     return path if parts is None else find_beside(parts, own_folder) or own_folder
 

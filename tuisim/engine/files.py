@@ -51,7 +51,12 @@ class Location:
     """The path of the value in the file, such as `ultrasonic.x_mm` or `obstacle[1]`; empty for the top level."""
 
     def at(self, key: str, error: type[ConfigError] | None = None) -> Location:
-        """Return the location of a key of this table, with another class of errors if given."""
+        """Return the location of a key in the table at this location.
+
+        Args:
+            key: The key.
+            error: The class of errors about it; None for that of this location.
+        """
         joint = "." if self.key and not key.startswith("[") else ""
         return replace(self, key=f"{self.key}{joint}{key}", error=error or self.error)
 
@@ -112,7 +117,7 @@ def with_location(error: ConfigError, file: str, key: str) -> ConfigError:
 
 @contextmanager
 def errors_at(file: str, prefix: str = "") -> Iterator[None]:
-    """Add a file and the key of a table to the ConfigErrors of the block that have no file."""
+    """In a `with` block, add a file and the key of a table to each ConfigError that names no file."""
     try:
         yield
     except ConfigError as error:
@@ -199,10 +204,11 @@ def _text(path: Path, error: type[ConfigError]) -> str:
 
 
 def close_beside(path: Path, suffixes: Collection[str]) -> list[str]:
-    """Return the names of existing files beside a missing one that are similar to its name, whatever their suffixes.
+    """Return the names of files in the same folder that are similar to a missing file's; suffixes are not compared.
 
     Args:
-        suffixes: The suffixes that the files may have.
+        path: The missing file.
+        suffixes: Only files with one of these suffixes are returned.
     """
     try:
         beside = sorted(
@@ -284,7 +290,7 @@ def required(data: Mapping[str, object], key: str, at: Location) -> object:
 
 
 def entries(data: object, at: Location, most: int, what: str) -> list[tuple[object, Location]]:
-    """Return the entries of a list, each with its location; the first is `key[1]`.
+    """Return the entries of a list, each with its location, such as `key[1]` for the first one.
 
     Args:
         what: What the entries are, in the plural, for errors.
@@ -325,7 +331,7 @@ def read_value(data: object, value: Value, at: Location) -> Any:
 
 
 def read_part(data: object, base: _Spec | type[_Spec], at: Location, **given: object) -> _Spec:
-    """Return a sensor or another spec with the values in a table, which never contains its name.
+    """Return a sensor or another spec with the values in a table; the table must not contain the spec's name.
 
     Args:
         base: A spec whose values stand for those that the table leaves out; or the class of a new spec.
@@ -404,7 +410,11 @@ def _type_info(kind: Any) -> types.Type:
 def _walk(
     data: object, info: types.Type, at: Location
 ) -> Iterator[tuple[str, tuple[object, types.Type]]]:
-    """Yield key, value and type of everything in a file; raise ConfigError for faults that types do not express."""
+    """Yield the location of each value in the data of a file, with the value and the type that it must have.
+
+    Raises:
+        ConfigError: a value is wrong in a way that the type cannot express, such as a text of two lines.
+    """
     from msgspec import inspect as types
 
     match info, data:
@@ -530,7 +540,7 @@ def value_lines(part: Spec, keys: Iterable[str]) -> list[str]:
 
 
 def toml_form(value: Value, found: Any) -> Scalar:
-    """Return a value in the form in which a file has it, such as a name or a list."""
+    """Return a value as TOML files contain it: as a name if it has one, as a list if it is a tuple, else unchanged."""
     if isinstance(value, NamedNumber):
         return value.named(found)
     if isinstance(value, NamedPart):

@@ -126,7 +126,13 @@ class Solids:
         return self._free.any_mm - math.hypot(pose[0] - x, pose[1] - y) - turned
 
     def find_leeway(self, pose: PoseTuple, forward_mm: float, turn_deg: float) -> Leeway:
-        """Return the part of a tick's motion that obstacles allow; `turn_deg` is positive counter-clockwise."""
+        """Return the part of a tick's motion that obstacles allow, and how they push the robot aside.
+
+        Args:
+            pose: x and y in mm, heading in degrees, before the motion.
+            forward_mm: The motion along the heading.
+            turn_deg: The turn, positive counter-clockwise.
+        """
         way = abs(forward_mm) + abs(math.radians(turn_deg)) * self.reach_mm
         if self.remaining_mm(pose) >= way:
             return UNHINDERED
@@ -181,9 +187,14 @@ class Solids:
         return Leeway(part, (0.0, 0.0))
 
     def _push_aside(self, body: Body, boxes: list[Box], floors: list[float]) -> Leeway:
-        """Return the displacement after which each gap of a body is at least its value in `floors`.
+        """Return the whole motion with the displacement that makes each gap of a body at least its value in `floors`.
 
-        If there is no such displacement, the result allows no motion at all.
+        If there is no such displacement, return a `Leeway` that allows no motion.
+
+        Args:
+            body: The robot's body after the whole motion.
+            boxes: The obstacles near it.
+            floors: The smallest gap that is allowed to each wall and box, in the order of `_measure_gaps`.
         """
         x_mm = y_mm = 0.0
         there = body

@@ -26,8 +26,8 @@ COLOR_NAMES = ("NoColor", "Black", "Blue", "Green", "Yellow", "Red", "White", "B
 class Column:
     """A column of a recording: a name with a value for each tick of a run.
 
-    Each column belongs to the robot, a sensor or a motor. It is either measured, or computed from the measured columns
-    of the same owner, which come first, in the order in which the owner measures them.
+    Each column belongs to an owner: the robot, a sensor or a motor. A column is either measured, or computed from the
+    measured columns of its owner. An owner's measured columns come before its computed ones.
     """
 
     name: str

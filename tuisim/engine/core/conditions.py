@@ -139,7 +139,7 @@ class ValueCondition:
 
 
 class Edge:
-    """Follows a value over time, and finds the instants at which a condition on it becomes true."""
+    """A condition on a value over time, and whether it was true for the last value."""
 
     __slots__ = ("_before", "_held", "_is_momentary", "_test")
 

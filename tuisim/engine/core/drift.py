@@ -60,7 +60,7 @@ class DrawnErrors(NamedTuple):
 def find_drift(spec: RunSpec) -> DriftSpec:
     """Return the sizes of the drift errors that apply to a run.
 
-    In profiles that do not follow measurements of real bricks, the errors in which sensors of one kind differ are 0.
+    The errors by which two sensors of one kind differ are 0, unless the profile follows measurements of real bricks.
     """
     drift = spec.world.drift
     if drift is NO_DRIFT or spec.profile.motor_law.is_measured:
@@ -175,9 +175,9 @@ class _Wheel:
         """How far the wheel has turned in the tick before."""
 
     def engage_mm(self, motor_mm: float) -> float:
-        """Return how far the wheel rolls in a tick, given how far its motor would roll a wheel without errors.
+        """Return how far the wheel rolls in a tick, with its backlash and its real diameter.
 
-        The result includes the backlash and the real diameter of the wheel.
+        `motor_mm` is how far a wheel without errors would roll.
         """
         half = self._half_mm
         if half:
@@ -224,7 +224,9 @@ class SlippingWheels:
         self._turn_slip = drift.turn_slip_pc / 100
 
     def turn_deg(self, tick: int, left_deg: float, right_deg: float) -> tuple[float, float]:
-        """Return the motor turns that would move a robot without errors just as this robot moves in a tick.
+        """Return by how many degrees the left and the right motor move the robot in a tick, in spite of all errors.
+
+        A robot without errors whose motors turn by these degrees moves just as far as this robot.
 
         Args:
             tick: The number of the tick.
@@ -274,7 +276,7 @@ class WrongGyro:
         self._drifts = not drift.is_none
 
     def roll(self, left_deg: float, right_deg: float) -> None:
-        """Move the robot by one tick of its wheel motors, and add errors to the angle that its gyro shows."""
+        """Move the robot by the turns of its wheel motors in one tick, and add the gyro's errors to its angle."""
         drive = self._drive
         angle_deg = drive.gyro_zero_deg - drive.heading_deg
         drive.roll(left_deg, right_deg)

@@ -16,7 +16,10 @@ def _build_field(high: float, typical: float, unit: str, about: str, source: str
 
 @spec
 class DriftSpec(Spec):
-    """Sizes of the errors of robot and sensors that a program does not expect; encoders do not notice these errors."""
+    """Sizes of the errors of wheels and sensors that programs do not expect.
+
+    The motors' encoders do not show these errors.
+    """
 
     KEY = "drift"
 

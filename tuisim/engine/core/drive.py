@@ -71,7 +71,16 @@ class Records(NamedTuple):
 def _fill(
     records: Records, offset: int, left: EvenGlide, right: EvenGlide, zero_deg: float
 ) -> None:
-    """Write the fields that are the same in all records from `offset` on; the loops then pack only the positions."""
+    """Fill the records from byte `offset` on with the fields that are the same in all of them.
+
+    The positions in these records stay 0: the caller writes them afterwards.
+
+    Args:
+        records: Where the records are written.
+        offset: The byte in the buffer at which the first of them begins.
+        left, right: How the wheels' motors move.
+        zero_deg: The heading at which the gyro reads 0.
+    """
     left_dps, right_dps = left.roll_deg * records.tick_hz, right.roll_deg * records.tick_hz
     zeros = 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0
     common = TICK_RECORD.pack(*zeros, left_dps, right_dps, zero_deg, records.flags, records.actions)
@@ -270,9 +279,9 @@ class BrickDrive:
 
 
 class BrowserDrive:
-    """The drive of the browser simulator: headings in radians, reduced by a whole turn when they exceed one.
+    """The pose of a robot of the browser simulator, which changes with the rotation of its wheels.
 
-    `early` is as in `BrickDrive`.
+    The heading is computed in radians, and kept below a whole turn. `early` is as in `BrickDrive`.
     """
 
     __slots__ = (

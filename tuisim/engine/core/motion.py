@@ -207,7 +207,7 @@ class Motion:
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
 
     def _begin(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
-        """Set the part of the initial state that can differ between runs of one robot in one world."""
+        """Set the initial state, as far as it can differ between runs of the same robot in the same world."""
         self.spec = spec
         self._sink = sink
         self.noise = spec.world.noise
@@ -252,7 +252,10 @@ class Motion:
         self._sink.publish(count + ticks)
 
     def find_next_change_ns(self, now_ns: int) -> int:
-        """Return when a program can next notice a change of a motor: at the next tick, or an earlier driver's check."""
+        """Return when a program can next notice a change of a motor, in ns.
+
+        It is the end of the current tick, or the next check of a motor's driver if that comes earlier.
+        """
         ends_ns = -(-(self.tick + 1) * NS_PER_S // self._hz)
         looks_ns = [motor.next_look_ns for motor in self._driven if motor.next_look_ns > now_ns]
         return min([ends_ns, *looks_ns])
@@ -314,7 +317,7 @@ class Motion:
         return isinstance(left, BrickMotor) and isinstance(right, BrickMotor)
 
     def tick_once(self) -> None:
-        """Advance the simulation by one tick; the faster loops below give the same results."""
+        """Advance the simulation by one tick. `_glide`, which advances several together, gives the same results."""
         count = self._sink.count
         # Reserve space before anything moves: if there is none, the tick does not happen.
         buffer = self._buffer if count < self._room_end else self._make_room(1)
@@ -482,7 +485,7 @@ class Motion:
         )
 
     def _make_room(self, ticks: int) -> Buffer:
-        """Return a buffer with space for `ticks` more records, and usually for some beyond."""
+        """Return a buffer with space for at least `ticks` more records."""
         end = self._sink.count + ticks
         if end > self._room_end:
             self._buffer = self._sink.reserve(ticks + ROOM_TICKS)

@@ -30,7 +30,10 @@ MOTOR_RECORD = Struct("<ihbB")
 
 
 class MotorSink(Protocol):
-    """Receives the `MOTOR_RECORD`s of all motors at each tick; the telemetry has the number of ticks."""
+    """A receiver of the `MOTOR_RECORD`s of all motors at each tick.
+
+    Only the telemetry says how many ticks are complete.
+    """
 
     def extend_buffer(self, ticks: int) -> Buffer:
         """Return a writable buffer with space for the records of `ticks` ticks, from byte 64 on."""
@@ -62,7 +65,7 @@ class DrivenMotor(Protocol):
 
 
 class MotorRecorder:
-    """Writes the records of the motors of a run.
+    """A writer of the records of all motors of a run.
 
     Args:
         motors: The motors with a driver, in the order of `name_motors`.
@@ -81,7 +84,7 @@ class MotorRecorder:
     def change_motors(
         self, motors: tuple[DrivenMotor, ...], sources: Sequence[int | None], ticks: int
     ) -> None:
-        """Continue with another set of motors; `sources` and `ticks` as of `MotorSink.arrange`."""
+        """Write the records of another set of motors from now on; `sources` and `ticks` as of `MotorSink.arrange`."""
         self._motors, self._size = motors, MOTOR_RECORD.size * len(motors)
         if self._sink is not None:
             self._sink.arrange(sources, ticks)

@@ -36,7 +36,7 @@ def _load_shake_128() -> Any:
 
 
 def prepare() -> None:
-    """Import the module that noise needs now, so that the first random bytes do not have to wait for it."""
+    """Import the module that generates random bytes, so that the first call of `generate_bytes` need not import it."""
     _load_shake_128()
 
 
@@ -53,7 +53,10 @@ def _list_errors(level: int) -> tuple[int, ...]:
 
 
 class Clamping(NamedTuple):
-    """Mean and variance of the error of a pixel's value after clamping to 0 … 255, for errors up to one level."""
+    """How clamping to 0 … 255 changes the errors of pixels, for errors of up to one level.
+
+    It has the mean and the variance of the error for each value of a pixel.
+    """
 
     shift: tuple[float, ...]
     """Mean error for each value; it is not 0 near the ends of the range, because values are clamped."""
@@ -130,7 +133,12 @@ def add_noise_to_sums(
 
 
 def _compute_shift(values: bytes, level: int) -> tuple[float, float]:
-    """Return the mean and the standard deviation of the error that noise gives the sum of a channel's values."""
+    """Return the mean and the standard deviation of the error that noise causes in the sum of some pixel values.
+
+    Args:
+        values: The values of one channel of the pixels.
+        level: The largest error of a pixel.
+    """
     law = compute_clamping(level)
     count = len(values)
     if values.count(values[0]) == count:

@@ -33,7 +33,7 @@ class MarkedField(Field):
 
     @classmethod
     def on(cls, field: Field, marks: Marks) -> MarkedField:
-        """Return the mat of `field` with `marks` on it; marks that `field` already has are left out."""
+        """Return the mat of `field` with exactly the pen marks `marks`, even if `field` has other marks."""
         blocks = {(col // _BLOCK_PX, row // _BLOCK_PX) for col, row in marks}
         mat = field.width_px, field.height_px, field.pixels, field.sums, field.floor_rgb
         return cls(*mat, marks, blocks)
@@ -87,7 +87,7 @@ _Point = tuple[float, float]
 
 
 class PenMarks:
-    """Draws the pen's trace on a mat, from one tick record after the other."""
+    """The trace that the pen has drawn on a mat. It grows with each tick record that `add_records` gets."""
 
     def __init__(self, field: Field, spec: RunSpec) -> None:
         self._pen = spec.robot.pen

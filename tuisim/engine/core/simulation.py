@@ -194,7 +194,7 @@ class Simulation(Motion):
             self.__class__ = FurtherMotors
 
     def _take_others(self, sources: Sequence[int | None]) -> None:
-        """Update the end stops and the reports of the motors that drive no wheel after a change of the robot.
+        """After a change of the robot, update the end stops and the last reports of the motors that drive no wheel.
 
         `sources` has the earlier number of each such motor among all motors; None for a new one.
         """
@@ -255,7 +255,10 @@ REPORT_DEG = 0.25
 
 
 def find_place(number: int, motor: MotorSpec) -> tuple[str | int, str]:
-    """Return what identifies a motor when the robot changes: its port, or else its number, and its kind."""
+    """Return what identifies a motor when the robot changes: its port and its kind.
+
+    A motor without a port has its number in place of the port.
+    """
     return number if motor.port == NO_PORT else motor.port, motor.kind
 
 
@@ -278,7 +281,7 @@ class FurtherMotors(Simulation):
         return done + super().advance(ticks - done, until_change) if done < ticks else done
 
     def notice_change(self) -> bool:
-        """Report the turns of the other motors as `advance` does, then do the same as `Motion.notice_change`."""
+        """Report the turns of the motors that drive no wheel, and do the same as `Motion.notice_change`."""
         self._report_turns()
         return super().notice_change()
 

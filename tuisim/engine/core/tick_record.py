@@ -46,7 +46,7 @@ Buffer: TypeAlias = mmap | bytearray
 
 
 class TickSink(Protocol):
-    """Receives the tick records of a simulation."""
+    """A receiver of the tick records of a simulation."""
 
     count: int
 
@@ -58,7 +58,7 @@ class TickSink(Protocol):
 
 
 class MemoryRecording:
-    """Keeps tick records in memory."""
+    """A recording of ticks in memory, without a file."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -77,7 +77,7 @@ class MemoryRecording:
 
 
 class NoRecording:
-    """Discards tick records: for a simulation that is prepared before its run is known."""
+    """A receiver that discards tick records: for a simulation that is prepared before its run is known."""
 
     count = 0
 

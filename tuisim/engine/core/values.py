@@ -65,7 +65,8 @@ class Value(ABC):
         label: Its name in a form, with the unit; empty for a value that no form shows.
         flags: The names of the option that sets it, if there is one.
         source: Where its numbers come from.
-        later: Whether stored runs may lack it. They leave it out at its default, so that they stay as they were.
+        later: Whether the value was added after runs had been stored without it. Runs then store it only if it differs
+            from its default, so that their files stay the same.
         in_config: Whether the user's `config.toml` may set it, if there is an option.
     """
 
@@ -534,8 +535,8 @@ class Part(Value):
 class NamedPart(Part):
     """A spec of numbers inside another one, which users give by a name, number by number, or both.
 
-    The names are those that its numbers have, and `none` for their defaults. As text it is a name followed by the
-    numbers that differ, such as `typical gyro_dps=0`.
+    A name, such as `typical`, stands for those values of the numbers that have this name; `none` stands for their
+    defaults. As text the spec is a name, followed by the numbers that differ, such as `typical gyro_dps=0`.
     """
 
     __slots__ = ()

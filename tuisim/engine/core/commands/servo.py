@@ -76,8 +76,9 @@ def run_control(motor: ServoMotor, time_ns: int, values: Values) -> None:
     Args:
         motor: The motor.
         time_ns: When the program gives the command.
-        values: Speed, acceleration, duration in microseconds (NaN: endless), and an `Ending`. With an ending the motor
-            begins to follow the controller; with NaN only the controller changes.
+        values: Speed in counts per second, acceleration, duration in microseconds (NaN: endless), and an `Ending`. If
+            the
+            `Ending` is NaN, only the controller changes; otherwise the motor begins to follow the controller.
     """
     rate, acceleration, time_us, ending = values
     motor.control.run(
@@ -93,7 +94,9 @@ def move(motor: ServoMotor, time_ns: int, values: Values) -> None:
     Args:
         motor: The motor.
         time_ns: When the program gives the command.
-        values: Target, speed, acceleration, and whether the target is relative to the present position (1 or 0).
+        values: Target in counts, speed and acceleration in counts per second (squared), and whether the target is
+            relative
+            to the present position (1 or 0).
     """
     *numbers, relative = values
     motor.control.move_to_position(
@@ -116,7 +119,10 @@ def follow(motor: ServoMotor, time_ns: int, values: Values) -> None:
 
 
 def limit_duty(motor: ServoMotor, _time_ns: int, values: Values) -> None:
-    """Make the motor's current motion seek a stall with a limited power, in hundredths of a percent; NaN: unlimited."""
+    """Limit the power of the motor's present motion, and let the motion go on until the motor stalls.
+
+    The value is the highest power in hundredths of a percent; NaN is no limit.
+    """
     motor.control.duty_limit = _read_optional(values[0])
     motor.control.seeks_stall = True
 

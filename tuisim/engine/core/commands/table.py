@@ -25,7 +25,7 @@ DrivenMotor = BrickMotor | BrowserMotor
 
 
 def start(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
-    """Run a motor at a speed until the next command."""
+    """Run a motor at a speed until the next command; the value is the speed in degrees per second."""
     motor.run(*values)
 
 
@@ -61,7 +61,10 @@ def set_speed(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
 
 
 def set_backwards(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
-    """Set whether moves to a position turn backwards (1) or not (0); this also changes a move that runs or is over."""
+    """Set whether moves to a position turn backwards (1) or not (0).
+
+    This also changes the present move, even one that has reached its position.
+    """
     motor.backwards = bool(values[0])
 
 
@@ -88,7 +91,12 @@ SCALING_CALLS = (Call.SET_UP, Call.SET_POLARITY)
 
 
 def compute_scale(call: int, values: Sequence[float]) -> float:
-    """Return how many degrees a program counts for one of a motor after one of `SCALING_CALLS`; 0 if it is damaged."""
+    """Return the number of degrees that a program counts while a motor turns by one; 0 if the command is damaged.
+
+    Args:
+        call: The command that set this number, one of `SCALING_CALLS`.
+        values: The values of the command.
+    """
     if call == Call.SET_POLARITY:
         return 1 - 2 * values[0]
     sign, gear_ratio, *_ = values

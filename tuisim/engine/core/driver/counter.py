@@ -104,7 +104,10 @@ class Counter:
             del times[:-CAPACITY]
 
     def _end_straight(self) -> None:
-        """Move the last changes to the earlier ones: the next change does not go in their direction."""
+        """Add the last changes, which all went in one direction, to the list of earlier changes.
+
+        It is called before the first change in the other direction.
+        """
         straight = max(-CAPACITY, min(self._straight, CAPACITY))
         direction = 1 if straight > 0 else -1
         self._earlier += range(self.count - straight + direction, self.count + direction, direction)
@@ -127,7 +130,10 @@ class Counter:
         del times[:-MAX_CHANGES]
 
     def take_back(self, angle_deg: float) -> None:
-        """Remove the newest changes in one direction beyond the angle at which an obstacle stopped the axle."""
+        """Remove the newest changes of the count beyond the angle at which an obstacle stopped the axle.
+
+        Changes before the last change of direction stay.
+        """
         taken = self.count - floor(2 * angle_deg)
         if taken * self._straight <= 0:
             return
@@ -138,7 +144,7 @@ class Counter:
         self._speed_dps = None
 
     def is_straight(self, speed_dps: float) -> bool:
-        """Return whether all changes that matter for the speed went in the direction of `speed_dps`."""
+        """Return whether all changes from which the driver measures a speed went in the direction of `speed_dps`."""
         return (self._straight if speed_dps > 0 else -self._straight) >= self._depth + STRIDE
 
     def find_time(self, back: int) -> int:
@@ -161,7 +167,9 @@ class Counter:
         del self._times[:-MAX_CHANGES]
 
     def add_evenly(self, time: float, angle_deg: float, speed_dps: float) -> None:
-        """Add the changes of an axle that has turned at a constant speed for longer than speeds are measured.
+        """Add the changes of the count of an axle that has turned at a constant speed.
+
+        It must have done so for at least as long as the driver looks back to measure a speed.
 
         Args:
             time: Now, in ticks of the clock.
@@ -207,7 +215,10 @@ class Counter:
         return speed_dps
 
     def _search(self, time: int) -> tuple[int, int]:
-        """Return the change of the count from which the driver computes a speed, and its time in ticks of the clock."""
+        """Return a change of the count and how long it took, from which the driver computes a speed.
+
+        The duration is in ticks of the clock. Both numbers are for the changes before `time`, which is now.
+        """
         turned = span = 0
         straight = self._straight
         for depth in range(STRIDE, MAX_DEPTH + 1, STRIDE):

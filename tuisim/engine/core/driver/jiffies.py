@@ -50,7 +50,10 @@ class Jiffies:
 
 
 def draw_jiffies(seed: int) -> Jiffies:
-    """Return the kernel's clock of a run with a seed; its jiffies begin together with a step of the control."""
+    """Return the kernel's clock of a run, drawn at random with the run's seed.
+
+    A jiffy always begins at the same time as a step of the motor's control.
+    """
     first, phase, look = draw_numbers(seed, 0, "jiffies", 3)
     steps = JIFFY_US // STEP_US
     return Jiffies(

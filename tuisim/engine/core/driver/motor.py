@@ -194,7 +194,10 @@ class DriverMotor(MotorDriver):
         return self._look_ns
 
     def find_last_look_ns(self, time_ns: int) -> int:
-        """Return the time of the driver's last check up to `time_ns`; if its next check is later, the time of that."""
+        """Return when the driver checks the motor's state for the last time up to `time_ns`, from its next check on.
+
+        If the next check is after `time_ns`, return the time of the next check.
+        """
         return self._look_ns + max(0, time_ns - self._look_ns) // LOOK_NS * LOOK_NS
 
     def run_until(self, time_ns: int) -> None:
@@ -230,11 +233,14 @@ class DriverMotor(MotorDriver):
             self._fire()
 
     def _try_to_roll(self) -> bool:
-        """Begin to roll if neither a controller nor a timer is active; return whether the motor rolls."""
+        """Begin a `Roll` if no controller and no timer is active and the axle turns freely; return whether it rolls."""
         return self._timers_ns == NEVER_NS and super()._try_to_roll()
 
     def _follow_roll(self, time_ns: int) -> bool:
-        """Let the motor roll until a time; return whether it still rolls then."""
+        """Advance the present `Roll` to a time, and run the timers that are due.
+
+        Return whether the motor still rolls then.
+        """
         rolls_on = self._advance_roll(time_ns)
         self._step_ns = (self._moved_ns // STEP_NS + 1) * STEP_NS
         while rolls_on and self._due_ns <= time_ns:
@@ -262,7 +268,7 @@ class DriverMotor(MotorDriver):
         return self.is_at_rest
 
     def _skip(self, time_ns: int) -> None:
-        """Advance the time of a motor at rest, in which nothing else changes."""
+        """Set the time of a motor at rest to `time_ns`, without the steps and checks before it: they change nothing."""
         if self._step_ns <= time_ns:
             self._step_ns = (time_ns // STEP_NS + 1) * STEP_NS
             self._moved_ns = time_ns
@@ -300,7 +306,10 @@ class DriverMotor(MotorDriver):
     # Commands
 
     def wake(self, time_ns: int) -> None:
-        """Run the motor until `time_ns`, and from then on in single steps: a command or an obstacle changes it."""
+        """Run the motor until `time_ns`, and make it run in single steps from then on.
+
+        It is called when a command or an obstacle changes the motor.
+        """
         if self._step_ns <= time_ns or self._due_ns <= time_ns:
             self.run_until(time_ns)
         if self._roll is not None:
@@ -350,7 +359,10 @@ class DriverMotor(MotorDriver):
             self._reset(time_ns)
 
     def _keeps_running(self, active: SetPoints) -> bool:
-        """Return whether a `run-forever` follows another one without ramps, so that only the speed can change."""
+        """Return whether the command `run-forever` only changes the speed of a motor.
+
+        It does if the motor already runs by `run-forever`, and neither command has ramps.
+        """
         before = self.active
         return (
             self._last_command is RUN_FOREVER

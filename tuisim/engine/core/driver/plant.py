@@ -63,7 +63,10 @@ MEDIUM = PlantSpec(
 
 @dataclass(frozen=True, slots=True)
 class Circuit:
-    """Values that follow from a motor's constants, for a motor with power (duty 0 brakes it) or one that coasts."""
+    """Values that follow from a motor's constants. One object is for a motor with a duty, another for one that coasts.
+
+    A motor with a duty of 0 brakes.
+    """
 
     dps_per_percent: float
     """Steady speed per percent of duty, without friction; 0 while it coasts."""
@@ -95,7 +98,7 @@ def build_circuit(plant: PlantSpec, battery_v: float | None) -> Circuit:
 
 
 class Axle:
-    """The axle of a motor, which first is at rest and coasts.
+    """The axle of a motor. At the beginning it is at rest, and the motor coasts.
 
     Args:
         plant: The motor, with its load.
@@ -142,7 +145,7 @@ class Axle:
 
     @property
     def turns_freely(self) -> bool:
-        """Whether the axle turns with power on, and no obstacle limits it."""
+        """Whether the axle turns, its motor has a duty, and no obstacle limits the axle."""
         return (
             self.circuit is self._powered
             and self.speed_dps != 0.0

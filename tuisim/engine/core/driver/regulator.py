@@ -221,7 +221,7 @@ class MotorDriver:
             self._slow_down(time_ns, self._arrival_action)
 
     def _try_to_roll(self) -> bool:
-        """Begin a roll, which needs no single steps, if the motor turns freely; return whether it rolls."""
+        """Begin a `Roll`, which needs no single steps, if the motor turns freely; return whether it rolls."""
         if self.is_running and not self.speed_dps:
             return False
         self._roll = begin_roll(self.axle, self.counter, self._moved_ns)
@@ -250,7 +250,10 @@ class MotorDriver:
             self._roll = None
 
     def _can_regulate(self, step_ns: int) -> bool:
-        """Return whether the next step needs only the speed control: the motor turns freely, and is not stalling."""
+        """Return whether the next step of the control needs only the speed control.
+
+        That is so while the motor turns freely, and is not about to be reported as stalled.
+        """
         return (
             self.speed_dps != 0
             and self._still_ns is None
@@ -315,7 +318,7 @@ class MotorDriver:
         return step_ns
 
     def _is_count_known(self) -> bool:
-        """Whether the position is that of the counter: the axle has not turned since the last step."""
+        """Whether the motor's position is up to date: the counter has not changed since the last step."""
         return self._raw == divide(self.counter.count, 2)
 
     def _is_control_at_rest(self) -> bool:

@@ -164,7 +164,10 @@ class SimulatedMotor(DriverMotor):
 
     @property
     def aim_dps(self) -> float:
-        """Speed that the control keeps, or that the duty leads to, in degrees per second; negative backwards."""
+        """Target speed in degrees per second, negative backwards: the setpoint of the speed control.
+
+        While the speed control is not active, it is the speed without friction to which the duty leads.
+        """
         if self._control is self.speed_control:
             return float(self.speed_control.setpoint)
         return self.axle.goal_dps
@@ -236,9 +239,9 @@ class SimulatedMotor(DriverMotor):
     # Even speed
 
     def _begin_cruise(self, now_ns: int, noise_dps: float) -> None:
-        """Begin to run at constant speed, without single steps, if the speed has been right for some ticks.
+        """Begin to run at constant speed, without single steps, if the motor has had its target speed for some ticks.
 
-        The motor does not begin if a timer, its target or an end stop is near.
+        The motor does not begin if a timer will soon fire, or if its target or an end stop is near.
         """
         setpoint = self.speed_control.setpoint
         if noise_dps or not -MAX_ERROR_DPS <= self.speed_dps - setpoint <= MAX_ERROR_DPS:
@@ -295,7 +298,7 @@ class SimulatedMotor(DriverMotor):
         self.read_counts(floor(2 * (self._angle_deg + self._cruise_dps * since_s)))
 
     def _turn_axle(self, time_ns: int, angle_deg: float) -> None:
-        """Set the axle to an angle that noise or an obstacle gives it, without any time passing."""
+        """Set the axle to an angle that noise or an obstacle causes; the turn takes no time."""
         self.leave_roll()
         axle = self.axle
         before_deg = self.axle.angle_deg
@@ -330,7 +333,7 @@ class SimulatedMotor(DriverMotor):
     # Obstacles
 
     def state(self) -> MotorState:
-        """Return the state that `hold_back` needs; only the axle's angle at the end of the last tick is used."""
+        """Return the motor's state for `hold_back`, which uses only the axle's angle at the end of the last tick."""
         return STOPPED, 1.0, 0.0, self._angle_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:

@@ -187,7 +187,7 @@ def measure_obstacle(
 ) -> float:
     """Return the reading of a sensor that sees an obstacle of a world: in mm, or in percent for an infrared sensor.
 
-    The result is infinite if the sensor sees no obstacle, or if the robot would touch one.
+    The result is infinite if the sensor sees no obstacle, or if the robot, at this pose, overlaps one.
     """
     bare = replace(world, obstacles=())
     if isinstance(sensor, UltrasonicSpec):

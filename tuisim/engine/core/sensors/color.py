@@ -92,7 +92,7 @@ class ColorReading:
 
 
 def measure_hub_channels(rgb: Sequence[int]) -> tuple[int, int, int]:
-    """Return the channels, 0 … 255 on the mat, as the colour sensor of a hub measures them: 0 … `HUB_WHITE`."""
+    """Return the channels of a hub's colour sensor, 0 … `HUB_WHITE`, for channels of the mat, 0 … 255."""
     red, green, blue = (HUB_WHITE * channel // WHITE for channel in rgb)
     return red, green, blue
 
@@ -145,7 +145,7 @@ MIN_BROWN_SATURATION = 20
 
 
 class LightRead(StrEnum):
-    """The readings that a program can get from a colour sensor, by the names that it uses."""
+    """The readings of a colour sensor that a program can get; the values are their names in programs."""
 
     REFLECTED = "reflected_light_intensity"
     PERCENT = "reflected_light_intensity_pc"
@@ -207,7 +207,14 @@ class Response(NamedTuple):
     """How much larger the value is on white."""
 
     def channel(self, value: float, is_over_field: bool) -> float:
-        """Return the sensor's value of a channel; beyond the edge of the field nothing reflects."""
+        """Return the sensor's value of a channel.
+
+        Nothing reflects beyond the field, so the value on black is not added there.
+
+        Args:
+            value: The channel of the mat, 0 … 255.
+            is_over_field: Whether the sensor is above the field.
+        """
         if self == EVEN:
             return value
         return (self.dark if is_over_field else 0) + value * self.span / WHITE
@@ -354,7 +361,7 @@ def _measure_noisy_sums(
 
 
 def _read_noisy_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
-    """Return the pixels of the box under a sensor; the mean of those in the disc is what the sensor reads."""
+    """Return the pixels of the box under a sensor, with noise in its disc, whose mean is the sensor's reading."""
     diameter = spec.diameter_mm
     box = field.read_box(diameter, *find_box_corner(instant.pose, spec))
     if not instant.noise.light:
@@ -414,7 +421,7 @@ disc_pixels_of = lru_cache(maxsize=16)(count_disc_pixels)
 
 
 def read_pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
-    """Return the pixels under a sensor as RGB bytes, row-major, d × d pixels, including noise and light.
+    """Return the pixels under a sensor as RGB bytes, row-major, d × d pixels, with noise and brightness.
 
     Pixels outside the disc are OUTSIDE_DISC_RGB.
     """

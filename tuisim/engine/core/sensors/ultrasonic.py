@@ -166,7 +166,7 @@ def measure_distance_mm(
 def _find_echoing_surfaces(
     spec: UltrasonicSpec, instant: Instant, world: WorldSpec
 ) -> Surfaces | None:
-    """Return the surfaces that send back the pulse of an instant; None if all surfaces always do."""
+    """Return the surfaces that send back the sensor's pulse at an instant; None if no pulse can get lost."""
     drift = instant.drift
     if not drift.echo_loss_pc:
         return None

@@ -96,7 +96,7 @@ def _move_relative(
 
 
 class DriveBase:
-    """Moves two motors together. It is the `Guide` of both while it moves or holds them.
+    """Two motors that move a robot together. The drive base is the `Guide` of both while it moves or holds them.
 
     Args:
         left, right: The motors, which have the same settings.
@@ -161,7 +161,7 @@ class DriveBase:
 
     @property
     def active(self) -> bool:
-        """Whether the drive base moves or holds both of its motors."""
+        """Whether both motors follow the drive base, which moves or holds them."""
         return self.left.guide is self and self.right.guide is self
 
     def find_millis(self, now_us: int) -> tuple[int, int]:
@@ -211,7 +211,7 @@ class DriveBase:
     # The gyro
 
     def use_gyro(self, now_us: int, uses_gyro: bool) -> None:
-        """Take the heading from the gyro, or from the wheels again; the motors coast."""
+        """Measure the heading with the gyro, or with the wheels if `uses_gyro` is False; let the motors coast."""
         self.stop(now_us, None)
         self.uses_gyro = uses_gyro
         self._offset = 0
@@ -227,7 +227,10 @@ class DriveBase:
     # Commands
 
     def set_usual(self, *usual: int) -> None:
-        """Set the default speeds and accelerations, in mm and degrees; unchanged values stay as exact as before."""
+        """Set the default speed, acceleration, turn rate and turn acceleration, in mm and degrees per second (squared).
+
+        A value that equals the present one does not replace it: the present one may be more exact than a whole number.
+        """
         distance = self.distance.settings
         heading = self.heading.settings
         self._pace = tuple(
@@ -334,9 +337,9 @@ class DriveBase:
         return Segment(now_us, turned, self.find_rates(now_us)[1], 0)
 
     def _begin(self, now_us: int) -> None:
-        """Prepare for a new motion: make the controllers passive unless they move both motors.
+        """Prepare for a new motion, which begins at rest unless the drive base moves both motors.
 
-        If only one motor follows this drive base, it coasts.
+        If only one motor follows the drive base, that motor coasts.
         """
         self._goal = None
         if not self.active:
@@ -356,7 +359,7 @@ class DriveBase:
 
     @property
     def trajectory(self) -> Trajectory | None:
-        """The trajectory of the distance; each move has a new one."""
+        """The trajectory of the distance, a new object for each move; None while nothing moves or holds the motors."""
         return self.distance.trajectory
 
     @property

@@ -77,7 +77,7 @@ class ControlSettings:
         return int(counts * STEPS / self._steps) if self.torque_unm else self.units(int(counts))
 
     def take(self, units: int) -> int:
-        """Return a setting, given in the program's units, in counts, such that `tell` returns the same units again."""
+        """Return a setting in counts, given in the program's units. `tell` turns the result into the same units."""
         return -(-units * self._steps // STEPS) if self.torque_unm else self.counts(units)
 
     def counts(self, units: int) -> int:
@@ -85,7 +85,10 @@ class ControlSettings:
         return _multiply(units, self.scale)
 
     def units(self, counts: int) -> int:
-        """Return a number of counts in the program's units, rounded as the firmware does with a rounded inverse."""
+        """Return a number of counts in the program's units, rounded as the firmware rounds it.
+
+        The firmware multiplies by the inverse of `scale`, which is rounded itself.
+        """
         return _multiply(counts, (_ONE * _ONE + self.scale // 2) // self.scale)
 
     def describe(self) -> dict[str, str]:

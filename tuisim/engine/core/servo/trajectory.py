@@ -178,11 +178,13 @@ def build_angle_move(
 def _speed_up(
     length: int, from_rest: int, top_rate: int, acceleration: int, slowing: int
 ) -> tuple[int, int, int]:
-    """Return where the part of a move with constant rate begins and ends, and that rate.
+    """Return the part of a move in which the rate is constant: its begin and its end, in counts, and that rate.
+
+    Begin and end are equal if the move is too short to reach `top_rate`.
 
     Args:
         length: How far the move goes.
-        from_rest: Where a move with the same ramp would have begun at rest.
+        from_rest: Where the move would have begun if it had sped up from rest; 0 or less.
         top_rate: The highest rate.
         acceleration, slowing: How the move speeds up before that part, and how it stops after it.
     """
