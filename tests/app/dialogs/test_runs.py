@@ -274,6 +274,10 @@ def test_a_search_is_for_words_anywhere(search: str, numbers: list[int]) -> None
     assert [run.number for run in find_runs(runs, search)] == numbers
 
 
+def test_a_run_that_marked_a_student_names_the_student_at_80_columns() -> None:
+    assert " ada/main.py " in run_line(info(1, program="main.py", tags="student:ada"), 80).plain
+
+
 def test_the_namespace_of_the_command_has_the_run() -> None:
     from tuisim.commands.resolve import NO_CONFIG, prepare_replay
 

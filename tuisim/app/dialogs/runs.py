@@ -24,7 +24,7 @@ from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.snapshot import GOOD_ENDS, end_label
 from tuisim.base import palette
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.catalogue import RunInfo
+from tuisim.engine.runs.catalogue import STUDENT_TAG, RunInfo
 from tuisim.engine.runs.run_folder import format_end
 from tuisim.engine.runs.store import RunStore
 from tuisim.pictures.scene.view import Viewport
@@ -122,10 +122,11 @@ def build_header(columns: int) -> str:
 
 def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
     """Return a run as a line of the list, below `build_header`; in a wide terminal with its tags or its failure."""
+    student = run.find_tag(STUDENT_TAG)
     texts = {
         "run": f"{run.number}{'●' if marked else ' '}",
         "when": _format_date(run)[5:],
-        "program": run.program,
+        "program": f"{student}/{run.program}" if student else run.program,
         "mat": Path(run.background).name,
         "end": end_label(run.end),
         "s": format_end(run.time_s or 0),
@@ -148,8 +149,7 @@ def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
 
 def parse_branch_root(run: RunInfo) -> int | None:
     """Return the number of the run from which a run branched off; None if the run is no branch."""
-    tag = next((word for word in run.tags.split() if word.startswith(BRANCH_TAG)), "")
-    number = tag.removeprefix(BRANCH_TAG)
+    number = run.find_tag(BRANCH_TAG)
     return int(number) if number.isdecimal() else None
 
 

@@ -75,7 +75,15 @@ class RunInfo:
     tags: str = ""
     """Tags, separated by spaces."""
 
+    def find_tag(self, prefix: str) -> str:
+        """Return what follows a prefix in the run's tags; empty if no tag begins with it."""
+        return next(
+            (tag.removeprefix(prefix) for tag in self.tags.split() if tag.startswith(prefix)), ""
+        )
 
+
+STUDENT_TAG = "student:"
+"""Prefix of the tag that names the student of a run."""
 _MAX_RUNS = 1 << 40
 """A greater number than that of any run comes from a damaged file, and would leave none for the next run."""
 _MAX_ID = 255

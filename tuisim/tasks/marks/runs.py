@@ -14,6 +14,7 @@ from tuisim.base.folders import remove_tree
 from tuisim.base.source import user_python_path
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import dump_run
+from tuisim.engine.runs.catalogue import STUDENT_TAG
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.store import RunStore
 from tuisim.engine.runs.temporary import create_temporary_home
@@ -30,8 +31,6 @@ STALL_LIMIT_S = 10.0
 """CPU seconds in one instant of simulated time after which a program counts as hung."""
 REAL_TIME_LIMIT_S = 120.0
 """Real seconds of one run."""
-STUDENT_TAG = "student:"
-"""Prefix of the tag that names the student of a run."""
 
 
 @dataclass(frozen=True, slots=True)
