@@ -46,7 +46,7 @@ class Act(Message):
 
 @dataclass(frozen=True, slots=True)
 class Action(Generic[Host, Now]):
-    """A key and what it does, with its words for the footer, the help and the command palette."""
+    """A key with the function that it calls, and its words for the footer, the help and the command palette."""
 
     id: str
     key: str
@@ -69,7 +69,7 @@ class Action(Generic[Host, Now]):
 
     @property
     def key_label(self) -> str:
-        """The name of the action's key, as it is displayed."""
+        """The display name of the action's key."""
         return self.shown_key or ", ".join(map(label_of_key, self.key.split(",")))
 
 
@@ -405,7 +405,7 @@ COLUMN_CELLS = 50
 def build_key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Text:
     """Return a table of keys by group, in as many columns as fit; a group without a name has no heading.
 
-    The columns are laid out as text here: Textual would measure and draw a nested table several times.
+    The table is one text, not nested tables, which Textual would measure and draw several times.
     """
     rows = [(group, list(keys)) for group, keys in groups.items()]
     count = max(1, min(width // COLUMN_CELLS, len(rows)))

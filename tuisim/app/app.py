@@ -372,7 +372,7 @@ class LabApp(PanelMessages):
         self.handle_situation_change()
 
     def _on_frame_timer(self) -> None:
-        """Process what the run has sent, and draw a frame if the terminal has shown the last one."""
+        """Process what the run has sent, and draw a frame if the terminal has shown the previous frame."""
         try:
             news = self.run_controller.poll()
             self._process(news)
@@ -407,7 +407,7 @@ class LabApp(PanelMessages):
         self._frame_timer = self.set_interval(gap_s, self._on_frame_timer)
 
     def _is_starting(self) -> bool:
-        """Return whether the run is starting: a frame drawn at this moment would delay the one with its first tick."""
+        """Return whether the run is starting: drawing a frame now would delay the frame with the first tick."""
         if not self._starting_until_s:
             return False
         runs = self.run_controller
@@ -534,7 +534,7 @@ class LabApp(PanelMessages):
 
     @on(Driver.SignalResume)
     def pace_again(self) -> None:
-        """Stop waiting for the terminal's answers: it was suspended, or another browser page has taken its place."""
+        """Stop waiting for the terminal's answers: the app was suspended, or another browser page shows it now."""
         self.pacer.record_interruption()
 
     def handle_situation_change(self) -> None:
@@ -656,7 +656,7 @@ class LabApp(PanelMessages):
         return super().check_action(action, parameters)
 
     def action_leave_field(self) -> None:
-        """Move the focus from a field to the world; if it is there already, leave the past for the newest instant."""
+        """Move the focus from a field to the world; if no field has the focus, return from the past to the present."""
         if self.debugger.is_away and self.focused in (None, self.panel_area.world):
             self.go_to_now()
         self.panel_area.focus_world()

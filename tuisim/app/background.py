@@ -125,7 +125,7 @@ def enter() -> None:
 
 
 def leave(code: int) -> int:
-    """Wait for a moment until the threads of a closed app have written their files; return its exit code.
+    """Wait for a moment until the threads of a closed app have written their files; return the app's exit code, `code`.
 
     If threads are still at work then, end the process here with that code, and name on stderr the files that were not
     written.

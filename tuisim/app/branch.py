@@ -56,7 +56,7 @@ class Branch:
 
     @property
     def edited(self) -> bool:
-        """Whether the program of the branch differs from that of the former run."""
+        """Whether the text of the branch's program differs from the text in the former run."""
         return (self.program.text, self.program.prelude) != (
             self.of.program.text,
             self.of.program.prelude,
@@ -110,7 +110,10 @@ def find_first_difference(before: Recording, now: Recording, tick: int) -> int |
 
 
 def build_branch_message(branch: Branch, now: Recording) -> str:
-    """Return the notice that a run is a branch, with the time from which it differs from the former run, if it does."""
+    """Return the notice that a run is a branch.
+
+    If the branch differs from the former run, the notice gives the time from which it does.
+    """
     differs = find_first_difference(branch.of, now, branch.tick)
     words = f"This is a {branch.title}" + (", of the edited program" if branch.edited else "")
     if differs is None:

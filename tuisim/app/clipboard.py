@@ -46,7 +46,7 @@ class CopiedPanel(Protocol):
 
 
 def find_copied(panel: str, widget: Widget) -> Copied:
-    """Return the text to copy from a panel: the one that its widget chooses, or else its rows on the screen."""
+    """Return the text to copy from a panel: the text that its widget chooses, or else its rows on the screen."""
     if isinstance(widget, CopiedPanel) and (own := widget.copy_text()):
         return own
     return Copied(PANELS[panel].title, "\n".join(read_rows(widget)))

@@ -38,7 +38,7 @@ class DebugController:
         app: Shows notices, and starts the program.
         run_controller: Gets debug commands.
         panel_area: Has the code and debug panels.
-        lines: Returns the map between the lines of the current run and those of the edited text.
+        lines: Returns the map between the lines of the current run and the lines of the edited text.
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class DebugController:
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """The breakpoints as texts, as they are sent to the run."""
+        """The breakpoints as texts, in the form in which they are sent to the run."""
         return tuple(entry.written() for entry in self.breaks)
 
     @property
@@ -115,7 +115,7 @@ class DebugController:
         self.mark()
 
     def _send_breakpoints(self) -> None:
-        """Send the breakpoints to the live run, whose text may be older than the edited one: each on its line there."""
+        """Send the breakpoints to the live run; if the run has an older text, each with its line in that text."""
         lines = self._lines()
         texts = []
         for entry in self.breaks:
@@ -349,8 +349,9 @@ class DebugController:
     def _has_past_variables(self) -> bool:
         """Return whether the program is to run again up to a past instant in view, to get the values of its variables.
 
-        The debug panel needs them. If only the code panel is shown, this is done for runs of this session, not for
-        stored ones, whose programs may be somebody else's.
+        The debug panel needs these values. If only the code panel is shown, the program runs again only for a run of
+        this
+        session: the program of a stored run may be somebody else's.
         """
         run = self._run_controller.run
         recording = self._run_controller.timeline.recording
@@ -476,7 +477,7 @@ class DebugController:
         return Position(timeline.newest) if timeline.recording and timeline.newest >= 0 else None
 
     def step(self, how: protocol.LineStep) -> None:
-        """Step to the next line: the recorded one if the past is in view, else that of the live program."""
+        """Step to the next recorded line if the past is in view, else to the next line of the live program."""
         self.go_on(protocol.StepLine(how))
 
     def run_to(self, line: int) -> None:

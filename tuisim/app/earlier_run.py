@@ -27,7 +27,7 @@ def find_pose(run: Recording, time_s: float) -> Pose:
 
 
 def find_run_before(later: Recording) -> Recording | None:
-    """Return the newest stored run, of the same program file, that the run `later` repeats; None if there is none.
+    """Return the newest stored run of the same program file that the run `later` repeats; None if there is none.
 
     Raises:
         LogError: the store cannot be read.

@@ -41,9 +41,9 @@ _JUMP_MM = 25.0
 
 
 def sample_series(rows: Iterable[OutputRow]) -> Series:
-    """Return the samples among printed lines as times in s and values, by name.
+    """Return the samples among printed lines as times in s and values, by the name of the variable.
 
-    The time is that of the print, or the one that the sample itself has.
+    The time of a sample is the one that it contains itself, or else the time of the print.
     """
     series: Series = {}
     for sample in list_samples(rows):
@@ -96,7 +96,7 @@ class Feed:
     def chart_series(self, mat: Field) -> Series:
         """Return the telemetry of the ticks since the last call, as times in s and values by column.
 
-        If there are many such ticks, a call returns only the first of them, and thins them out.
+        If there are many new ticks, a call returns only the first of them, thinned out.
 
         Args:
             mat: The mat that the sensors read.
@@ -224,7 +224,7 @@ class PanelFeed:
         self._panel_area.clear_log()
 
     def begin_again(self) -> None:
-        """Pass the output and telemetry of the run in view on from its start again; its pen trace stays as it is."""
+        """Pass the output and telemetry of the run in view on from its start again; the pen trace is not changed."""
         recording = self._runs.timeline.recording
         if recording is not None and self._feed is not None:
             self._feed.restart_chart()

@@ -29,18 +29,18 @@ class FileWatch:
         self._known: dict[Path, _Stamp | None] = {}
 
     def follow(self, paths: Iterable[Path]) -> None:
-        """Watch these files and no others; a file that is watched already keeps its last known state."""
+        """Watch only these files; a file that is watched already keeps its last known state."""
         self._known = {
             path: self._known[path] if path in self._known else _stamp(path) for path in paths
         }
 
     def note(self, path: Path) -> None:
-        """Store the present state of a file that the app itself has written, so that it does not count as changed."""
+        """Store the present state of a file that the app itself has written, so that `changed` does not return it."""
         if path in self._known:
             self._known[path] = _stamp(path)
 
     def changed(self) -> list[Path]:
-        """Return the files that were made or changed since the last call; deleted ones are not in it."""
+        """Return the files that were made or changed since the last call, without deleted files."""
         changed_paths = []
         for path, known in self._known.items():
             now = _stamp(path)

@@ -64,7 +64,7 @@ class Choice(_Control):
 
     @dataclass
     class Stepped(Message):
-        """Posted when the user asks for the choice `by` steps after the present one."""
+        """Posted when the user asks for the choice `by` steps after the present choice."""
 
         choice: Choice
         by: int
@@ -76,7 +76,7 @@ class Choice(_Control):
         self.post_message(self.Stepped(self, by))
 
     def on_click(self, event: events.Click) -> None:
-        """Ask for the previous choice if the left end was clicked, else for the next one."""
+        """Ask for the previous choice if the left end was clicked, else for the next choice."""
         event.stop()
         self.action_step(-1 if event.x == 0 else 1)
 

@@ -71,7 +71,7 @@ class GoalsController:
 
     @property
     def path(self) -> Path | None:
-        """The path of the open goals file; None without one, as when the goals are those of a lesson."""
+        """The path of the open goals file; None if no goals are open, or if they are the goals of a lesson."""
         return self.file.path if self.file and is_world_name(self.file.path.name) else None
 
     @property
@@ -94,13 +94,13 @@ class GoalsController:
         self.change(file)
 
     def is_of_task(self, recording: Recording) -> bool:
-        """Return whether a run had the mat and the start pose that the next run has."""
+        """Return whether a run had the same mat and the same start pose as the next run."""
         was = recording.spec.world
         now = self._run_controller.next_run.spec.world
         return (was.background, was.start) == (now.background, now.start)
 
     def change(self, file: GoalsFile | None) -> None:
-        """Replace the goals by changed ones of the same task, and judge the run in view again."""
+        """Replace the goals by changed goals of the same task, and judge the run in view again."""
         self.file = file
         self._forget()
 

@@ -41,7 +41,7 @@ def load_kept(program: str) -> StoredBreaks:
 
 
 def keep(program: str, stored: StoredBreaks) -> None:
-    """Store the breakpoints and watches of a program, in place of earlier ones.
+    """Store the breakpoints and watches of a program in place of those that were stored before.
 
     Raises:
         ConfigError: they cannot be written.
@@ -61,7 +61,7 @@ def keep(program: str, stored: StoredBreaks) -> None:
 
 
 def follow_edit(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:
-    """Return breakpoints moved along with their lines after one edit of the text, without those on deleted lines.
+    """Return breakpoints moved along with their lines after one edit of the text, without breakpoints on deleted lines.
 
     Args:
         breaks: The breakpoints before the edit.

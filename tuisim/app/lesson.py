@@ -34,7 +34,7 @@ _ROOMY_ROWS = 33
 
 
 class LessonController:
-    """The lesson that is open in the app, if any: its session, its panel, and its step beside a log.
+    """The lesson that is open in the app, if any: its session, its panel, and the panel with its step beside a log.
 
     Args:
         app: Shows notices.
@@ -42,7 +42,7 @@ class LessonController:
         panel_area: Has the lesson panel.
         goals: Judges the runs by the goals of the lesson.
         loader: Loads the lesson's world and the student's program.
-        debugger: Knows where the program is paused, and what is watched.
+        debugger: Knows where the program is paused, and which expressions are watched.
         lesson: The lesson that was opened at the start, if any; its world and program are loaded already.
         folder: The folder of own lessons, if one was named.
     """
@@ -76,7 +76,7 @@ class LessonController:
 
     @property
     def step(self) -> LessonStep | None:
-        """The step that the student has to do; None if no lesson is open, or no step of it is left."""
+        """The step that the student has to do; None if no lesson is open, or if all its steps are done or skipped."""
         return self.session.step if self.session is not None else None
 
     # Opening
@@ -139,7 +139,7 @@ class LessonController:
     def _choose_panels(self, lesson: Lesson) -> dict[str, bool | None]:
         """Return which panels a lesson shows (True), hides (False) or leaves to the size of the terminal (None).
 
-        The lesson fills the side column; in a high area the readings stay there.
+        The lesson fills the side column; in a high area, the readings stay in that column, too.
         """
         beside = [info.id for info in PANELS.values() if info.place is PanelPlace.SIDE]
         usual: dict[str, None] = {}
@@ -230,7 +230,7 @@ class LessonController:
             )
 
     def skip_step(self) -> None:
-        """Go on to the next step; the present one stays undone."""
+        """Go on to the next step; the present step stays undone."""
         if self.session is not None and (step := self.session.skip_step()):
             self._continue_session(self.session)
             self._app.say(f"Skipped: {step.title}. Start over to do it again")
@@ -375,7 +375,7 @@ class LessonController:
         return self._beside
 
     def log_closed(self) -> None:
-        """Handle that the log beside which the step was shown has been closed."""
+        """Forget the panel with the step beside a log, because the log was closed."""
         self._beside = None
 
     def view(self) -> LessonView:

@@ -235,7 +235,7 @@ class Loader:
         return decided
 
     def tell(self, decided: Decided) -> None:
-        """Show notices of what the text of a program has decided, and of what the brick would refuse in it."""
+        """Show notices of the settings that a program's text has decided, and of lines that the brick would refuse."""
         if decided.brief:
             ways = (
                 "{robot} shows it"
@@ -284,7 +284,10 @@ class Loader:
         self.tell(decided)
 
     def _read_world(self, path: Path) -> tuple[str | None, GoalsFile | None]:
-        """Read a world file and store its settings; return the path of its program and its goals, None without them."""
+        """Read a world file and store its settings; return the path of its program and its goals.
+
+        Each is None if the world file does not name it.
+        """
         from tuisim.tasks.goals.files import load_task
 
         world, goals = load_task(path, self._run_controller.next_run.settings["mats"])
@@ -517,7 +520,7 @@ class Loader:
         source: ProgramSource | None = None,
         gone: Iterable[str] = (),
     ) -> None:
-        """Apply the changed settings of a file; for the others, the user's own changes stay.
+        """Apply the changed settings of a file; for its other settings, the user's own changes stay.
 
         Args:
             differences: The new values.
@@ -592,7 +595,7 @@ def _find_differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict
 
 
 def program_of(run: StoredRun) -> Program:
-    """Return the program of a stored run as it was then; it has a path only if that file still has the same text."""
+    """Return the program of a stored run with the text that ran; it has a path only if the file still has this text."""
     from tuisim.programs.program_file import read_program
 
     stored = run.program

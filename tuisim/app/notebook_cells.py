@@ -78,9 +78,9 @@ def _take_cell(
 
 
 def _choose_run_options(context: ActionContext, speed: float | None) -> RunOptions:
-    """Return the speed and the limits for the program of a cell: the limits are those of a cell without the app.
+    """Return the speed of the program of a cell, and the same limits as for a cell without the app.
 
-    The speed is that of the cell, else the one that the user of the app has set, else as fast as possible.
+    The speed is that of the cell; without one, that of the app's user; without both, it is as fast as possible.
     """
     runs = context.runs
     if speed:

@@ -39,12 +39,12 @@ class Notice:
 class NoticeRow(Static):
     """A row with a notice, on borders of panels, so that it covers nothing else.
 
-    A notice of one row is below the panels; a longer one is between upper and lower panels, where two rows of borders
-    meet across the whole screen.
+    A notice of one row is below the panels; a longer notice is between upper and lower panels, where two rows of
+    borders meet across the whole screen.
 
     Args:
-        notice: The notice that it shows.
-        ended: Called once all of it has been shown, or a click has closed it.
+        notice: The notice in the row.
+        ended: Called once the whole notice has been shown, or a click has closed it.
     """
 
     DEFAULT_CSS = f"""

@@ -154,7 +154,10 @@ class PanelArea(Container):
         return is_single(self.size.width, self.size.height)
 
     def toggle(self, panel: str) -> None:
-        """Show a hidden panel, or hide a shown one; an area for one panel shows this one in place of the other."""
+        """Show a hidden panel, or hide a shown panel.
+
+        An area with room for one panel shows the panel in place of the present one, or the world in place of the panel.
+        """
         show = self.is_single or not self.is_shown(panel) or bool(self.alone)
         self.alone = ""
         self._roomy = None
@@ -169,10 +172,7 @@ class PanelArea(Container):
         self._chosen[panel] = show
 
     def can_take_focus(self, panel: str) -> bool:
-        """Return whether a panel is shown beside others, does not have the focus yet, and can get it.
-
-        A panel that was shown just now counts as having the focus.
-        """
+        """Return whether a panel is shown beside others, was not just opened by its key, and can have the focus."""
         beside = self.is_shown(panel) and not self.alone and not self.is_single
         return beside and panel != self.front and self._can_focus(panel)
 
@@ -220,22 +220,22 @@ class PanelArea(Container):
     def find_pointed_panel(self) -> str:
         """Return the id of the panel that was clicked last but cannot have the focus, else of the focused panel.
 
-        It is empty if there is neither.
+        It is empty if there is no such panel.
         """
         if self.clicked and self.is_shown(self.clicked):
             return self.clicked
         return self.find_focused_panel()
 
     def list_focused_widgets(self) -> list[DOMNode]:
-        """Return the focused widget and the widgets around it, up to its panel; empty if none has the focus."""
+        """Return the focused widget and the widgets around it, up to its panel; empty if no widget has the focus."""
         around = self.screen.focused.ancestors_with_self if self.screen.focused else []
         panel = self.panels.get(self.find_focused_panel())
         return [widget for widget in around if panel in widget.ancestors_with_self]
 
     def choose_preset(self, preset: Preset) -> Preset:
-        """Show the panels of a preset, and return it; if it is shown already, return to the standard one.
+        """Show the panels of a preset and return the preset; if it is shown already, return to the standard preset.
 
-        This changes only what is shown, never the run.
+        This changes only the shown panels, never the run.
         """
         unchanged = self.preset == preset and self._asked in ({}, self._given)
         self.preset = Preset.STANDARD if unchanged else preset
@@ -404,7 +404,7 @@ class PanelArea(Container):
             self.focus_world()
 
     def bring(self, panel: str) -> None:
-        """Show a panel if it is hidden, as its key does."""
+        """Show a hidden panel, as the panel's key does; do nothing if the panel is shown."""
         if not self.is_shown(panel):
             self.toggle(panel)
 
@@ -463,7 +463,7 @@ class PanelArea(Container):
             self.clicked = ""
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show an instant in every panel on the screen; those with readings are updated less often, all together."""
+        """Show an instant in every panel on the screen; panels with readings are updated less often, all together."""
         before = self._snapshot
         self._snapshot = snapshot
         for panel, widget in self.panels.items():

@@ -101,7 +101,7 @@ class PanelMessages(LabHost):
         self.handle_situation_change()
 
     def _end_former_text(self) -> None:
-        """End a live run of the text as it was before an edit, so that the edited text can run."""
+        """If the live run has the text before an edit, end the run, so that the edited text can run."""
         controller = self.context.runs
         code = self.context.panels.code
         if (
@@ -183,7 +183,7 @@ class PanelMessages(LabHost):
         self.mark_box()
 
     def mark_box(self) -> None:
-        """Mark the selected obstacle in the world panel, and set whether the mouse edits obstacles there."""
+        """Mark the selected obstacle in the world panel, and set whether the mouse edits obstacles in that panel."""
         area = self.context.panels
         on = area.is_shown("obstacles")
         if area.world:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class ReasonTour:
-    """The reasons why one run went wrong, and the index of the one that the user sees now."""
+    """The reasons why one run went wrong, and the index of the reason that the user sees now."""
 
     def __init__(self) -> None:
         self.reasons: tuple[Reason, ...] = ()
@@ -34,7 +34,7 @@ class ReasonTour:
 
         Args:
             recording: The run.
-            has_ended: Whether the run has ended; reasons found before its end are not those of the ended run.
+            has_ended: Whether the run has ended; reasons that were found before its end are then not its reasons.
         """
         is_same = recording is not None and self._of is recording
         return is_same and self._has_ended is has_ended
@@ -51,7 +51,7 @@ class ReasonTour:
         return has_gone_wrong or can_differ
 
     def begin(self, recording: Recording, has_ended: bool) -> None:
-        """Begin with a run whose reasons are not known yet; if it is another run, drop those of the run before."""
+        """Begin with a run whose reasons are not known yet; for another run, drop the reasons of the former run."""
         if self._of is not recording:
             self.reasons = ()
             self.earlier = None

@@ -66,9 +66,9 @@ def find(
     Args:
         context: The parts of the app.
         recording: The run.
-        earlier: The run to compare with, if the one in view repeats it.
+        earlier: The run to compare with, if the run in view repeats it; else None.
         then: Called with the reasons and the run that was compared.
-        searches: Whether to show errors, and to search the store for a run to compare with if `earlier` is none.
+        searches: Whether to show errors, and to search the store for a run to compare with if `earlier` is None.
     """
     session = context.lesson.session
     file = context.loader.goals.file

@@ -95,7 +95,7 @@ def _build_key(record: TickRecord) -> tuple[int, int]:
 
 
 class RunController:
-    """Starts runs and sends them commands; it has the current run, or before the first run the placed robot.
+    """Starts runs and sends them commands; it has the current run or, before the first run, the placed robot.
 
     Args:
         program: The program that runs next; None for none yet.
@@ -145,7 +145,7 @@ class RunController:
 
     @property
     def spec(self) -> RunSpec:
-        """The specification in view: that of a live run or a past instant, else that of the next run."""
+        """The specification in view: of the live run or the run of a past instant, else of the next run."""
         recording = self.timeline.recording
         return recording.spec if recording and (self.in_run or self.in_past) else self.next_run.spec
 
@@ -253,7 +253,7 @@ class RunController:
 
     @property
     def _is_of_run(self) -> bool:
-        """Return whether an instant of the run is in view, and not the robot as it was placed after the run."""
+        """Return whether an instant of the run is in view; if not, the robot was placed again after the run."""
         return self.in_run or self.in_past
 
     def _record(self) -> TickRecord | None:
@@ -266,7 +266,7 @@ class RunController:
     def _find_moment(self, record: TickRecord | None) -> tuple[Instant, int, bool]:
         """Return the instant of a record, the current line of the program (0 for none), and whether the pen is down.
 
-        For None, they are those of the robot before the next run.
+        For None, return the instant and the pen of the robot before the next run.
         """
         recording = self.timeline.recording
         if record is None or recording is None:
@@ -282,7 +282,7 @@ class RunController:
         return instant, line, down
 
     def _find_pressed(self, record: TickRecord | None) -> frozenset[str]:
-        """Return the buttons that the user holds down; without any, or in the past, those of a record.
+        """Return the buttons that the user holds down; without any, or in the past, the buttons pressed at a record.
 
         The set is empty if no instant of a run is in view.
         """
@@ -302,9 +302,9 @@ class RunController:
         )
 
     def find_mat(self, spec: RunSpec) -> Field | None:
-        """Return the mat that is prepared for a specification: that of the next run or that of the run in view.
+        """Return the mat that is prepared for a specification: it may be that of the next run or of the run in view.
 
-        The result is None if neither is.
+        The result is None if neither mat is.
         """
         recording = self.timeline.recording
         mats = (self.mat, self._mat_of_run)
@@ -374,7 +374,7 @@ class RunController:
         self._branch = branch
 
     def _finish_branch(self, paused: protocol.Paused | None = None) -> Branch | None:
-        """Continue a branch that has paused at its instant, and return it; None if no branch is on its way.
+        """Continue a branch that has paused at its instant, and return it; None if no branch is being started.
 
         A program that ends before that instant pauses at its end, and continues from there. A branch that has ended is
         dropped.
@@ -403,18 +403,18 @@ class RunController:
         self._show_recording(Recording(run))
 
     def show_earlier(self, earlier: Recording | None) -> None:
-        """Draw an earlier run beside the one in view, if both drove on the same mat; None draws none."""
+        """Draw an earlier run beside the run in view, if both drove on the same mat; None draws no earlier run."""
         later = self.timeline.recording
         self.earlier = earlier if earlier and later and is_comparable(earlier, later) else None
 
     def set_companion(self, companion: Recording | None) -> None:
-        """Draw this run beside every later run; None draws the previous run there again."""
+        """Draw this run beside every later run; None draws the previous run beside them again."""
         self.companion = companion
         self.shows_earlier = True
         self.show_earlier(companion)
 
     def _show_run(self, run: RunHandle, answers: tuple[str, ...] = ()) -> None:
-        """Show a run that was just started, beside the one before it; arguments as for `Recording`."""
+        """Show a run that was just started, with the former run beside it; arguments as for `Recording`."""
         before = self.timeline.recording
         self.close()
         self.run = run
@@ -437,7 +437,7 @@ class RunController:
             self.run.stop()
 
     def stop_now(self) -> None:
-        """Stop the program immediately, without its cooperation; its run stays the current one."""
+        """Stop the program immediately, without its cooperation; its run stays the current run."""
         if self.run:
             self.run.close()
 
@@ -447,26 +447,26 @@ class RunController:
             self.send(protocol.Pause())
 
     def set_speed(self, speed: float) -> None:
-        """Change the speed of the live run and of later ones: 1.0 is real time, 0 as fast as possible."""
+        """Change the speed of the live run and of later runs: 1.0 is real time, 0 as fast as possible."""
         self.speed = speed
         self.send(protocol.SetSpeed(speed))
 
     def set_pen(self, down: bool) -> None:
-        """Put the pen down or lift it, in the live run and in the next one."""
+        """Put the pen down or lift it, in the live run and in the next run."""
         if self.propose(protocol.SetPen(down)):
             return
         self._send_action(protocol.SetPen(down))
         self.next_run = plans.change_pen(self.next_run, down)
 
     def press(self, buttons: frozenset[str]) -> None:
-        """Hold down these buttons and touch sensors, of `PRESSABLE`, and release all others."""
+        """Hold down these buttons and touch sensors, which are named as in `PRESSABLE`, and release all others."""
         if buttons == self.pressed:
             return
         self.pressed = buttons
         self.send(protocol.SetButtons(tuple(name for name in PRESSABLE if name in buttons)))
 
     def set_noise(self, noise: NoiseSpec) -> None:
-        """Change the noise of the live run and of the next one."""
+        """Change the noise of the live run and of the next run."""
         present = self._find_moment(self._record())[0] if self.in_past else self.next_run.spec.world
         change = protocol.SetNoise(noise.light, noise.motor)
         if noise == present.noise or self.propose(change):

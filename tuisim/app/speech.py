@@ -61,11 +61,11 @@ def build_wav(tones: Sequence[Sequence[float]]) -> bytes:
 
 
 class Voice:
-    """Plays the sounds of the brick, one at a time; a sound that arrives while another one plays is not played.
+    """Plays the sounds of the brick, one at a time; a sound that arrives while another one plays is dropped.
 
     Args:
         quiet: Never make a sound.
-        environment: Variables that tell whether the terminal is remote; by default those of this process.
+        environment: Variables that tell whether the terminal is remote; by default the variables of this process.
     """
 
     def __init__(self, quiet: bool = False, environment: Mapping[str, str] = os.environ) -> None:

@@ -82,11 +82,11 @@ _GREYISH = 60
 
 
 class ThemeColors(LineFilter):
-    """Replaces the app's own colours by those of a theme.
+    """Replaces the app's own colours by the colours of a theme.
 
     Args:
         theme: The theme.
-        traces: Colours of the lines of charts, which also belong to the app's own.
+        traces: Colours of the lines of charts, which also are the app's own.
     """
 
     def __init__(self, theme: Theme, traces: Sequence[Rgb] = ()) -> None:
@@ -103,11 +103,11 @@ class ThemeColors(LineFilter):
         self._style = lru_cache(maxsize=4096)(self._apply_theme)
 
     def rgb(self, own: Rgb) -> Rgb:
-        """Return the theme's colour in place of one of the app's own; any other colour is returned as it is."""
+        """Return the theme's colour for one of the app's own colours; any other colour is returned unchanged."""
         return self._replaced.get(own, own)
 
     def choose_text_rgb(self, own: Rgb) -> Rgb:
-        """Return the theme's colour for text or lines in place of one of the app's own, legible on the background."""
+        """Return the theme's colour of text or lines for one of the app's own colours, legible on the background."""
         new = self.rgb(own)
         return (
             self._make_legible(new, self._background.rgb, is_line=own == _LINE)
@@ -161,7 +161,7 @@ class ThemeColors(LineFilter):
         Args:
             rgb: The colour.
             on: The background.
-            is_line: Whether it is of a line, which needs less contrast than text.
+            is_line: Whether the colour is that of a line, which needs less contrast than text.
         """
         ground = Color(*on)
         color = Color(*rgb)

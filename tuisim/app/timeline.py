@@ -41,7 +41,7 @@ FASTEST = 16.0
 
 
 class Timeline:
-    """The current run, the instant of it that is in view, and the playback of its past."""
+    """The current run, the instant in view, and the playback of the run's past."""
 
     def __init__(self) -> None:
         self.recording: Recording | None = None
@@ -122,7 +122,7 @@ class Timeline:
     # Navigation
 
     def go(self, tick: int | None) -> None:
-        """Go to a tick, at least the first one; None and ticks from the newest on stand for the newest instant."""
+        """Go to a tick, at least to the first; None, the newest tick and any later one stand for the newest instant."""
         self._played_s = None
         self.at = None if tick is None or tick >= self.newest or self.newest <= 0 else max(0, tick)
 
@@ -224,7 +224,7 @@ class _Search:
         return "in this run" if self.at < 0 else f"{side} {time_s:.2f} s"
 
     def texts(self) -> Iterator[OutputRow]:
-        """Yield the printed rows of later ticks (backwards: of earlier ones), the nearest first."""
+        """Yield the printed rows of later ticks, the nearest first; in a backwards search, those of earlier ticks."""
         rows = self.recording.rows
         found = (
             rows.rows(rows.until(self.at - 1) - 1, -1)
@@ -257,9 +257,8 @@ def find(
     Args:
         text: An expression in one of the forms of `list_forms`.
         timeline: The run, and the instant in view.
-        mat: The run's mat, which readings are taken from; None if there is none yet.
-        first_at_end: Whether a search at the newest instant, after which there is nothing, begins at the start of the
-            run; else it goes backwards.
+        mat: The run's mat, from which readings are taken; None if it is not prepared yet.
+        first_at_end: Whether a search from the newest instant begins at the start of the run; else it goes backwards.
 
     Raises:
         ConfigError: the words are not understood, or there is no such instant.

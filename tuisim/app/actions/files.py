@@ -93,7 +93,7 @@ EXAMPLE = "log_greys.py"
 
 
 def greet(context: ActionContext) -> None:
-    """Show the welcome at the first start; at later ones only if there is recent work to continue."""
+    """Show the welcome at the first start; at a later start, show it only if there is recent work to continue."""
     show_welcome(context, is_greeting=bool(get_preference(_WELCOMED_PREFERENCE)))
 
 
@@ -285,7 +285,7 @@ def _ask_new_program(context: ActionContext) -> None:
 
 
 def compare(context: ActionContext) -> None:
-    """Ask for a stored run and show where the run in view differs from it."""
+    """Ask for a stored run, and show where the run in view differs from it."""
     from tuisim.app.dialogs.runs import RunChooser
 
     recording = context.runs.timeline.recording

@@ -102,7 +102,7 @@ def show_menu(context: ActionContext) -> None:
 
 
 def _find_current_lesson(context: ActionContext) -> str:
-    """Return the name of the lesson to select in the menu: the open one, or if that is done, the next one."""
+    """Return the name of the lesson to select in the menu: the open lesson or, if that is done, the next lesson."""
     lesson = context.lesson
     if lesson.lesson is None:
         return ""

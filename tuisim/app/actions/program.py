@@ -45,7 +45,7 @@ def pause(context: ActionContext) -> None:
 
 
 def change_speed(context: ActionContext, by: int) -> None:
-    """Change the speed of the run to the one `by` steps further in `SPEEDS`; negative steps make it slower."""
+    """Change the speed of the run by a number of steps in `SPEEDS`; a negative number makes the run slower."""
     speed = context.runs.speed
     index = (
         SPEEDS.index(speed)

@@ -33,7 +33,7 @@ def home(context: ActionContext) -> None:
 
 
 def _move(context: ActionContext, pose: Pose) -> None:
-    """Place the robot at a pose; the undo key returns it to its pose before."""
+    """Place the robot at a pose; the undo key returns the robot to its former pose."""
     before = context.runs.pose
     context.runs.place(pose)
     if not context.debugger.is_away:
@@ -165,7 +165,7 @@ def find_world_panel(context: ActionContext) -> World | None:
 
 
 def switch_earlier(context: ActionContext) -> None:
-    """Show or hide the robot of the earlier run beside that of the run in view."""
+    """Show or hide the robot of the earlier run beside the robot of the run in view."""
     runs = context.runs
     runs.shows_earlier = not runs.shows_earlier
     if runs.earlier is None:

@@ -46,7 +46,7 @@ def go_to_tick(context: ActionContext, tick: int | None) -> None:
 
 
 def _is_laid_out(context: ActionContext, recording: Recording) -> bool:
-    """Return whether the app's current mat is that of a run; show a notice if it is not."""
+    """Return whether the app's current mat is the mat of a run; if it is another mat, show a notice."""
     mat = context.runs.mat
     if mat is not None and mat.key[:2] == mat_key(recording.spec)[:2]:
         return True
@@ -137,7 +137,7 @@ def stop_time(context: ActionContext) -> None:
 
 
 def advance_playback(context: ActionContext) -> None:
-    """Show the next instant of the playback; after the last one, resume the program if it is paused."""
+    """Show the next instant of the playback; after the last instant, resume the program if it is paused."""
     if context.runs.timeline.advance_playback(time.monotonic(), context.runs.speed):
         if context.runs.state == RunPhase.PAUSED:
             context.runs.send(protocol.Resume())

@@ -94,7 +94,7 @@ class LogChart(LinesPanel):
         """The time below the pointer."""
 
     def set_model(self, model: AnalysisModel) -> None:
-        """Show another log in the chart, or the same one with other options."""
+        """Show another log in the chart, or the same log with other options."""
         self._painters.clear()
         self.show(model)
 

@@ -272,9 +272,9 @@ def pane_lines(name: str, model: AnalysisModel, chosen: int, width: int, height:
     Args:
         name: Key of `PANES`.
         model: The state of the analysis.
-        chosen: Selected row; in the table it is that of the cursor.
-        width: Characters.
-        height: Lines, at least 1.
+        chosen: Selected row; in the table, the row of the cursor.
+        width: Width in characters.
+        height: Number of lines, at least 1.
     """
     if not model.log.rows and name != "runs":
         return [[(text, PLAIN)] for text in EMPTY]

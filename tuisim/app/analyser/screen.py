@@ -117,7 +117,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         }
 
     def on_resize(self, event: Resize) -> None:
-        """Put the world below the log if the screen is high and narrow, as that of a phone; else beside the log."""
+        """Put the world below the log if the screen is high and narrow, as on a phone; else beside the log."""
         self.set_class(is_tall(*event.size) and event.size.width < _NARROW_COLS, "-tall")
 
     def on_mount(self) -> None:
@@ -269,7 +269,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.call_after_refresh(self.update)
 
     def show_world(self, is_on: bool) -> None:
-        """Show or hide the world beside the log; in a narrow terminal, it replaces the other widget there."""
+        """Show or hide the world beside the log; in a narrow terminal, the world replaces the widget `beside`."""
         self.world.display = self.world.is_on = is_on
         if self._beside is not None:
             self._beside.display = not is_on or self.size.width >= _WIDE_COLS

@@ -347,10 +347,10 @@ def is_log(word: str) -> bool:
 
 
 def _read_openable(word: str) -> object:
-    """Read and check a program, a world or goals; of a log, check only that the file exists.
+    """Read and check a program, a world or goals; for a log, check only that the file exists.
 
     Raises:
-        TuisimError: there is no such file, or it is wrong.
+        TuisimError: the file does not exist, or its content is wrong.
     """
     if is_log(word):
         if not os.path.isfile(user_path(word)):
@@ -497,7 +497,7 @@ class MatPicker(Chooser):
         self.query_one("#title", Static).update(title if is_drawn else f"{title} · loading …")
 
     def _clear_stale(self, key: tuple[str, Viewport]) -> None:
-        """Remove the picture of the mat highlighted before, while that of the present one is still being decoded."""
+        """Remove the picture of the formerly highlighted mat, while the picture of the new one is being decoded."""
         if self.is_attached and key[0] == self._shown and key not in self._pictures:
             self.query(PixelView).first().clear_picture()
 

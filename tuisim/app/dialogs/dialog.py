@@ -84,7 +84,7 @@ def _shorten_label(key: str) -> str:
 
 
 def _find_enter_verb(hint: str) -> str:
-    """Return the verb for what Enter does in a dialog, from the hint in its frame; empty if it does not name Enter."""
+    """Return the verb for what Enter does, from the hint in a dialog's frame; empty if the hint does not name Enter."""
     match = _ENTER.search(hint)
     if match is None:
         return ""
@@ -93,7 +93,7 @@ def _find_enter_verb(hint: str) -> str:
 
 
 class ClosesOnce(HookedScreen[Result], Generic[Result]):
-    """A modal screen that returns one result, and ignores events after that.
+    """A modal screen that returns one result, and ignores all events after it has returned the result.
 
     Textual's `dismiss` removes the topmost screen, whichever screen it was called for: without this class, a key
     pressed twice would return two results, and remove the screen below as well.
@@ -122,7 +122,7 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         self.app.post_message(self.Changed())
 
     def can_take(self, event: Event) -> bool:
-        """Return whether the screen can handle an event now; if not, the event waits, and all later ones with it."""
+        """Return whether the screen can handle an event now; if not, this event and all later events wait."""
         return self.is_ready and not (
             self._is_at_work and isinstance(event, Key) and event.key != "escape"
         )
@@ -156,7 +156,7 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         return self not in self.app.screen_stack
 
     def dismiss(self, result: Result | None = None) -> AwaitComplete:
-        """Close the screen with a result, and every screen above it with None; without effect if it is closed."""
+        """Close the screen with a result, and every screen above it with None; do nothing if it is closed already."""
         if self.is_closed:
             return AwaitComplete()
         stack = self.app.screen_stack
@@ -209,7 +209,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
             yield from self.compose_content()
 
     def on_resize(self) -> None:
-        """Show as many hints as fit in the frame; if not all fit, those before the last are left out first."""
+        """Show as many hints as fit in the frame; if not all fit, the hints just before the last one are left out."""
         frame = self.query_one(".dialog")
         hints = self.HINT.split(_BETWEEN)
         while len(_BETWEEN.join(hints)) > frame.region.width - _HINT_EDGES and len(hints) > 2:

@@ -35,7 +35,7 @@ class _List(FieldDialog[Result]):
         self.query_one(OptionList if self._entries else Input).focus()
 
     def list_entries(self, index: int | None = None) -> None:
-        """Fill the list with the present entries, and select the one at `index`; None selects none."""
+        """Fill the list with the present entries, and select the entry at `index`; for None, select none."""
 
     def _list(self, options: list[Option], index: int | None) -> None:
         listed = self.query_one(OptionList)
@@ -49,7 +49,7 @@ class _TextList(_List[None], Generic[Entry]):
     """A dialog with entries that are texts, and can be edited in the field.
 
     Args:
-        entries: The current ones.
+        entries: The current entries.
         run: The run whose columns can be used in entries.
         changed: Called with the new entries after each change.
     """
@@ -100,7 +100,7 @@ class _TextList(_List[None], Generic[Entry]):
         return self.format_entry(entry)
 
     def list_entries(self, index: int | None = None) -> None:
-        """Fill the list with the present entries, and select the one at `index`; None selects none."""
+        """Fill the list with the present entries, and select the entry at `index`; for None, select none."""
         self._list([Option(self.label(entry)) for entry in self._entries], index)
 
     @property
@@ -257,7 +257,7 @@ class SavedPoses(_List[Pose]):
         yield Static(id="message", markup=False)
 
     def list_entries(self, index: int | None = None) -> None:
-        """Read the saved poses, fill the list, and select the one at `index`; None selects none."""
+        """Read the saved poses, fill the list with them, and select the pose at `index`; for None, select none."""
         try:
             self._entries = load_poses()
         except TuisimError as error:

@@ -273,7 +273,7 @@ class NewProgramDialog(Dialog[str]):
 def _find_title(titles: Sequence[str], typed: str) -> int | None:
     """Return the index of the first title that begins with a text.
 
-    If none does, return that of the first title with the letters of the text in their order; None if there is none.
+    If there is none, return the index of the first title that has the letters of the text in their order; else None.
     """
     for fits in (lambda title: title.startswith(typed), lambda title: _has_letters(title, typed)):
         if (

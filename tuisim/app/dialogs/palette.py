@@ -156,7 +156,7 @@ class SearchList(Dialog[str]):
             self.handle_unfound(event.value.strip())
 
     def handle_unfound(self, typed: str) -> None:
-        """Handle Enter while no entry matches the typed text; here, do nothing."""
+        """Handle Enter while no entry matches the typed text; the base class does nothing."""
 
     @on(OptionList.OptionSelected)
     def _handle_selection(self, event: OptionList.OptionSelected) -> None:

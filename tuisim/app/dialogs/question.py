@@ -29,7 +29,7 @@ def _compose_answers(answers: Iterable[tuple[str, str, str]]) -> Iterator[Static
     """Yield an empty row, and the row of answers.
 
     Args:
-        answers: For each answer the action of the dialog, its key, and what it does in words.
+        answers: For each answer the action of the dialog, the key, and in words what the answer does.
     """
     yield Static()
     words = (f"[@click=screen.{action}]  {key}  {does}  [/]" for action, key, does in answers)
@@ -209,7 +209,7 @@ def complete_line(line: str, words: Sequence[str]) -> str | None:
 
     Args:
         line: The typed text.
-        words: Possible completions; the first one that begins with the last word is used.
+        words: Possible completions; the first that begins with the line's last word is used.
     """
     match = _LAST_WORD.search(line)
     if match is None:

@@ -98,7 +98,7 @@ _MIN_LIST_ROWS = 5
 
 
 def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
-    """Return the cells of one line of the list by column, without the columns that do not fit.
+    """Return the cells of one line of the list of runs by column, without the columns that do not fit.
 
     Args:
         texts: The text of each column.
@@ -121,7 +121,7 @@ def build_header(columns: int) -> str:
 
 
 def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
-    """Return a run as a line of the list, below `build_header`; in a wide terminal with its tags or its failure."""
+    """Return a run as a line of the list below `build_header`; in a wide terminal, with its tags or its failure."""
     student = run.find_tag(STUDENT_TAG)
     texts = {
         "run": f"{run.number}{'●' if marked else ' '}",
@@ -316,7 +316,7 @@ class RunsChooser(RunChooser):
         super().action_move(action)
 
     def line(self, run: RunInfo) -> Text:
-        """Return a run as a line of the list, with a mark if it was marked."""
+        """Return a run as a line of the list, with a mark if the user has marked the run."""
         return run_line(run, self.app.size.width, marked=run.id in self._marked)
 
     def action_mark(self) -> None:
@@ -356,7 +356,7 @@ class Differences(Dialog[bool]):
 
     Args:
         first: Name of the first run.
-        second: Name of the other one.
+        second: Name of the second run.
         diff: The differences.
         samples: Whether the user may also go to the first sample that differs, if no tick differs.
     """

@@ -71,7 +71,7 @@ class FileDialog(Dialog[Path]):
         yield Static(id="message", markup=False)
 
     def compose_extras(self) -> ComposeResult:
-        """Return the widgets between the field and the message; none here."""
+        """Return the widgets between the field and the message; the base class has none."""
         yield from ()
 
     def resolve_target(self, path: Path) -> Path:

@@ -302,7 +302,7 @@ class CodeArea(TextArea):
 
     @property
     def gutter_width(self) -> int:
-        """Width of the gutter in cells: the marker of a breakpoint, that of the run or an error, a number, a blank."""
+        """Width of the gutter in cells: a breakpoint's marker, a marker of the run or an error, a number, a blank."""
         return max(2, len(str(self.document.line_count))) + 3
 
     def render_line(self, y: int) -> Strip:
@@ -345,9 +345,9 @@ class CodeArea(TextArea):
     def _append_values(
         self, text: Strip, values: Sequence[Variable], room: int, style: Style
     ) -> Strip:
-        """Return a row of text with the values of variables behind it; without their names if these do not fit.
+        """Return a row of text with the values of variables behind it; if their names do not fit, only the values.
 
-        If the values do not fit either, the text is cut: who looks for an error needs the values more.
+        If even the values do not fit, the text is cut: a reader who looks for an error needs the values more.
 
         Args:
             text: The row.
@@ -401,7 +401,7 @@ class CodeArea(TextArea):
             self.post_message(self.LettersChanged())
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Return whether a key runs an action of the text; those for typing run only while the user types."""
+        """Return whether a key runs an action of the text; a key for typing does so only while the user types."""
         return (
             self.typing if action in _TYPING_ACTIONS else super().check_action(action, parameters)
         )

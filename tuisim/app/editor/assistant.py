@@ -56,7 +56,8 @@ class Assistant:
     def describe_cursor(self, width: int) -> Text:
         """Return a message about the cursor's place in at most `width` cells.
 
-        It is about an unknown name at the cursor, else the signature of the call around it; empty if there is neither.
+        It is about an unknown name at the cursor or, without one, the signature of the call around the cursor. The
+        message is empty if there is no such name and no call.
         """
         row, column = self._area.cursor_location
         unknown = next(
@@ -74,10 +75,10 @@ class Assistant:
         return format_signature(self._signature, width) if self._signature else Text()
 
     def load_program(self, path: str) -> None:
-        """Forget the names of the program before, and check those of the one that is in the text now.
+        """Forget the names of the former program, and check the names of the new program in the text.
 
         Args:
-            path: Path of its file, or its name.
+            path: Path of the new program's file, or its name.
         """
         self._area.path = path
         self._signature = None

@@ -75,7 +75,7 @@ def measure_width(candidates: Sequence[Candidate], room: int) -> int:
 def list_place(word: Offset, size: Size, screen: Size) -> Offset:
     """Return the position of a list of names on the screen, all of it visible.
 
-    It is below the word that is typed, or above it if there is no room.
+    It is below the word that is being typed or, if there is no room, above the word.
 
     Args:
         word: Position of the word.

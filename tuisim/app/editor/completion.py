@@ -133,13 +133,13 @@ def is_in_call(lines: Sequence[str], row: int, column: int) -> bool:
 
 
 def find_candidates(text: str, path: str, row: int, column: int) -> tuple[Candidate, ...]:
-    """Return the names that may complete the word at a position, the most usual ones first.
+    """Return the names that may complete the word at a position, the most usual names first.
 
     Args:
-        text: The program as it stands in the editor; it need not be valid.
-        path: Its file, or its name.
-        row: From 0.
-        column: From 0.
+        text: The program in the editor; it need not be valid.
+        path: The program's file, or its name.
+        row: Row of the position, from 0.
+        column: Column of the position, from 0.
     """
     line = text.split("\n")[row]
     word = find_word(line, column)

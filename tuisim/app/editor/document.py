@@ -211,14 +211,14 @@ class Document:
             self._go_to_error()
 
     def lines(self) -> LineMap:
-        """Return the map between the lines of the current run and those of the edited text."""
+        """Return the map between the lines of the current run and the lines of the edited text."""
         now = source_lines(self._text)
         return LineMap(now if self._ran is None else source_lines(self._ran[1]), now)
 
     # Editing
 
     def handle_edit(self, text: str) -> None:
-        """Take over the text that the user has just edited in the code panel."""
+        """Store the text that the user has just edited in the code panel, and save it as a draft soon."""
         self._text = text
         self._error_line = 0
         if code := self._panel_area.code:
@@ -303,7 +303,7 @@ class Document:
         self.show()
 
     def apply(self) -> bool:
-        """Make the edited text the program of the next run; if it cannot run, mark and show its error.
+        """Make the edited text the program of the next run; if the text cannot run, mark and show its error.
 
         Returns:
             Whether the program can run.
@@ -409,9 +409,9 @@ class Document:
 
     @property
     def named_mat(self) -> str | None:
-        """The mat that the magic line of a program names, empty if it names none.
+        """The mat that the magic line of the program names; empty if the line names none.
 
-        None if the program has no magic line, or must not be written.
+        The result is None if the program has no magic line, or its file must not be written.
         """
         from tuisim.programs.program_file import find_magic
 
@@ -426,7 +426,7 @@ class Document:
     # Saving
 
     def save(self, then: Callable[[], None] = lambda: None) -> None:
-        """Save the program to its file; if it has none, ask for a file.
+        """Save the program to its file; if the program has no file, ask for one.
 
         Args:
             then: Called after the program was saved.
@@ -496,7 +496,7 @@ class Document:
         write_text(path, self._text, self._form)
 
     def _finish_save(self, path: Path, then: Callable[[], None]) -> None:
-        """Handle that the text was saved to a file: show a notice, also of a mistake in the text, and call `then`."""
+        """After the text was saved to a file, show a notice, also about a mistake in the text, and call `then`."""
         moved = str(path) != self._path
         self._mark_saved(path)
         mistake = self._find_mistake()

@@ -33,12 +33,12 @@ def _strip_comment(line: str) -> str:
 
 
 def indent_lines(lines: Sequence[str]) -> list[str]:
-    """Return lines indented by one more level; empty ones stay empty."""
+    """Return lines indented by one more level; empty lines stay empty."""
     return [INDENT + line if line.strip() else line for line in lines]
 
 
 def outdent_lines(lines: Sequence[str]) -> list[str]:
-    """Return lines indented by one level less, if they are indented."""
+    """Return lines indented by one level less; a line without indentation is unchanged."""
     return [_outdent_line(line) for line in lines]
 
 
@@ -58,7 +58,7 @@ def count_deletable_blanks(before: str) -> int:
 
 
 def toggle_comments(lines: Sequence[str]) -> list[str]:
-    """Return lines as comments; if all of them are comments, return them uncommented."""
+    """Return lines as comments; if all of them are comments already, return them without the comment signs."""
     full = [line for line in lines if line.strip()]
     if full and all(line.lstrip().startswith("#") for line in full):
         return [re.sub(r"^(\s*)# ?", r"\1", line) for line in lines]
@@ -81,7 +81,7 @@ def find_matches(lines: Sequence[str], search: str) -> list[tuple[int, int]]:
 
 
 def count_differing_lines(text: str, other: str) -> int:
-    """Return how many lines a diff of two texts changes; a replaced block counts as the longer of its sides."""
+    """Return how many lines a diff of two texts changes; for a replaced block, the lines of its longer side."""
     matcher = SequenceMatcher(None, source_lines(text), source_lines(other), autojunk=False)
     changes = (op for op in matcher.get_opcodes() if op[0] != "equal")
     return sum(
@@ -102,7 +102,7 @@ MAX_COMPARED = 400
 
 
 class LineMap:
-    """A map between the lines of the running text and those of the shown text, from 1; 0 stands for no line.
+    """A map between lines of the running text and lines of the shown text, from 1; 0 stands for no line.
 
     Args:
         run: Lines of the running text.

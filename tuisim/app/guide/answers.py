@@ -33,9 +33,9 @@ _SECTION, _PAGE, _TEXT = (
 
 
 class AnswerList(OptionList):
-    """The list of answers of a search; the first one, the best, has the most lines.
+    """The list of answers of a search; the first answer, which is the best, has the most lines.
 
-    The others have as many lines as keep all answers visible.
+    Each other answer has as many lines as fit while all answers stay visible.
     """
 
     def __init__(self) -> None:
@@ -44,11 +44,11 @@ class AnswerList(OptionList):
         self._asked: re.Pattern[str] | None = None
 
     def show(self, question: str, results: Sequence[SearchResult], size: Size) -> None:
-        """Show the answers to another question, with the first one highlighted.
+        """Show the answers to another question, and highlight the first answer.
 
         Args:
             question: The user's question; its words stand out.
-            results: The best one first.
+            results: The results of the search, the best first.
             size: Columns and rows of the list.
         """
         self._found, self._asked = results, compile_pattern(question)
@@ -72,9 +72,9 @@ class AnswerList(OptionList):
         """Yield each answer as a text with `gap` empty rows below it.
 
         Args:
-            columns: Width.
-            lines: Most lines of an answer after the first.
-            gap: Empty rows; below, so that the highlight of an answer begins with its text.
+            columns: Width of the list.
+            lines: The largest number of lines of an answer after the first.
+            gap: Number of empty rows; they are below the text, so that the highlight of an answer begins with its text.
         """
         above = ("", "")
         for row, answer in enumerate(self._found):

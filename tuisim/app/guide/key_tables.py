@@ -28,7 +28,7 @@ _FEW = 3
 
 
 def own_keys(widgets: Iterable[DOMNode]) -> list[KeyWord]:
-    """Return the keys that widgets handle themselves, such as those of a field and of the panel around it."""
+    """Return the keys that widgets handle themselves, such as the keys of a field and of the panel around it."""
     keys: dict[str, list[str]] = {}
     fields: Sequence[KeyWord] = ()
     for widget in widgets:

@@ -186,7 +186,7 @@ class _Page(VerticalScroll):
             self._draw()
 
     def show(self, place: Place, matches: SearchResult | None = None) -> None:
-        """Show another page or section; with `matches`, the passage that a search has found there."""
+        """Show another page or section; with `matches`, show the passage that a search has found on the page."""
         self.place = place
         self._with_keys = False
         self._passage = matches.passage if matches else ""
@@ -364,7 +364,7 @@ class GuideScreen(Dialog[None]):
             frame.border_subtitle = "esc back to the answers · / search"
 
     def _title_of(self, one: SearchResult) -> str:
-        """Return the names of an answer's page and section; if there is no room for both, the section only."""
+        """Return the names of an answer's page and section; if there is no room for both, only the section's."""
         names = [self.TITLE_TEXT, *filter(None, reversed(name_answer(one)))]
         titles = [" · ".join(names[first:]) for first in range(len(names))]
         return next(

@@ -185,7 +185,7 @@ _READ_FIRST = ("code", "chart", "arrays")
 
 
 def _gives_way(panel: str, switched: Mapping[str, bool], width: int) -> bool:
-    """Return whether a panel stays hidden in favour of others, such as code and variables in a narrow terminal."""
+    """Return whether a panel stays hidden to leave room for others, such as code and variables in a narrow terminal."""
     is_narrow = width < _MIN_CODE_COLS
     match panel:
         case "code":
@@ -335,8 +335,8 @@ def arrange_beside_world(
     The result is None if the screen is too narrow, the world is hidden, or a lesson is shown.
 
     Args:
-        panel: The one that gets most of the width.
-        panels: The others, the most wanted first.
+        panel: The panel that gets most of the width.
+        panels: The other panels, the most wanted first.
         width: Columns.
         height: Rows.
     """
@@ -371,7 +371,7 @@ def make_room(
     First all panels are tried, then the panel with those in other areas of the screen, then the panel alone.
 
     Args:
-        panel: The one that needs room.
+        panel: The panel that needs room.
         panels: Ids, the most wanted first.
         min_size: Minimum columns and rows of `panel`.
         size: Columns and rows of the screen.

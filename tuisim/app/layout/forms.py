@@ -94,7 +94,7 @@ def measure_side(width: int, panels: Sequence[str] = ()) -> int:
 
 
 def select_panels(panels: Sequence[str], where: PanelPlace) -> list[str]:
-    """Return those of some panels that belong in one area of the screen, in the order of `PANELS`."""
+    """Return the panels among some that belong in one area of the screen, in the order of `PANELS`."""
     return [info.id for info in PANELS.values() if info.place == where and info.id in panels]
 
 
@@ -120,9 +120,9 @@ def _build_stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], wi
 
 
 def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
-    """Return the columns of the bottom strip, each a panel or a few stacked ones; none without panels.
+    """Return the columns of the bottom strip, each a panel or a few stacked panels; empty without panels.
 
-    If code would be narrow and the strip is high enough, the code has the whole width, above the others.
+    If code would be narrow and the strip is high enough, the code has the whole width, above the other panels.
     """
     if not panels:
         return []

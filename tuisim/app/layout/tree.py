@@ -86,7 +86,7 @@ def compute_ideal_columns(rows: int) -> int:
 
 
 def join_nodes(axis: Axis, parts: Sequence[Node], shares: Sequence[float] = ()) -> Node:
-    """Return nodes side by side or above each other as one node; a single node is returned as it is.
+    """Return nodes side by side or above each other as one node; a single node is returned unchanged.
 
     Args:
         axis: The direction.
@@ -165,8 +165,8 @@ def _divide_columns(split: Split, width: int) -> list[int]:
 def _divide_rows(split: Split, width: int, height: int, rank: Callable[[Node], int]) -> list[int]:
     """Return the height in rows of each part of a split.
 
-    Each part gets its minimum; then, by rank, what it needs to be shown well, and still more; the rest goes to the part
-    that grows most.
+    Each part gets its minimum height; then, by rank, the height at which it is shown well, and still more. The part
+    that grows most gets the rest.
     """
     rows = _list_min_rows(split)
     spare = height - sum(rows)

@@ -141,7 +141,7 @@ class Chart(LinesPanel, can_focus=True):
         self._read(self._pointed_s)
 
     def _find_chosen(self) -> Trace | None:
-        """Return the selected trace, or the first one that is drawn; None if none is drawn."""
+        """Return the selected trace if it is drawn, else the first drawn trace; None if no trace is drawn."""
         drawn = self._traces.list_drawn()
         return next(
             (trace for trace in drawn if trace.name == self._state.selected),
@@ -302,9 +302,9 @@ class Chart(LinesPanel, can_focus=True):
             self.border_subtitle = words
 
     def copy_text(self) -> Copied | None:
-        """Return the values of all drawn traces at the pointer, else at the cursor.
+        """Return the values of all drawn traces at the pointer or, without a pointer, at the cursor.
 
-        None if there is neither a pointer nor a cursor, or no trace.
+        The result is None without a pointer and a cursor, or if no trace is drawn.
         """
         time_s = self._state.cursor_s if self._pointed_s is None else self._pointed_s
         drawn = self._traces.list_drawn()

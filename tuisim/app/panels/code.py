@@ -228,7 +228,7 @@ class Code(Vertical):
         Args:
             name: Name of its file; empty for no program.
             text: The text of the file.
-            key: Identifies the program; if it is that of the program before, cursor and scroll position stay.
+            key: Identifies the program; if the program shown before has the same key, cursor and scroll position stay.
         """
         key = key or name
         if key != self._key:
@@ -409,7 +409,7 @@ class Code(Vertical):
         self._area.set_values(values)
 
     def copy_text(self) -> Copied:
-        """Return the error that the panel shows, or without one the text of the program."""
+        """Return the error that the panel shows; without an error, return the text of the program."""
         if self.error_line and self._error_words:
             return Copied("Error", f"line {self.error_line}: {self._error_words}")
         return Copied("Program", self._area.program_text)

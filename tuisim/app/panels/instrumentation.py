@@ -103,7 +103,7 @@ def _build_sensor_lines(now: Snapshot, width: int) -> list[Line]:
 def _build_tall_lines(now: Snapshot, width: int, height: int) -> list[Line]:
     """Return the readings with a further line for each motor: the values of its driver.
 
-    The result is empty if there are no such values, or more lines than `height`.
+    The result is empty if no motor has these values, or if there would be more lines than `height`.
     """
     drivers = [
         build_driver_line(values, now.instant.get_scale(number), width)

@@ -26,7 +26,7 @@ COLUMN = 12
 
 
 def fit_line(width: int, *variants: Sequence[Run]) -> Line:
-    """Return the first of some variants of a line that fits a width in cells; if none does, the last one."""
+    """Return the first variant of a line that fits a width in cells; if none fits, return the last variant."""
     for variant in variants:
         if sum(len(text) for text, _ in variant) <= width:
             return list(variant)
@@ -49,7 +49,7 @@ def format_unit(text: str) -> Run:
 
 
 def format_values(*texts: str) -> list[Run]:
-    """Return values and units in their styles; the texts are a value, its unit, the next value and so on."""
+    """Return values and units in their styles; the texts are values and units in turn."""
     return [
         format_unit(text) if index % 2 else format_value(text) for index, text in enumerate(texts)
     ]
@@ -64,7 +64,7 @@ PORT_CELLS = 4
 
 @dataclass(frozen=True, slots=True)
 class LightSeen:
-    """A reading of a colour sensor, and which number of it the program gets."""
+    """A reading of a colour sensor, and which of its numbers the program gets."""
 
     color: ColorReading
     read: LightRead
@@ -125,7 +125,7 @@ def build_color_cell(label: str, seen: LightSeen | None, with_name: bool) -> Lin
 def build_sensor_lines(
     name: str, port: str, seen: LightSeen | None, width: int
 ) -> tuple[Line, Line]:
-    """Return the reading of a colour sensor in two lines, the second one with its channels and its colour."""
+    """Return the reading of a colour sensor in two lines; the second line has the channels and the colour."""
     if seen is None:
         return [format_label(name), format_unit("–")], []
     color = seen.color
@@ -336,7 +336,7 @@ def _build_motor_line(name: str, short: str, counts: int, speed: Run, width: int
 
 
 def build_motor_cells(now: Snapshot, *, with_speed: bool) -> list[Line]:
-    """Return a cell for each motor: its position in degrees, and `with_speed` also its speed or state."""
+    """Return a cell for each motor: its position in degrees; if `with_speed`, also its speed or its state."""
     robot = now.spec.robot
     names = ("L", "R", *(motor.port[-1] for motor in robot.extra_motors))
     known = now.instant.motors

@@ -23,7 +23,8 @@ class LessonPanel(LinesPanel, can_focus=True):
     """The lesson panel: the step of the lesson, its result and its hints.
 
     Args:
-        is_brief: Whether it only accompanies a log, which has the focus; its first row is the title of the step.
+        is_brief: Whether the panel only accompanies a log, which has the focus; the title of the step is then in the
+            panel's first row.
     """
 
     ALLOW_SELECT = False

@@ -24,7 +24,7 @@ _SEED = list_values(RunSpec)["seed"]
 
 
 class Noise(EntryPanel):
-    """The noise panel: a slider for the noise of the light, one for that of the motors, and the seed."""
+    """The noise panel: a slider for the noise of the light, a slider for the noise of the motors, and the seed."""
 
     USE = "Seed: from the next run"
 

@@ -105,7 +105,7 @@ class Output(Vertical):
         self._log.add(rows, skipped)
 
     def note(self, text: str) -> None:
-        """Append a line that the app says, not the program."""
+        """Append a line that comes from the app, not from the program."""
         self._log.add([OutputRow(text, 0, 0, 0, Stream.NOTE)])
 
     def ask(self, prompt: str) -> None:
@@ -201,7 +201,7 @@ def _find_break(text: str, width: int) -> int:
 
 
 class Log(Widget, can_focus=True):
-    """The lines of the output; it shows the newest ones unless it was scrolled up."""
+    """The lines of the output; the newest lines are visible unless the user has scrolled up."""
 
     # A ScrollView repaints all rows for each new line; this widget does not resend unchanged rows.
     COMPONENT_CLASSES: ClassVar[set[str]] = {

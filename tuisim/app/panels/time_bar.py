@@ -79,7 +79,7 @@ def _round_end_s(now_s: int) -> float:
 
 
 def format_times(times: BarTimes, width: int) -> str:
-    """Return the times beside the bar: the one in view, and the newest one if there is room.
+    """Return the times beside the bar: the time in view and, if there is room, the newest time.
 
     The text is as wide in the past as at the newest instant, so that a column of the bar always is the same time.
 
@@ -111,7 +111,7 @@ def mark_cells(times: BarTimes, marks: Iterable[tuple[int, Mark]], columns: int)
 
 
 def build_bar(times: BarTimes, marks: Mapping[int, Run], columns: int) -> list[Run]:
-    """Return the cells of the bar, with the marked ones in place."""
+    """Return the cells of the bar, with the marked cells in their columns."""
     here = times.column(times.tick, columns)
     now = times.column(times.newest, columns)
     cells: list[Run] = []
@@ -223,7 +223,7 @@ _SPANS_S = (5.0, 10.0, 20.0, 30.0, 60.0)
 def time_limits(end_s: float) -> Limits:
     """Return limits from 0 to a round time in s after `end_s`.
 
-    There are few such times, so that the axes seldom change.
+    There are few of these round times, so that the axes seldom change.
     """
     for span_s in _SPANS_S:
         if end_s <= span_s:

@@ -178,7 +178,7 @@ class World(Widget, can_focus=True):
         return pieces
 
     def restore_trace(self, pieces: list[Piece]) -> None:
-        """Draw the pieces of a cleared pen trace again, below what was drawn since."""
+        """Draw the pieces of a cleared pen trace again, below the pieces that were drawn later."""
         self._view.trace.put_back(pieces)
         self._view.repaint_scene()
 
@@ -260,7 +260,7 @@ class WorldView(PixelView):
             self.repaint_scene()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show an instant of the run; do nothing if it looks like the last one."""
+        """Show an instant of the run; do nothing if it looks like the instant shown before."""
         self._snapshot = snapshot
         if self._held is not None and self._grip is None:
             self._held_shows -= 1

@@ -95,7 +95,8 @@ def draw_brick(
         face: State of the brick.
         pressed: Buttons that are held down.
         width: Columns inside the border, at least 1.
-        height: Rows inside the border, at least 1; buttons come first, then bumpers, display and sound.
+        height: Rows inside the border, at least 1. With few rows, the buttons are drawn first, then bumpers, display
+            and sound as far as they fit.
         bumpers: Ports of the touch sensors.
     """
     pad_rows = _PAD_ROWS if height >= 9 and width >= _PAD_COLUMNS + 2 * _LED_COLUMNS else 1
@@ -210,7 +211,7 @@ def _find_shade(step: int) -> Color:
 
 
 def mix_led_rgb(red: int, green: int) -> Rgb:
-    """Return the colour of a pair of lights, of which each has brightness 0 to 255; both together are amber."""
+    """Return the mixed colour of a red and a green light, whose brightness is 0 to 255; both together are amber."""
     if not red and not green:
         return _DARK_LED_RGB
     # A lamp that is on at all must be visible; the green ones are brighter.
@@ -221,7 +222,7 @@ def mix_led_rgb(red: int, green: int) -> Rgb:
 
 
 def name_led(red: int, green: int) -> str:
-    """Return the name of the colour of a pair of lights with brightness 0 to 255, such as `amber`."""
+    """Return the name of the mixed colour of a red and a green light with brightness 0 to 255, such as `amber`."""
     if not red and not green:
         return "off"
     if not green:
@@ -246,7 +247,7 @@ def _list_lamps(face: BrickState) -> list[tuple[int, int]]:
 
 
 def _build_lamp(lamp: tuple[int, int], named: bool, columns: int) -> Run:
-    """Return a row with the colour of a pair of lights.
+    """Return a row in the mixed colour of a red and a green light.
 
     Args:
         lamp: Brightness of red and green, 0 to 255.

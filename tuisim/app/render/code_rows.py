@@ -105,7 +105,7 @@ def _split_line(line: str, breaks: _Breaks, width: int) -> Iterator[str]:
 def _end(line: str, start: int, room: int, inside: Mapping[int, bool]) -> int:
     """Return the column at which to break a line: in brackets if possible, before a dot only if nothing else fits.
 
-    If nothing fits, it is that of the next possible break, or the end of the line.
+    If nothing fits, return the column of the next possible break, or the end of the line.
 
     Args:
         line: The line.

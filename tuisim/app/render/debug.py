@@ -62,7 +62,7 @@ class DebugView:
 
     @property
     def is_elsewhere(self) -> bool:
-        """Whether the other panels show another instant than the one to which the variables belong."""
+        """Whether the variables belong to another instant than the one that the other panels show."""
         return self.now is not None and self.paused is not None and self.now[0] != self.paused.tick
 
 

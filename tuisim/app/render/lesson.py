@@ -141,7 +141,7 @@ def draw_lesson(
 
 
 def _build_head(view: LessonView, page: int, width: int) -> Line:
-    """Return the title of the lesson with a mark for each step; that of the step on the page is underlined."""
+    """Return the title of the lesson with a mark for each step; the mark of the step on the page is underlined."""
     assert view.lesson is not None
     marks: Line = []
     for index, state in enumerate(view.states):
@@ -269,7 +269,7 @@ def _describe_task(view: LessonView, step: LessonStep, away: Away) -> str:
 
 
 def _end(view: LessonView, width: int, away: Away) -> Iterator[Line]:
-    """Yield the last page of a lesson: what it is good for, and the model answer if every step was done."""
+    """Yield the last page of a lesson: what follows, its use on a real robot, and the model answer if all is done."""
     assert view.lesson is not None
     skipped = sum(state is StepState.SKIPPED for state in view.states)
     still_open = sum(state is StepState.OPEN for state in view.states)

@@ -138,7 +138,7 @@ def _build_value_field(edit_id: str, value: Value, path: Callable[[RobotSpec], s
 
 
 def _build_motor_port_field(key: str, value: Value) -> FormField:
-    """Return the field for the port of a wheel motor; if the other one is on the chosen port, the two swap ports."""
+    """Return the field for the port of a wheel motor; if the other motor is on the chosen port, the two swap ports."""
     other = "right_port" if key == "left_port" else "left_port"
 
     def change(robot: RobotSpec, port: str) -> RobotSpec:

@@ -93,7 +93,7 @@ class NextRun:
 
     @property
     def robot_choice(self) -> RobotChoice:
-        """The chosen robot with the user's changes, without those that the mat makes."""
+        """The chosen robot with the user's changes, without the changes that the mat makes."""
         choice = self.settings["robot"]
         assert isinstance(choice, RobotChoice)
         return choice
@@ -123,7 +123,7 @@ def build_first_plan(
     Args:
         spec: The specification of the run.
         settings: The settings from which `spec` was built; None if they are unknown, as for a stored run.
-        decided: Those of the settings that the text of the program has decided.
+        decided: The settings that the text of the program has decided.
         program: The program of the run.
     """
     if settings is None:
@@ -225,7 +225,7 @@ def apply_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
 
 
 def follow_program(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
-    """Return a plan with the settings that a program's text decides, as far as nobody has chosen them.
+    """Return a plan with the settings that a program's text decides; those that the user has chosen stay.
 
     Returns:
         The plan, and the settings that the text has decided newly.
@@ -302,7 +302,7 @@ def change_profile(plan: NextRun, word: str) -> NextRun:
 
 
 def undo_robot_edits(plan: NextRun) -> NextRun:
-    """Return a plan with the chosen robot as it is without the user's changes."""
+    """Return a plan with the chosen robot without the user's changes."""
     return change_values(plan, {"robot": plan.robot})
 
 

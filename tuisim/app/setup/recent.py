@@ -108,7 +108,7 @@ def _list_programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
 
 
 def _is_own(path: str) -> bool:
-    """Return whether a program still exists, and is not that of a lesson."""
+    """Return whether a program still exists, and does not belong to a lesson."""
     try:
         return Path(path).is_file() and not Path(path).is_relative_to(home_folder())
     except (OSError, ValueError):

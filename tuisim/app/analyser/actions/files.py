@@ -45,7 +45,7 @@ def copy_row(screen: LogScreen) -> None:
 
 
 def copy_pane(screen: LogScreen) -> None:
-    """Copy the visible pane with its heading, with tabs between the cells; of the table, only the filtered rows."""
+    """Copy the visible pane with its heading, with tabs between the cells; for the table, only the filtered rows."""
     model = screen.model
     name = screen.pane.name_shown
     if name != "table":
@@ -65,7 +65,7 @@ def copy_pane(screen: LogScreen) -> None:
 
 
 def export(screen: LogScreen) -> None:
-    """Ask for a file, and export the rows of the pane to it; of the table, only the shown columns."""
+    """Ask for a file, and export the rows of the pane to it; for the table, export only the shown columns."""
     from tuisim.logs.export import EXPORTERS, LISTED, check_target, describe_files
 
     pane = screen.pane.name_shown

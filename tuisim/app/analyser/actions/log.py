@@ -143,7 +143,7 @@ def delete_note(screen: LogScreen) -> None:
 
 
 def show_differences(screen: LogScreen) -> None:
-    """Show the differences between the first two open runs; if only one is open, ask for the other one."""
+    """Show the differences between the first two open runs; if only one run is open, ask for another one."""
     runs = screen.model.opened.runs
     if not runs:
         screen.say("A file has no recording to compare: R opens stored runs")

@@ -156,7 +156,11 @@ def search(screen: LogScreen) -> None:
 
 
 def find(screen: LogScreen, step: int) -> None:
-    """Go to the next match of the search text (1) or the previous one (-1); without a search text, ask for one.
+    """Go to the next or the previous match of the search text; without a search text, ask for one.
+
+    Args:
+        screen: The analyser.
+        step: 1 for the next match, -1 for the previous one.
 
     Raises:
         LogError: there is no match. For a long log, which is searched in the background, the screen shows this error.
@@ -249,7 +253,7 @@ def go_to(screen: LogScreen) -> None:
 
 
 def go_to_event(screen: LogScreen, step: int) -> None:
-    """Move the cursor to the next event (1) or the previous one (-1)."""
+    """Move the cursor to the next event (`step` 1) or to the previous event (`step` -1)."""
     model = screen.model
     events = model.events.list_events(model.log)
     if not events:
