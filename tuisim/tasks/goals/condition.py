@@ -74,7 +74,7 @@ def check_count(entries: tuple[object, ...], key: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """The base class of what a goal can require of a run, such as that the robot reaches a place."""
+    """The base class of the conditions that a goal can set for a run, such as that the robot reaches a place."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = ""

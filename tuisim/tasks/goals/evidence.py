@@ -51,7 +51,7 @@ class Finding:
 
 
 def format_distance(distance_mm: float) -> str:
-    """Return a distance for a sentence, such as `35 mm`; small ones with a decimal."""
+    """Return a distance for a sentence, such as `35 mm`; a small distance has a decimal."""
     return f"{distance_mm:.1f} mm" if distance_mm < 10 else f"{distance_mm:.0f} mm"
 
 
@@ -307,7 +307,7 @@ class Evidence:
         )
 
     def span(self, start: EvidencePoint, stop: EvidencePoint | None) -> EvidenceSpan:
-        """Return the part of the run between two moments, without both.
+        """Return the part of the run between two moments, without the two moments themselves.
 
         If `stop` is None, the part goes to the end of the recording.
         """
@@ -357,7 +357,7 @@ class Evidence:
 
 
 def find_ticks(rows: Array, hz: int) -> Array:
-    """Return the tick in which each of some readings was taken.
+    """Return for each reading the tick in which it was taken.
 
     Args:
         rows: Readings.

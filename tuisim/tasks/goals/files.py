@@ -110,7 +110,7 @@ def load_goals(path: Path | str) -> GoalsFile:
 
 
 def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, GoalsFile | None]:
-    """Read a world file; return its world, and its goals, or None if it has none.
+    """Read a world file; return its world and its goals, which are None if it has none.
 
     Args:
         path: The file, or one of `list_example_names`.
@@ -176,7 +176,7 @@ def list_examples() -> list[Path]:
 
 
 def _find_file(path: Path) -> Path:
-    """Return the goals file of an example if the path is the example's name and no such file exists; else the path."""
+    """Return the goals file of an example, if the path is the example's name and no existing file; else the path."""
     if path.parent != Path() or os.path.exists(path):
         return path
     name = path.name.removesuffix(_EXAMPLE)
@@ -186,7 +186,7 @@ def _find_file(path: Path) -> Path:
 def _build_goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
     """Return the task in a parsed goals file, with the goals of the world file that it names.
 
-    The result is None if neither has goals.
+    The result is None if neither file has goals.
     """
     location = Location(str(path))
     base = load_task(path.parent / user_path(data["world"]))[1] if "world" in data else None
@@ -411,7 +411,7 @@ def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
 
 
 def _find_reference(goal: Goal, name: str, location: Location) -> Location:
-    """Return the location of the key in which a goal refers to another goal; that of the goal itself if no key does."""
+    """Return the location of the key in which a goal refers to another goal; if no key does, the goal's own location."""
     limits = (limit for limit in _LIMITS if getattr(goal, limit) == name)
     combined = (
         key
@@ -511,7 +511,7 @@ def check_columns(goals: Sequence[Goal], runs: Sequence[RunSpec], location: Loca
     """Check that every column that a goal names is in at least one of the runs.
 
     Args:
-        location: That of the list of goals; errors add the goal's number to it.
+        location: The location of the list of goals; errors add the goal's number to it.
 
     Raises:
         ConfigError: a goal names a column that none of the runs has.

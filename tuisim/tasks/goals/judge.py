@@ -153,7 +153,7 @@ def find_avoided(condition: AvoidCondition, evidence: Evidence, span: EvidenceSp
 def find_structure(
     condition: StructureCondition, evidence: Evidence, span: EvidenceSpan
 ) -> Finding:
-    """Return whether a program's counts, such as that of its loops, meet a condition's comparisons, or which do not."""
+    """Return whether a program's counts, such as the number of its loops, meet a condition, or which do not."""
     try:
         for comparison in condition.conditions:
             count = read_facts(evidence.program).count_structure(comparison.name)

@@ -95,7 +95,7 @@ def sum_points(met: Iterable[float]) -> float:
 
 
 def compute_max_points(goals: Iterable[Goal]) -> float:
-    """Return the points of a run that meets every goal with positive points and no goal with negative ones."""
+    """Return the points of a run that meets every goal with positive points and no goal with negative points."""
     return math.fsum(goal.points for goal in goals if goal.points > 0)
 
 

@@ -152,7 +152,9 @@ def _find_repeated_line(
 def _explain_fault(
     condition: PrintCondition, count: int, row: OutputRow, since: int, evidence: Evidence
 ) -> str:
-    """Return in a sentence why a line that matches its pattern is not accepted, such as its place; empty if it is.
+    """Return in a sentence why a line that matches its pattern is not accepted; empty if it is accepted.
+
+    A reason is that the robot was in a wrong place.
 
     Args:
         condition: The condition with the patterns.
@@ -300,7 +302,7 @@ def _find_gap(condition: LogCondition, samples: list[Sample], evidence: Evidence
 def _explain_unmeasured(
     condition: LogCondition, count: int, sample: Sample, evidence: Evidence
 ) -> str:
-    """Return in a sentence why a sample near its level is not accepted; empty if it is."""
+    """Return in a sentence why a sample near its level is not accepted; empty if it is accepted."""
     value = f"{sample.name}: {sample.value:.6g} was printed at {sample.time_ns / NS_PER_S:.2f} s"
     if condition.counts:
         printed = bisect_right(evidence.list_sample_ticks(condition.counts), sample.tick)
@@ -340,7 +342,7 @@ def _find_missing_level(
 
     Args:
         condition: The condition with the levels.
-        count: How many levels the samples have had: the next one is missing.
+        count: How many levels the samples have reached; the next level is missing.
         samples: All samples of the variable, with the indices of their rows.
         start: Index of the first sample that could have that level.
         last: Index of the sample with the level before; -1 for none.
@@ -413,7 +415,7 @@ def _explain_form_fault(name: str, evidence: Evidence) -> str:
 
 
 def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the last turn of a dialogue was complete, or what is missing."""
+    """Return when the last turn of a dialogue was complete, or which question or reply is missing."""
     rows = evidence.rows[: span.end_row]
     questions = [index for index, row in enumerate(rows) if row.stream == Stream.INPUT]
     known = dict(zip(questions, evidence.answers, strict=False))
@@ -471,7 +473,7 @@ def _find_reply(
         turn: The turn of the dialogue.
         prompt: The program's question.
         rows: All rows.
-        span: Indices of the rows of the turn, from the question to the next one.
+        span: Indices of the rows of the turn, from its question to the next question.
         evidence: The recording.
     """
     if turn.prompt and not build_search(turn.prompt)(prompt):

@@ -76,9 +76,7 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
 def _find_arrivals(there: Array) -> Array:
     """Return for each tick at the place the index of the tick at which the robot arrived.
 
-    The index is 0 if the robot was there from the start.
-
-    The values at other ticks have no meaning.
+    The index is 0 if the robot was there from the start. The values at other ticks have no meaning.
 
     Args:
         there: Whether the robot is at the place, at each tick, shape (n,).
@@ -311,7 +309,7 @@ def find_touch(condition: TouchNothingCondition, evidence: Evidence, span: Evide
 def _find_first_contact(
     records: Array, solids: Solids, gap_mm: float, *, forgiven: bool
 ) -> tuple[int, int] | None:
-    """Return the first index at which the robot is too near to an obstacle or wall, and that one's index in `solids`.
+    """Return the first index at which the robot is too near to a solid object, and the index of the object.
 
     The result is None if the robot is never too near. Ticks during which it cannot have come so near are skipped.
 
@@ -319,7 +317,7 @@ def _find_first_contact(
         records: Telemetry.
         solids: Obstacles and walls.
         gap_mm: A smaller distance is too near.
-        forgiven: Whether something that is too near at the start counts only after the robot has been farther away.
+        forgiven: Whether an object that is too near at the start counts only after the robot has been farther away.
     """
     import numpy as np
 

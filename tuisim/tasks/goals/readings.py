@@ -82,7 +82,7 @@ def _find_readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
 
 
 def filter_ticks(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
-    """Return those of some ticks at which the robot was in the ranges of `select_place`."""
+    """Return the ticks, among some, at which the robot was in the ranges of `select_place`."""
     for key, (low, high) in place.items():
         values = evidence.records[key][ticks]
         ticks = ticks[(values >= low) & (values <= high)]

@@ -174,7 +174,7 @@ class OutsideCondition(AreaCondition):
 class TouchNothingCondition(Condition):
     """The robot touches no obstacle and no wall.
 
-    One that it touches at the start only counts after the robot has moved away.
+    An obstacle or wall that it touches at the start counts only after the robot has moved away.
     """
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD

@@ -54,7 +54,7 @@ class TrialWorld:
 
     @property
     def answers(self) -> tuple[str, ...]:
-        """The answers to `input()`: those of the dialogues in `own_goals`, in order, else `inputs`."""
+        """The answers to `input()`: the answers of the dialogues in `own_goals`, in order, or else `inputs`."""
         dialogues = (
             part
             for goal in self.own_goals
@@ -66,7 +66,7 @@ class TrialWorld:
         )
 
     def select_goals(self, goals: Sequence[Goal]) -> tuple[Goal, ...]:
-        """Return the goals of this world: `own_goals`, and those of the first world whose names are not among them.
+        """Return the goals of this world: `own_goals`, and the goals of the first world with other names.
 
         Args:
             goals: The goals of the first world.

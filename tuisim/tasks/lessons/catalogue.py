@@ -156,10 +156,10 @@ def find_shipped_paths() -> dict[str, Path]:
 def find_lesson_paths(folder: Path | str | None = None) -> dict[str, Path]:
     """Return the files of all lessons by name: tuisim's own, then those of a folder.
 
-    A lesson in the folder replaces one of tuisim's of the same name.
+    A lesson in the folder replaces tuisim's lesson of the same name.
 
     Args:
-        folder: The folder; None for that in the environment variable `TUISIM_LESSONS`, if it is set.
+        folder: The folder; None for the folder in the environment variable `TUISIM_LESSONS`, if it is set.
 
     Raises:
         ConfigError: the folder does not exist, or has no lessons.

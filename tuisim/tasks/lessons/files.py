@@ -433,7 +433,10 @@ def _check_models(step: LessonStep, location: Location) -> None:
 
 
 def _add_answers(steps: Sequence[LessonStep], location: Location) -> tuple[LessonStep, ...]:
-    """Return the steps with a model answer for each that runs a program: its own, or that of the next step with one."""
+    """Return the steps, in which each step that runs a program has a model answer.
+
+    It is the step's own, or else that of the next step with one.
+    """
     answer = ""
     completed = []
     for step in reversed(steps):
@@ -455,11 +458,11 @@ def build_telling_name(lesson: str, library: str) -> str:
 
 
 def merge_telling(other: Any, own: Any) -> Any:
-    """Return the parsed TOML of a lesson merged with that of its version for another library.
+    """Return the parsed TOML of a lesson, merged with the TOML of its version for another library.
 
     Args:
-        other: The original lesson.
-        own: The version, whose values take precedence.
+        other: The TOML of the original lesson.
+        own: The TOML of the version, whose values take precedence.
     """
     match other, own:
         case dict(), dict():

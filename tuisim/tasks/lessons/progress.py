@@ -54,7 +54,7 @@ class LessonProgress:
     """When it was last opened, in ISO 8601; empty if never."""
 
     def of(self, step: str) -> StepProgress:
-        """Return the progress on a step, given by its name; that of a new step if there is none."""
+        """Return the progress on a step, given by its name; if there is none, return the progress on a new step."""
         return self.steps.get(step, StepProgress())
 
     def update_step(self, step: str, **changes: Any) -> LessonProgress:
@@ -168,11 +168,12 @@ def build_program_path(lesson: Lesson) -> Path:
 
 
 def prepare_program(lesson: Lesson, anew: bool = False) -> Path:
-    """Return the file with the student's program for a lesson; if it is new, it contains the program to complete.
+    """Return the file with the student's program for a lesson; a new file contains the program to complete.
 
     Args:
         lesson: The lesson.
-        anew: Whether to replace an existing program by the one to complete; it is renamed to `NAME.old.py`.
+        anew: Whether to replace an existing program by the program to complete; the old one is renamed to
+            `NAME.old.py`.
 
     Raises:
         ConfigError: the file cannot be written.

@@ -175,7 +175,7 @@ class LessonSession:
             self.progress = replace(self.progress, opened_at=format_now())
 
     def start_over(self) -> None:
-        """Discard the student's progress on the lesson, so that it begins at its first step."""
+        """Discard the student's progress on the lesson, so that the lesson begins at its first step."""
         self.progress = LessonProgress(opened_at=format_now())
         self.done = None
 
@@ -211,7 +211,7 @@ class LessonSession:
 
     @property
     def step_before(self) -> LessonStep | None:
-        """The step before the one to do, or the last one at the end of the lesson; None at the first step."""
+        """The step before the step to do; at the end of the lesson, its last step; None at the first step."""
         index = len(self.lesson.steps) if self.at is None else self.at
         return self.lesson.steps[index - 1] if index else None
 
@@ -444,7 +444,10 @@ def _list_met(judgements: Sequence[Judgement]) -> frozenset[str]:
 
 
 def _list_world(spec: RunSpec) -> tuple[object, ...]:
-    """Return the values of a run's world that must equal the lesson's for the run to count: place, noise and drift."""
+    """Return the values that a run's world must share with the lesson's: the place, the noise and the drift.
+
+    Otherwise the run does not count for the step.
+    """
     return (*_list_place(spec.world), spec.world.noise, spec.world.drift)
 
 

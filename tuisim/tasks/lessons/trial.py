@@ -157,7 +157,7 @@ def _list_worlds(trial: Trial) -> list[tuple[_Key, TrialWorld | None]]:
 def _find_trial_faults(
     lesson: Lesson, trial: Trial, results: Mapping[_Key, Result]
 ) -> Iterator[str]:
-    """Yield a line if a model answer does not pass its step, or a wrong program does."""
+    """Yield a line if a model answer does not pass its step, or a wrong program passes it."""
     check = trial.step.check
     assert isinstance(check, RunCheck)
     tried = [(results[key], other) for key, other in _list_worlds(trial)]

@@ -48,7 +48,7 @@ class Token:
 
 
 def list_tokens(text: str) -> Iterator[Token]:
-    """Yield the tokens of a program; the last one is that before the first syntax error, if there is one."""
+    """Yield the tokens of a program; if it has a syntax error, only the tokens before the error."""
     try:
         for token in tokenize.generate_tokens(io.StringIO(text).readline):
             if token.type in _SKIPPED:
@@ -126,7 +126,7 @@ def _read_tokens(texts: Iterable[str]) -> list[Token]:
 def _compute_prints(tokens: Sequence[Token]) -> _Prints:
     """Return the fingerprints of a program, each with its lines.
 
-    A fingerprint is the least hash of a window, the last one of equal hashes.
+    A fingerprint is the least hash in a window of hashes; if several are equal, the last of them.
     """
     kinds = [token.kind for token in tokens]
     hashes = [

@@ -32,7 +32,7 @@ def build_entries(
     Args:
         submissions: The students.
         task: The task.
-        options: Settings that take precedence over those of the task, by path.
+        options: Settings that take precedence over the settings of the task, by path.
 
     Raises:
         ConfigError: the task's world, or an option, is wrong, or the profile fits none of the programs.

@@ -44,8 +44,7 @@ def copy_tree(folder: Path, place: Path) -> None:
     Files that cannot be read are left out, as the program could not read them either.
 
     Raises:
-        LogError: the copy cannot be written.
-        OSError: likewise.
+        LogError, OSError: the copy cannot be written.
     """
     pending = [(folder, place)]
     while pending:

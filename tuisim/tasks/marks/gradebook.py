@@ -53,7 +53,7 @@ class Roster:
     """By the name of the submission: the cells of the row by the column's name in lower case."""
 
     def missing(self, names: Sequence[str]) -> list[str]:
-        """Return those of some submissions' names that have no row in the class list."""
+        """Return the names, among those of the submissions, that have no row in the class list."""
         return [name for name in names if name not in self.people]
 
     def absent(self, names: Sequence[str]) -> list[str]:
@@ -68,7 +68,7 @@ def read_roster(path: Path) -> Roster:
     name. The other columns have the names that the gradebook gives them, such as `Email address` or `SIS User ID`.
 
     Raises:
-        ConfigError: it cannot be read, has neither column, or names a submission twice.
+        ConfigError: it cannot be read, has no column that names the submissions, or names a submission twice.
     """
     file_name = str(path)
     data = read_bytes(
@@ -125,9 +125,9 @@ def write_gradebook(
         path: The file.
         kind: The gradebook.
         sheet: The marks of the class.
-        sources: The texts of the students' programs, in the order of the rows, which the feedback quotes.
+        sources: The texts of the students' programs, which the feedback quotes, in the order of the rows.
         roster: The class list.
-        goals: Whether each goal that is not hidden has its own column, in addition to that of the total.
+        goals: Whether each goal that is not hidden has its own column, beside the column of the total.
 
     Raises:
         ExportError: it cannot be written.
@@ -169,7 +169,7 @@ def write_gradebook(
 def _choose_heads(
     kind: GradebookKind, sheet: Sheet, roster: Roster
 ) -> tuple[Sequence[str], str, str]:
-    """Return the headings of the columns that identify a student, then those of the total and of the feedback.
+    """Return the headings of the columns that identify a student, the heading of the total, and that of the feedback.
 
     The total's heading is empty if it is the title of the task.
     """

@@ -26,7 +26,7 @@ def build_journal_path(goals: Path) -> Path:
 
 
 class Journal:
-    """The outcomes of a marking so far, by a key of each run: a context manager that appends new ones to a file.
+    """The outcomes of a marking so far, by a key of each run: a context manager that appends new outcomes to a file.
 
     Args:
         path: The file.

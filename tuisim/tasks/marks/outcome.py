@@ -195,7 +195,7 @@ def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
 
     Args:
         seed: The seed.
-        parts: The outcomes in each world, that of the first world first.
+        parts: The outcomes in each world, the first world's first.
     """
     # Outcomes in visible worlds come first, so that their reasons are shown to the student.
     parts = sorted(parts, key=lambda part: part.hidden)

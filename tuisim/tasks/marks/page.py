@@ -141,7 +141,7 @@ def _find_reports(row: SheetRow, links: Links) -> dict[str, list[tuple[str, str]
 
 
 def _format_ranges(seeds: Sequence[int]) -> str:
-    """Return ascending numbers as text, with consecutive ones as ranges, such as `0, 3–5`."""
+    """Return ascending numbers as text, with consecutive numbers as ranges, such as `0, 3–5`."""
     ranges: list[list[int]] = []
     for seed in seeds:
         if ranges and seed == ranges[-1][-1] + 1:
@@ -188,9 +188,9 @@ def compute_goal_statistics(sheet: Sheet) -> tuple[GoalStatistics, ...]:
 
 
 def compute_distribution(sheet: Sheet) -> tuple[tuple[float, float, int], ...]:
-    """Return lower end, upper end and number of students for each of the equal parts of the scale of points.
+    """Divide the scale of points into equal parts; return for each its lower end, upper end and number of students.
 
-    A student at the border of two parts counts in the upper one; one beyond the scale in the first or the last.
+    A student at the border of two parts counts in the upper part, a student beyond the scale in the first or last part.
     """
     max_points = sheet.most_points
     known = [row.points for row in sheet.rows if not math.isnan(row.points)]

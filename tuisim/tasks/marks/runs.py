@@ -79,14 +79,14 @@ def run_entries(
 ) -> Generator[tuple[str, Outcome]]:
     """Run every student's program with every seed; yield names of students and outcomes as they become known.
 
-    A program that hangs, floods or dies with the first seed is not run with the others in that world; in the first
+    A program that hangs, floods or dies with the first seed is not run with the other seeds in that world; in the first
     world, it is then not run in the other worlds either. Outcomes in the journal are not computed again. Closing the
     iterator stops the running programs. An unexpected error with one student gives an outcome that does not count.
 
     Args:
         entries: The students.
         plan: How the programs are run.
-        journal: The outcomes so far, to which new ones are added.
+        journal: The outcomes so far, to which new outcomes are added.
 
     Raises:
         LogError: the journal cannot be read or written.

@@ -121,7 +121,7 @@ class Sheet:
         """Return the headings and the rows of the sheet as a table of texts; the last column is the reason.
 
         Args:
-            max_name, max_goal: Characters of the names of students and goals; the middle of longer ones is left out.
+            max_name, max_goal: Characters of the names of students and goals; the middle of a longer name is left out.
         """
         goals = [_cut_middle(column.name, max_goal) for column in self.columns]
         heads = ["student", "points", "robustness", *goals, "reason"]
@@ -316,7 +316,7 @@ def _find_reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
 
 
 def round_points(value: float) -> float:
-    """Return points or a share, rounded as they are shown and stored."""
+    """Return points or a share, rounded for display and storage."""
     # Adding 0 turns -0 into 0.
     return round(value, DIGITS) + 0.0
 

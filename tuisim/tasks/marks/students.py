@@ -57,7 +57,7 @@ class Student:
 
     @property
     def shown_main(self) -> str:
-        """The path of the main program as it is shown."""
+        """The path of the main program for display."""
         return _quote_name(self.main)
 
     @property
@@ -352,7 +352,7 @@ def find_outside_option(student: Student) -> str:
 
 
 def _quote_name(name: str) -> str:
-    """Return the name of a file or folder as it is shown and stored.
+    """Return the name of a file or folder for display and storage.
 
     Bytes that are not UTF-8 become escapes like `\\xff`.
     """

@@ -24,7 +24,7 @@ _MAX_LINES = 64
 
 
 def describe_blank_mat(run: StoredRun) -> str:
-    """Return that the mat is plain white and how to get a line, if a finished program steered by light there.
+    """Return in words that the mat is plain white and how to get a line, if a finished program steered by light on it.
 
     Otherwise the text is empty.
     """

@@ -81,7 +81,7 @@ def find_one_color(
 def describe_colors(loop: LoopEnd, device: str, codes: Array, has_codes: bool) -> str:
     """Return the colour that a loop waited for and the colours that it read.
 
-    The result is empty if it read the one that it waited for.
+    The result is empty if the loop read the colour that it waited for.
 
     Args:
         loop: The loop.

@@ -90,7 +90,7 @@ def find_reasons(
 ) -> tuple[Reason, ...]:
     """Return every reason why a run went wrong, most important first; reasons of one kind are in order of time.
 
-    Missed goals and lost lines count as one kind here. What may have caused a later reason comes before it.
+    Missed goals and lost lines are of one kind in this order. What may have caused a later reason comes before it.
 
     Args:
         run: The run; it may still be running.
@@ -135,7 +135,7 @@ def sort_by_cause(reasons: Sequence[Reason]) -> tuple[Reason, ...]:
 
 
 def _rank(reason: Reason, reasons: Sequence[Reason]) -> ReasonKind:
-    """Return the most important kind among a reason's own and those of the reasons that it may have caused."""
+    """Return the most important kind among those of a reason and of the reasons that it may have caused."""
     effects: list[Reason] = []
     if reason.kind in _CAUSES:
         effects = [
@@ -208,7 +208,7 @@ def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]
 
 
 def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
-    """Yield as reasons the goals that were missed, and the met ones that take points off; hidden ones are left out."""
+    """Yield as reasons the missed goals, and the met goals that take points off, but no hidden goals."""
     for judged in judgements:
         is_known = judged.state is not GoalState.UNKNOWN
         if judged.event and is_known and not judged.is_good and not judged.goal.hidden:
@@ -223,7 +223,7 @@ def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[
     Args:
         run: The run.
         mat: Its mat; None opens it.
-        has_waited: Whether it waited for a light sensor in vain; the one colour is then no further reason.
+        has_waited: Whether the program waited for a light sensor in vain: one colour only is then no further reason.
     """
     eyes = run.spec.robot.color_sensors
     if not eyes or run.telemetry.count < 2:
@@ -259,9 +259,9 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
 
 
 def _find_mistaken(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
-    """Yield as reasons where the program probably did not do what was meant.
+    """Yield as reasons where the program probably did not do what its author meant.
 
-    It turned the wheels by an angle meant for the robot, or counted a band twice.
+    The program turned the wheels by an angle meant for the robot, or counted a band twice.
     """
     from tuisim.tasks.reasons.unwatched import find_mistaken_turn
 
@@ -331,7 +331,7 @@ def _find_read_ticks(run: StoredRun, count: int) -> dict[str, NDArray[Any]]:
 
 
 def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
-    """Return the reason that a sensor lost the line, with when a sensor saw it again, if one did."""
+    """Return the reason that a sensor lost the line; if a sensor saw the line again, the reason says when."""
     text = f"the {lost.sensor} sensor left the {'black' if lost.is_black else 'dark'}"
     if lost.seen_again is None:
         return _explain_lost(run, lost.tick, f"{text}, and did not see it again")

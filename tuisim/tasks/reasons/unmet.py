@@ -97,7 +97,7 @@ class Unmet:
 def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     """Return what a program waited for in its last loop or move, if its run goes on, or a limit or the user ended it.
 
-    The result is None if it waited for nothing, or if that is not known.
+    The result is None for any other run, if the program waited for nothing, or if that is not known.
 
     Args:
         run: The run.
@@ -250,7 +250,7 @@ class _Search:
                 yield Unmet(tick / self._hz, loop.line, text)
 
     def find_met(self) -> Iterator[Unmet]:
-        """Yield the loops that ended after their first reading, which was already what they waited for."""
+        """Yield the loops whose first reading was already what they waited for."""
         for loop in self._loops:
             series = self._measure(loop, (0, len(self._records)))
             if series is None:
@@ -332,7 +332,7 @@ class _Search:
         return Unmet(first / self._hz, line, text)
 
     def _find_stay(self, loop: LoopEnd) -> tuple[int, int] | None:
-        """Return the first tick in a loop and the one after its last.
+        """Return the first tick in a loop, and the tick after its last one.
 
         The result is None if the loop was entered never or more than once.
         """
@@ -387,7 +387,7 @@ class _Search:
         return f"it went from {_round(values[0])} to {_round(values[-1])}"
 
     def _find_miss(self, loop: LoopEnd, series: _Series) -> Unmet | None:
-        """Return where the light came within `_NEAR` % of a loop's limit without passing it; None if it did nowhere.
+        """Return where the light came within `_NEAR` % of a loop's limit without passing it; None if it did not.
 
         Before and after, the light was at least `_AWAY` % away from the limit.
         """
@@ -471,7 +471,7 @@ class _Search:
     def _measure_wheel(self, loop: LoopEnd, wheel: str, port: str, ticks: Array) -> _Series | None:
         """Return the position in degrees of a wheel's motor at some ticks.
 
-        The result is None if the loop reads another attribute of it.
+        The result is None if the loop reads another attribute of the motor.
         """
         if loop.attribute not in TURN_COLUMNS:
             return None
@@ -512,9 +512,9 @@ class _Search:
         return _Series(device, column, unit, ticks, values)
 
     def _find_wheel(self, ports: list[str]) -> str:
-        """Return `left` or `right` if the only port is that of the wheel's motor.
+        """Return `left` or `right` if the only port is the port of that wheel's motor.
 
-        The result is empty otherwise, or if the wheels have gears.
+        The result is empty for other ports, or if the wheels have gears.
         """
         robot = self._run.spec.robot
         wheels = {

@@ -144,7 +144,7 @@ def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
 
 
 def find_at_end(run: Recorded, end: End) -> tuple[Awaited, ...]:
-    """Return what a run waited for, if it was stopped or its robot stood still at the end; otherwise nothing."""
+    """Return what a run waited for, if it was stopped or its robot stood still at the end; else an empty tuple."""
     is_over = end is End.FINISHED and is_standing(run.telemetry, run.spec)
     is_cut_off = end in _ENDS and not (
         end is End.STOPPED and run.telemetry.count <= _MIN_WAIT_S * run.spec.profile.tick_hz
@@ -325,7 +325,7 @@ class _Search:
         return find_presses(self._run.actions, names, self._hz, len(self._records))
 
     def _skip_answered(self, rows: Array, presses: Sequence[HandPress]) -> Array:
-        """Return the readings after the last press if they go on for at least `WINDOW_S` seconds, else all."""
+        """Return the readings after the last press if they go on for at least `WINDOW_S` seconds, else all readings."""
         import numpy as np
 
         if not presses:
@@ -341,7 +341,7 @@ class _Search:
     def _find_limit(self, mode: str, question: Question) -> float | None:
         """Return the distance that the program compares with, in mm or, for an infrared sensor, in %.
 
-        The result is None if not known.
+        The result is None if the distance is not known.
         """
         limit = question.find_limit()
         if limit is None or mode not in MODES[Subject.DISTANCE]:

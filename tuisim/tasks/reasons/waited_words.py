@@ -62,7 +62,7 @@ class Wait:
 def find_waits(run: StoredRun, mat: Field | None = None) -> list[Wait]:
     """Return descriptions of what a run waited for at its end or, if it is still running, waits for now.
 
-    The most important one is first.
+    The most important description is first.
 
     Args:
         run: The run.
@@ -151,7 +151,7 @@ def _name_choice(awaited: Awaited) -> str:
 
 
 def _describe_presses(awaited: Awaited) -> str:
-    """Return why the presses by hand were not those that the program waited for; empty if nothing was pressed."""
+    """Return why the presses by hand did not give the program what it waited for; empty if nothing was pressed."""
     names = list(dict.fromkeys(press.name for press in awaited.pressed))
     wants = awaited.sought
     hits = find_hits(awaited.pressed, wants)
@@ -180,9 +180,9 @@ def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
     """Return the option or file with which a run gets what its program waited for, for users of the command line.
 
     Args:
-        awaited: What was waited for.
+        awaited: What the program waited for.
         spec: The run.
-        is_live: Whether the run took real time, as another program requires that connects to it.
+        is_live: Whether the run took real time, as it must if another program connects to it.
     """
     match awaited.subject:
         case Subject.BUTTONS:
@@ -310,7 +310,7 @@ _NEAREST_MM = 40.0
 
 
 def find_nearest(sensor: UltrasonicSpec, spec: RunSpec) -> float:
-    """Return the least distance in mm that an ultrasonic sensor can read: that with the robot at the wall."""
+    """Return the least distance in mm that an ultrasonic sensor can read: the distance with the robot at the wall."""
     front_mm = build_outline(spec.robot).front_mm if spec.profile.solid or spec.world.solid else 0.0
     return max(float(spec.profile.min_echo_mm), front_mm - sensor.y_mm)
 
