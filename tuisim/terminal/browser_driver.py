@@ -73,9 +73,8 @@ class BrowserDriver(WebDriver):
     def on_meta(self, packet_type: str, payload: dict[str, object]) -> None:
         """Handle a message of the server, such as another size of the page, or another page that shows the app.
 
-        A new page gets the same codes as the first one. A size or a focus is handled after the events that the app has
-        queued
-        at its start: these would override it.
+        A new page gets the same codes as the first page. A size or a focus is handled after the events that the app has
+        queued at its start: these would override it.
         """
         match packet_type:
             case "focus" | "blur":

@@ -411,7 +411,7 @@ def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
 
 
 def _find_reference(goal: Goal, name: str, location: Location) -> Location:
-    """Return the location of the key in which a goal refers to another goal; if no key does, the goal's own location."""
+    """Return the location of the key in which a goal refers to another goal; if no key does, the goal's location."""
     limits = (limit for limit in _LIMITS if getattr(goal, limit) == name)
     combined = (
         key

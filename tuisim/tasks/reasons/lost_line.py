@@ -209,13 +209,13 @@ class _Way:
         return np.flatnonzero(long_enough).tolist() if len(gaps) else []
 
     def find_gap(self, number: int) -> tuple[int, int]:
-        """Return the last tick of a dark stretch and the first tick of the next one, or else the last tick of the run."""
+        """Return the last tick of a dark stretch and the first tick of the next one, or else the run's last tick."""
         index = int(self._next[number])
         end = self._ticks[index] if index < len(self._ticks) else self._last_tick
         return int(self._ticks[self._ends[number] - 1]), int(end)
 
     def was_followed(self, number: int) -> bool:
-        """Return whether the robot followed the line up to a dark stretch: it was mostly over the line, or came back."""
+        """Return whether the robot followed the line up to a dark stretch: it was mostly over the line or came back."""
         share = self._is_dark[self._starts[0] : self._ends[number]].mean()
         return number >= _MIN_RETURNS or bool(share >= _MIN_DARK_SHARE)
 
