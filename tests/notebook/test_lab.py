@@ -170,7 +170,7 @@ def test_the_example_notebook_shows_chart_and_bands() -> None:
     ran = list(execute({text: text for text in cells}).values())
     assert [stream(cell, "stderr") for cell in ran] == [""] * len(ran)
     assert stream(ran[1]) == "86.27450980392157\n"
-    assert kinds(ran[2]) == ["image/png", "text/plain", "text/html"]
+    assert kinds(ran[2]) == ["image/png", "text/html", "text/html"]
     bands = ran[4].outputs[0].data["text/plain"]
     assert all(level in bands for level in ("100.0", "86.3", "82.7", "50.2"))
 

@@ -43,6 +43,23 @@ def test_the_log_has_the_plateaus_and_adds_up_until_it_is_cleared(cell: Cell) ->
     assert cell("%sim_data").result.equals(once)
 
 
+def test_a_predefined_name_in_a_plain_cell_names_the_magic(cell: Cell) -> None:
+    for name, is_predefined in (("tank_drive", True), ("my_name", False)):
+        with pytest.raises(NameError) as caught:
+            cell(f"{name}.on(30, 30)")
+        notes = getattr(caught.value, "__notes__", [])
+        assert any("%%sim_magic_preloaded" in note for note in notes) == is_predefined
+
+
+def test_the_table_counts_a_reversed_motor_as_the_program_does(cell: Cell) -> None:
+    text = """tank_drive.left_motor.polarity = "inversed"
+tank_drive.on_for_degrees(30, 30, 90)
+print(tank_drive.left_motor.position)"""
+    shown = cell(program("-RWi", text))
+    assert shown.out.strip() == "90"
+    assert "LeftMotor        90 counts" in shown.plain
+
+
 @pytest.mark.parametrize(
     "words, pictures, status",
     [

@@ -495,7 +495,7 @@ class _Screen:
         last = run.telemetry.last() or start_record(cell.spec)
         traces = (*cell.traces, build_pen_trace(cell.spec, run.telemetry.array()))
         self._stage.show(
-            Scene(cell.spec, cell.files, cell.program, last, traces, self._samples), status
+            Scene(cell.spec, cell.files, cell.program, last, traces, self._samples, run=run), status
         )
 
 

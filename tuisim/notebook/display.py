@@ -20,6 +20,7 @@ from tuisim.engine.core.geometry import shown_heading_deg
 from tuisim.engine.core.sensors import measure_sensors
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles
+from tuisim.engine.runs.command_events import CommandIndex
 from tuisim.engine.runs.samples import Sample
 from tuisim.engine.runs.views import TickRecord
 from tuisim.pictures.charts.files import draw_image, encode_png
@@ -33,6 +34,8 @@ from tuisim.settings.options import Settings, list_chosen_values
 
 if TYPE_CHECKING:
     from PIL.Image import Image
+
+    from tuisim.engine.runs.run_folder import StoredRun
 
 _LEFT_RIGHT = ("left", "right")
 
@@ -116,6 +119,8 @@ class Scene:
     samples: Sequence[Sample] = ()
     printed: Sequence[str] | None = None
     """The lines of the last run, unless they are in the cell already."""
+    run: StoredRun | None = None
+    """The run that is shown; None before any."""
 
     def open_field(self) -> Field:
         """Return the mat as the sensors see it."""
@@ -137,10 +142,18 @@ def list_instruments(scene: Scene) -> list[Row]:
     record = scene.last
     field = scene.open_field()
     instant = record.build_instant(spec, spec.world.noise)
-    rows = [
-        ("LeftMotor", f"{record.left_position_deg:.0f} counts, {record.left_speed_dps:.0f} °/s"),
-        ("RightMotor", f"{record.right_position_deg:.0f} counts, {record.right_speed_dps:.0f} °/s"),
-    ]
+    changes = CommandIndex(scene.run).read_scale_changes() if scene.run else ()
+    scales = {port: scale for tick, port, scale in changes if tick <= record.tick}
+    turns = (
+        ("LeftMotor", record.left_position_deg, record.left_speed_dps),
+        ("RightMotor", record.right_position_deg, record.right_speed_dps),
+    )
+    rows = []
+    for motor, (name, position_deg, speed_dps) in zip(spec.robot.motors, turns, strict=False):
+        scale = scales.get(motor.port, 1.0)
+        # The sum is never -0.
+        counts, dps = (round(value * scale) + 0 for value in (position_deg, speed_dps))
+        rows.append((name, f"{counts} counts, {dps} °/s"))
     faces = {face.name: face for face in list_disc_faces(spec, instant, field, scene.program)}
     for sensor in spec.robot.sensors:
         values = measure_sensors([sensor], instant, spec, field)
@@ -262,4 +275,6 @@ class Stage:
                     build_table(panel.capitalize(), rows(scene), keep_blanks=panel == "code"),
                 )
         if "controls" not in off:
-            self._put("controls", {"text/plain": status})
+            # As plain text, JupyterLab breaks it anywhere, also in words.
+            bundle = {"text/plain": status, "text/html": f"<div>{html.escape(status)}</div>"}
+            self._put("controls", bundle)

@@ -449,7 +449,8 @@ class Lab:
         last = self._last.telemetry.last() or start
         samples = list_samples(rows)
         status = ready if is_other else describe_end(self._last)
-        return Scene(spec, files, program, last, self._traces, samples, printed), status
+        scene = Scene(spec, files, program, last, self._traces, samples, printed, self._last)
+        return scene, status
 
 
 def _select_given(plan: _CellPlan, words: Arguments) -> Mapping[str, Any]:

@@ -5,6 +5,7 @@ Loading them must be fast: what they need is imported by the first cell that nee
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,8 @@ from tuisim.notebook import eds, old_formats
 from tuisim.notebook.lab import Lab, roboSim
 
 if TYPE_CHECKING:
+    from types import TracebackType
+
     from PIL.Image import Image
 
     from tuisim.settings.command_line import Arguments
@@ -129,3 +132,20 @@ def install(shell: InteractiveShell) -> None:
             _guard_magic(_build_log_magic(shell, name, read)), "line", name
         )
     shell.push({"roboSim": roboSim, "eds": eds})
+    if not shell.custom_exceptions:
+        shell.set_custom_exc((NameError,), _show_name_error)
+
+
+def _show_name_error(
+    shell: InteractiveShell,
+    kind: type[NameError],
+    error: NameError,
+    trace: TracebackType,
+    tb_offset: int | None = None,
+) -> None:
+    """Show a NameError of a cell as IPython does; if a robot program has the name, with a note on its magic."""
+    if error.name and error.name in re.findall(r"\w+", PRELUDE_TEXTS["preloaded"]):
+        error.add_note(
+            f"Put `%%sim_magic_preloaded` on top of this cell to run it on the robot, where `{error.name}` is defined."
+        )
+    shell.showtraceback((kind, error, trace), tb_offset=tb_offset)
