@@ -560,19 +560,21 @@ def save_toml(
     kept: Collection[str] = (),
     owner_only: bool = False,
 ) -> None:
-    """Write a TOML file atomically. In an existing file the user's comments, layout and order stay.
+    """Write an object to a TOML file atomically. In an existing file the user's comments, layout and order stay.
 
     Args:
+        path: The file.
         lines: The contents of a new file.
-        read: Returns the object in the file's data.
-        expected: The object that `read` must return.
-        check: Raises for data of another kind of file, without looking into further files; by default `read`.
-        kept: Keys of an existing file that the lines do not cover.
+        at: The file, for errors.
+        read: Returns the object that the data of a TOML file contains.
+        expected: The object to write: `read` must return an equal one for the new contents.
+        check: Raises ConfigError if an existing file is of another kind; by default `read`.
+        kept: Keys of an existing file that stay although `lines` does not have them.
         owner_only: Whether only the owner may read a new file.
 
     Raises:
-        ConfigError: an existing file is not of this kind, or the file cannot be written, or cannot represent the
-            object; an existing file is unchanged.
+        ConfigError: an existing file is of another kind, the file cannot be written, or a file cannot represent the
+            object. An existing file is then unchanged.
     """
     if path.suffix != ".toml":
         raise at.wrong("must end in .toml")
@@ -605,10 +607,16 @@ def save_toml(
 
 
 def _updated_text(old: str, new: str, kept: Collection[str], whole: bool) -> str:
-    """Return the TOML text `old` with the values of `new`, but with its own comments, layout and order.
+    """Return the TOML text `old` with the values of `new`, but with the comments, layout and order of `old`.
 
-    Keys `kept` of the old text stay, though the new one lacks them; `whole` tells whether tables are replaced as a
-    whole.
+    Args:
+        old: The text of the existing file.
+        new: The text with the new values.
+        kept: Keys of `old` that stay although `new` lacks them.
+        whole: Whether each table of `old` is replaced by that of `new` as a whole, not key by key.
+
+    Raises:
+        ConfigError: the text cannot be updated.
     """
     import tomlkit
     from tomlkit.exceptions import TOMLKitError

@@ -49,7 +49,10 @@ _READ_BYTES = 1 << 20
 
 @dataclass(frozen=True, slots=True)
 class FieldFiles:
-    """The files of a prepared mat. Any process may open them while the cache keeps them."""
+    """The files of a prepared mat: the pixels, and the sums over discs.
+
+    Any process may open them while the cache keeps them.
+    """
 
     width_px: int
     height_px: int
@@ -72,7 +75,7 @@ class FieldFiles:
         } >= set(diameters)
 
     def identities(self) -> tuple[tuple[int, ...], ...]:
-        """Return numbers that change when any file is written to or made again; a missing file is left out."""
+        """Return numbers for each file, which change when it is written to or replaced; missing files are left out."""
         identities = []
         for path in (self.pixels, *(path for _, path in self.sums)):
             with suppress(OSError):
@@ -121,12 +124,14 @@ class FieldFiles:
         return np.frombuffer(data, np.uint8).reshape(shape)
 
     def open_field(self, *, has_floor: bool = False, is_copied: bool = False) -> Field:
-        """Memory-map a prepared mat, in any process.
+        """Return the mat, with its files mapped into memory. Any process may call this.
 
         Args:
-            has_floor: Whether it lies on a floor of the colour of its edges: `WorldSpec.is_open`.
-            is_copied: Whether it is read into memory instead, for a process that outlives programs: the system ends a
-                process that reads a mapped file of which a program has cut something off.
+            has_floor: Whether the mat lies on a floor, which has the colour of the mat's edges; see
+                `WorldSpec.is_open`.
+            is_copied: Whether the files are read into memory instead. A process that outlives programs needs this: the
+                system
+                kills a process that reads a mapped file after a program has cut off its end.
 
         Raises:
             BackgroundError: a file is missing, for example because the cache evicted it, or incomplete.
@@ -153,7 +158,7 @@ def _sums_size(diameter: int) -> int:
 
 
 def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> FieldFiles:
-    """Prepare an image for colour sensors of given diameters.
+    """Write the files of a mat into the cache, for colour sensors of given diameters, and return them.
 
     Files that are already in the cache are reused.
 
@@ -295,7 +300,10 @@ def _store(path: Path, array: NDArray[Any]) -> None:
 
 
 def _by_age(folder: Path) -> Iterator[tuple[float, Path]]:
-    """Yield each file of the cache with the time of its last use, which is that of its note."""
+    """Yield the time at which each file of the cache was last used, with the file.
+
+    That time is the modification time of the note about the file.
+    """
     for path in folder.iterdir():
         # Another process may be removing files too.
         with suppress(FileNotFoundError):

@@ -96,9 +96,9 @@ def check_fit(fit: str) -> None:
 
 
 def fits_as_it_is(content: bytes) -> bool:
-    """Return whether an image certainly has the size of the field, so that every fit gives the same result.
+    """Return whether an image is a PNG file of exactly the field's size, so that every fit gives the same result.
 
-    Reads only the header of a PNG file: cheap enough to be called before every run.
+    Only the header of the file is read, so this is fast enough to be called before every run.
     """
     size = tuple(int.from_bytes(content[offset : offset + 4], "big") for offset in (16, 20))
     return content.startswith(_PNG) and size == _FIELD and b"eXIf" not in content
@@ -192,7 +192,7 @@ def _on_white(picture: Image) -> Image:
 
 
 def _in_eight_bits(picture: Image) -> Image:
-    """Return a grey image of more than eight bits per pixel, scaled to 0 … 255."""
+    """Return an image with eight bits per channel, in RGB, for a grey one with more bits; its values become 0 … 255."""
     import numpy as np
     from PIL import Image
 
@@ -206,7 +206,7 @@ def _in_eight_bits(picture: Image) -> Image:
 
 
 def _placed(picture: Image, fit: str) -> Image:
-    """Return the field with the image on it."""
+    """Return an image of the field's size that shows the given image on white, placed or scaled as `fit` says."""
     from PIL import Image
 
     if picture.size == _FIELD:

@@ -55,7 +55,10 @@ class Background:
     """The default fit of its image, one of `engine.core.spec.BACKGROUND_FITS`; None is the first."""
 
     def find_spec_name(self) -> str:
-        """Return the name in a run specification: the mat's own name if tuisim has the image, else the image's path."""
+        """Return the mat's name in a run specification.
+
+        It is the name of the mat in the catalogue if the image is that of tuisim, else the path of the image.
+        """
         ours = catalogue().get(self.name)
         return self.name if ours is not None and ours.image == self.image else str(self.image)
 
@@ -172,7 +175,7 @@ AS_THERE = "corner"
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """An image that was imported."""
+    """An image of one of the catalogue's mats that `import_originals` has copied."""
 
     name: str
     """The mat's name."""
@@ -311,7 +314,10 @@ def _pictures(folder: Path) -> list[Path]:
 
 
 def _in_folder(folder: Path, known: Mapping[str, Background]) -> dict[str, Background]:
-    """Return a mat for each image in a folder, by name."""
+    """Return a mat for each image in a folder, by name.
+
+    An image with the name of a mat of the catalogue replaces that mat's image.
+    """
     by_original = {mat.original.lower(): mat for mat in known.values() if mat.original}
     by_name = {name.lower(): mat for name, mat in known.items()}
     mats_by_name: dict[str, Background] = {}
@@ -330,7 +336,10 @@ def _in_folder(folder: Path, known: Mapping[str, Background]) -> dict[str, Backg
 
 
 def _of_path(path: str, known: Mapping[str, Background]) -> Background | None:
-    """Return the user's mat with this image path, or the catalogue's mat whose image at this path the user replaces."""
+    """Return the mat whose image has this path; None if there is none.
+
+    It is one of the user's mats, or a mat of the catalogue whose image the user has replaced by another one.
+    """
     for mat in (mat for mat in known.values() if mat.is_own):
         if str(mat.image) == path:
             return mat

@@ -230,7 +230,7 @@ class RunToLine(Message):
 
 @dataclass(frozen=True, slots=True)
 class RunToInstant(Message):
-    """Run at full speed to a later instant and pause there; at the end of the program if it comes before."""
+    """Run at full speed to a later instant and pause there; if the program ends before, pause at its end."""
 
     tick: int
     ordinal: int = BEFORE_NEXT_TICK
@@ -328,7 +328,10 @@ class Answer(Message):
 
 @dataclass(frozen=True, slots=True)
 class Reply(Message):
-    """User action: the answer of a responder to a request of the program; simulated time stood still until then."""
+    """User action: the answer of a notebook's responder to the program's call of `pyState()`.
+
+    No simulated time passes between the call and the answer.
+    """
 
     messages: tuple[Any, ...]
     """JSON data, oldest first."""
@@ -423,7 +426,7 @@ class Resumed(Message):
 
 @dataclass(frozen=True, slots=True)
 class Spoke(Message):
-    """The program said or played something."""
+    """The program said something, or played tones or a sound file."""
 
     text: str
     """The spoken text; in brackets for other sounds."""
@@ -472,7 +475,7 @@ class Plugged(Message):
 
 @dataclass(frozen=True, slots=True)
 class MotorRegisters:
-    """A driver's values of a motor at the end of a run: those that the program has written, and the speed."""
+    """The values of a motor's driver at the end of a run: the motor's speed, and what the program has written."""
 
     command: str = ""
     """The last command; empty if it was `stop` or there was none."""

@@ -59,7 +59,7 @@ class TextScreen:
 
 @dataclass(frozen=True, slots=True)
 class BrickState:
-    """Everything that the brick shows at one time: LEDs, display, text screen, further motors and sound."""
+    """The state of everything on the brick that a user sees or hears, at one time: LEDs, display, motors, sound."""
 
     leds: Mapping[str, int] = field(default_factory=dict)
     """Brightness by name, as in `LED_NAMES`, 0 to 255. Empty until the program sets an LED: then they are green."""
@@ -104,12 +104,12 @@ class BrickState:
         return tuple(self.leds.get(name, 0) for name in names if is_shown)
 
     def extrapolate_turns(self, time_s: float, tick_hz: int) -> tuple[tuple[float, float], ...]:
-        """Return `turns` with the positions that the motors have at a later time if their speeds stay the same."""
+        """Return position and speed of each further motor at a later time, if it keeps its speed in `turns`."""
         since_s = time_s - self.turns_tick / tick_hz
         return tuple((position_deg + dps * since_s, dps) for position_deg, dps in self.turns)
 
     def update_face(self, rows: Iterable[OutputRow]) -> BrickState:
-        """Return the brick's state after further rows of output; rows of other streams than the brick's are ignored."""
+        """Return the brick's state after further rows of output; rows that store no state of the brick are ignored."""
         for row in rows:
             match row.stream:
                 case Stream.LED:
@@ -161,7 +161,7 @@ def build_console_row(screen: TextScreen) -> str:
 
 
 def build_motors_row(turns: Iterable[tuple[float, float]]) -> str:
-    """Return the text of an output row that stores `BrickState.turns`, as they are from the row's tick on."""
+    """Return the text of an output row that stores `BrickState.turns`, which are valid from the tick of the row on."""
     return json.dumps(list(turns))
 
 
@@ -210,5 +210,5 @@ def _is_screen(screen: TextScreen) -> bool:
 
 
 def _unpack_picture(text: str) -> bytes:
-    """Return the picture in a row's text; at most one byte more than a picture has."""
+    """Return the picture that a row's text stores, cut off one byte after the length of a valid picture."""
     return zlib.decompressobj().decompress(base64.b85decode(text), len(BLANK) + 1)

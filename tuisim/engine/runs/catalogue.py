@@ -95,7 +95,7 @@ _SELECT = f"SELECT {_COLUMNS} FROM runs ORDER BY number"
 
 
 class _ForeignFile(sqlite3.DatabaseError):
-    """Raised for a database of another application or version."""
+    """The error about a database of another application, or of another version of tuisim."""
 
 
 class Catalogue:
@@ -106,7 +106,7 @@ class Catalogue:
         scan: Reads all run folders, to rebuild the catalogue.
 
     Raises:
-        LogError: by every method except `rows`, if the file cannot be read or written.
+        LogError: if the file cannot be read or written. All methods but `rows` raise it.
     """
 
     def __init__(self, home: Path, scan: Callable[[], Iterable[RunInfo]]) -> None:

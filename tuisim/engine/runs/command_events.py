@@ -52,7 +52,7 @@ ScaleChange: TypeAlias = tuple[int, str, float]
 
 
 class CommandedRun(Protocol):
-    """A run whose program may have given commands, either running or stored."""
+    """A run, either running or stored, from which the commands of its program can be read."""
 
     @property
     def first_spec(self) -> RunSpec: ...
@@ -90,9 +90,9 @@ class CommandEvent:
 
 
 def parse_command_search(text: str) -> str | None:
-    """Return the words after `command` in a text such as `command left run`; None if the text has no such form.
+    """Return the words after `command` in a text such as `command left run`; empty for `command` alone.
 
-    They are empty for `command` alone.
+    Return None if the text does not begin with the word `command`.
     """
     match = _WORDS.fullmatch(text.strip())
     return (match["words"] or "").strip() if match else None
@@ -143,7 +143,7 @@ class CommandIndex:
         return bool(len(rows))
 
     def read_scale_changes(self) -> list[ScaleChange]:
-        """Read only those commands that change scales, of those recorded so far; return all `scale_changes`."""
+        """Read all further commands, but only those that change scales, and return `scale_changes` with all of them."""
         import numpy as np
 
         while len(rows := read_command_rows(self._run.folder, self._end, _PIECE)):
@@ -205,7 +205,10 @@ class CommandIndex:
                 self.scale_changes.append((self._find_tick(time_ns), port, scale))
 
     def _read_codes(self, rows: Array) -> Array:
-        """Return a code of robot, call and part for each command; add a robot each time that parts were plugged in."""
+        """Return a number for each command that stands for its robot, its call and its part.
+
+        If a command plugs parts in, add the robot with these parts to the known robots.
+        """
         import numpy as np
 
         plugs = rows["call"] == Call.PLUG
@@ -251,7 +254,7 @@ class CommandIndex:
     # Finding
 
     def find_scales(self, tick: int) -> dict[str, float]:
-        """Return the program's number of degrees per degree of a motor at a tick, by port.
+        """Return by port how many degrees the program counts for one degree of the motor, at a tick.
 
         The number is 1 for a port that is missing in the result.
         """
@@ -309,7 +312,7 @@ class CommandIndex:
     # What came
 
     def _measure(self, number: int, aim: Aim) -> str:
-        """Return a text about the result of a command to the wheels, such as the driven way; empty for others."""
+        """Return in words what a command to wheels or a drive base caused, such as the way; empty for others."""
         import numpy as np
 
         part = self._codes[number] & 0xFF
@@ -347,7 +350,7 @@ class CommandIndex:
         return f"turned {_round(speeds[:count].sum() / self._hz)}° {when}"
 
     def _find_end(self, number: int) -> int:
-        """Return the tick at which the part of an event got its next command to move; without one, the newest tick."""
+        """Return the tick at which an event's part got its next command to move; without one, the newest tick."""
         if len(self._ends) != len(self):
             self._ends = self._list_ends()
         return self._ends[number]
@@ -386,7 +389,7 @@ def _name_call(code: int) -> str:
 
 
 def _find_mains() -> Array:
-    """Return for each number of a call the index of the value that describes the command best, such as its speed."""
+    """Return for each number of a call the index of the value that differs most when the call is repeated."""
     import numpy as np
 
     mains = np.zeros(256, np.int64)

@@ -46,7 +46,7 @@ _CALLS = {call.value: call for call in Call}
 
 
 class CommandsWriter(MappedWriter):
-    """Appends commands to the record of a run; readers can see each one immediately."""
+    """A writer that appends commands to the record of a run; readers can see each one immediately."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__(
@@ -87,7 +87,9 @@ class RecordedCommands:
     """Number of commands for which the file had no space."""
 
     def unpack(self) -> Iterator[SimulationCommand]:
-        """Yield the commands; each has the number of values of a record, including values that its call does not use.
+        """Yield the commands.
+
+        Each has as many values as a record has space for; those that the command lacks mean nothing.
 
         Raises:
             ValueError: a record has a number that stands for no call.

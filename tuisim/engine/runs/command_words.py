@@ -19,7 +19,7 @@ from tuisim.engine.core.servo.trajectory import MILLI
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """How one value of a command is shown: as a number with a unit, or as a name."""
+    """The form in which one value of a command is shown: a number with a unit, or a name."""
 
     unit: str = ""
     share: float = 1.0
@@ -28,7 +28,7 @@ class Quantity:
     """Names that the values 0, 1, … stand for; empty if the value is a number."""
 
     def write(self, low: float, high: float) -> str:
-        """Return a value as text, or a range of values if `low` and `high` differ."""
+        """Return a value as text, given its range over repeated commands: one number if both ends are equal."""
         if self.names:
             return self.names[int(low)] if 0 <= low < len(self.names) else f"{low:g}"
         ends = dict.fromkeys(f"{value * self.share:.5g}" for value in sorted((low, high)))
@@ -65,7 +65,7 @@ class Aim(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CallWords:
-    """How a kind of command is described in words."""
+    """The words for one kind of command, and how its values are shown in them."""
 
     text: str
     """The words, with the index of each value in braces, such as `run {0}`."""

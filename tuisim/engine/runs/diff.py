@@ -43,7 +43,10 @@ class TickDifference:
 
 @dataclass(frozen=True, slots=True)
 class RowDifference:
-    """The first position at which the output rows of two runs differ; None stands for a run that has no more rows."""
+    """The first position at which the output rows of two runs differ.
+
+    `first` and `second` are the rows there; None for a run that has no more rows.
+    """
 
     row: int
     """Number from 1 among the readable rows; a row of a motor gets the number of the next readable one."""
@@ -95,7 +98,10 @@ class RunDiff:
         return {"same": self.same, **asdict(self)}
 
     def describe_recording(self) -> Iterator[tuple[str, str]]:
-        """Yield a label and a text for each difference between the recordings, or one pair if they are identical."""
+        """Yield a label and a text for each difference between the recordings.
+
+        If recording and output are identical, yield one pair that says so.
+        """
         if self.same:
             settings = "" if self.setup or self.program else ", settings"
             yield "bit-identical", f"recording, output{settings}"
@@ -369,7 +375,7 @@ def _flatten(plain: Any, name: str = "") -> dict[str, Any]:
 def is_repeat(run: StoredRun | Recording, earlier: StoredRun | Recording) -> bool:
     """Return whether a run has the same program text, arguments and settings as an earlier one.
 
-    Only then is a difference between them a fault: with another program, another motion is expected.
+    If it has, both runs must be equal: a difference between them is a fault.
     """
     program = run.program
     before = earlier.program

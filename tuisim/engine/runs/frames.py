@@ -43,14 +43,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class DeadReckoning:
-    """Poses of the robot that follow from the counts of its wheels' encoders, each array of shape (n,)."""
+    """The poses of a robot as its wheels' encoders show them: arrays of shape (n,)."""
 
     x_mm: FloatArray
     y_mm: FloatArray
     heading_deg: FloatArray
 
     def compute_error_mm(self, x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
-        """Return the distances between these positions and the true ones in mm, shape (n,)."""
+        """Return the distance of each position from the true position in mm, shape (n,).
+
+        Args:
+            x_mm, y_mm: The true positions, each of shape (n,).
+        """
         import numpy as np
 
         return np.hypot(self.x_mm - x_mm, self.y_mm - y_mm)
@@ -91,7 +95,7 @@ FieldAt: TypeAlias = Callable[[tuple[float, ...]], Field]
 
 
 class RecordedRun(CommandedRun, Protocol):
-    """A run with a folder, either running or stored."""
+    """A run with a folder, either running or stored, with its present spec."""
 
     @property
     def spec(self) -> RunSpec: ...
@@ -268,7 +272,10 @@ def compute_column_values(
 
 
 def list_scale_changes(run: CommandedRun) -> list[ScaleChange]:
-    """Return all changes of what the program of a run counts as a degree of a motor."""
+    """Return each change of how many degrees the program of a run counts while a motor turns by one degree.
+
+    A change is a tuple of a tick, the motor's port, and the new number.
+    """
     if isinstance(run, Recording):
         return run.commands.scale_changes
     return CommandIndex(run).read_scale_changes()
@@ -277,9 +284,9 @@ def list_scale_changes(run: CommandedRun) -> list[ScaleChange]:
 def compute_scales(
     ticks: Array, robot: RobotSpec, changes: Iterable[ScaleChange]
 ) -> dict[str, FloatArray]:
-    """Return how many degrees the program counts for one of a motor at some ticks, by the prefix of its columns.
+    """Return how many degrees the program counts, at some ticks, while a motor turns by one.
 
-    Motors without a change are missing.
+    The keys are the prefixes of the motors' columns. Motors without a change are missing: the number is 1.
 
     Args:
         ticks: Numbers of ticks, shape (n,).
@@ -321,11 +328,13 @@ def _compute_column(
 def find_lacking_columns(
     spec: RunSpec, names: Collection[str], read: Callable[[str], Array]
 ) -> dict[str, Callable[[], Array]]:
-    """Return functions that compute the columns that the given telemetry of a run lacks, by the names of the columns.
+    """Return a function for each column of a run that its telemetry lacks, but from which it can be computed.
+
+    The keys are the names of these columns. The functions return their values at every tick.
 
     Args:
         spec: The run.
-        names: The columns that there are.
+        names: The columns that the telemetry has.
         read: Returns one of them, by its name.
     """
 

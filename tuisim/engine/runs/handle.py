@@ -83,7 +83,7 @@ STALL_FACTOR = 2.0
 
 
 class RunFolders(Protocol):
-    """Where the folder of a new run is created: a `RunStore`, or a `TemporaryRun`."""
+    """The place where the folder of a new run is created: a `RunStore`, or a `TemporaryRun`."""
 
     def create_run(
         self,
@@ -104,7 +104,10 @@ class RunFolders(Protocol):
 
 
 def _build_template_key(program: Program, spec: RunSpec, field: FieldFiles) -> Hashable:
-    """Return what a template has to be prepared for: a whole run except its program, options, seed, noise and start."""
+    """Return the key of the template that can fork a run.
+
+    It includes everything but the program, the options, the seed, the noise and the start, which may differ.
+    """
     world = replace(spec.world, noise=NoiseSpec(), start=Pose(0.0, 0.0, 0.0))
     # The identities of the mat's files are part of the key, so that a template never uses files that were replaced.
     return program.prelude, field, field.identities(), replace(spec, seed=0, world=world)
@@ -120,11 +123,18 @@ def _list_needs(program: Program, field: FieldFiles) -> list[Path]:
 
 
 class RunHandle:
-    """Controls one run: its child process, its pipes and its recording. Create it with `start_run`.
+    """The host's control of one run: its child process, its pipes and its recording. `start_run` creates it.
 
-    The child is forked from a template for runs of the same robot and world, if there is one. With `of_many` a template
-    is made first; `prepare_next` makes one for later runs. With `isolated` the child is started through bubblewrap
-    instead.
+    The child is forked from a template for runs of the same robot and world, if there is one.
+
+    Args:
+        program: The program.
+        spec: The run.
+        field: The files of the prepared mat.
+        options: How the run is executed.
+        store: Where the run folder is created.
+        of_many: Whether a missing template is made first; `prepare_next` makes one for later runs.
+        isolated: Whether the child is started through bubblewrap instead.
     """
 
     def __init__(
@@ -187,7 +197,7 @@ class RunHandle:
         if neither."""
 
     def _start(self, *, of_many: bool, isolated: bool) -> None:
-        """Start the child process; arguments as of the class."""
+        """Start the child process; `of_many` and `isolated` are as for the class."""
         program = self.program
         run = self._run
         try:
@@ -310,7 +320,7 @@ class RunHandle:
                 end_group(self._process.pid)
 
     def _find_excess(self, telemetry: TelemetryView) -> str:
-        """Return a text that says which recording is larger than the run can have made it; empty if none is."""
+        """Return a text that says which recording is larger than the limits of the run allow; empty if none is."""
         with suppress(OSError):
             if (self.folder / LOG_FILE).stat().st_size > MAX_BYTES:
                 return f"it has written more than {MAX_BYTES >> 20} MiB to {LOG_FILE}"
@@ -362,7 +372,7 @@ class RunHandle:
         )
 
     def _find_falsified(self) -> str:
-        """Return a text that says what in the folder of an ended run the simulation cannot write; empty if nothing."""
+        """Return a text that says what in an ended run's folder cannot come from the simulation; empty if all can."""
         end = self._announced
         # A run that could not begin, or had no space on the disk, may have incomplete files.
         is_whole = end is not None and end.end not in (End.CRASHED, End.DISK_FULL)
@@ -419,7 +429,7 @@ class RunHandle:
             os.close(self._lock_fd)
 
     def stored(self) -> StoredRun:
-        """Return the run as it is stored, with its end even if that could not be written.
+        """Return the stored run. If its end could not be written to its folder, add the end that is known here.
 
         Raises:
             LogError: it no longer exists, or is damaged.
@@ -531,7 +541,7 @@ class RunHandle:
                 self.pump()
 
     def _repeat_stop(self) -> None:
-        """Send a stop again that has had no effect, and kill a child that is stuck."""
+        """Send the request to stop again if it had no effect; kill a child that is stuck."""
         if self._announced is not None:
             return
         if self._stop_at is None and not self.folder.is_dir():
@@ -545,7 +555,7 @@ class RunHandle:
                 self._send_signal(COMMAND_SIGNAL)
 
     def _look_for_stall(self) -> None:
-        """Kill the child if it has made no progress for too long."""
+        """Kill the child if it has recorded no tick for too long."""
         if (
             self._announced is not None
             or self._stop_at is not None
@@ -566,7 +576,7 @@ class RunHandle:
 
     @property
     def time_used_s(self) -> float:
-        """Real seconds since the start, without those in which the child waited for a processor."""
+        """Real seconds since the start of the child, without those in which the child waited for a processor."""
         return self._clock.read_s()
 
     def _read_stack_and_kill(self) -> None:
@@ -596,7 +606,7 @@ def _find_here() -> str:
 
 
 def set_surroundings(program: Program) -> Program:
-    """Return a program with this process's working directory and PYTHONPATH, if it has no working directory."""
+    """Return a program with a working directory unchanged; give any other that of this process, and its PYTHONPATH."""
     if program.working_directory:
         return program
     return replace(program, python_path=user_python_path(), working_directory=_find_here())

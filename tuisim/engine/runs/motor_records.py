@@ -38,7 +38,7 @@ MAX_MOTORS = 2 + len(OUTPUT_PORTS)
 
 
 class MotorsWriter(MappedWriter):
-    """Writes the records of all motors. Until it is closed, readers take the number of ticks from the telemetry.
+    """A writer of the records of all motors. Until it is closed, only the telemetry says how many ticks are complete.
 
     Args:
         folder: The run folder.
@@ -85,11 +85,11 @@ class MotorsWriter(MappedWriter):
 def arrange_records(
     recorded: bytes, before: int, sources: Sequence[int | None], ticks: int
 ) -> bytes:
-    """Return records rearranged for other motors.
+    """Return the records of all ticks for another set of motors. Records of new motors are 0.
 
     Args:
-        recorded: The records.
-        before: The number of motors in them.
+        recorded: The records of the old motors.
+        before: The number of old motors.
         sources, ticks: As of `MotorSink.arrange`.
     """
     numbers = array("Q", recorded)
@@ -142,7 +142,10 @@ def read_motor_columns(folder: Path, robot: RobotSpec, ticks: Array) -> dict[str
 
 
 def _read_part(folder: Path, first: int, end: int) -> tuple[int, bytes]:
-    """Return the number of motors, and those complete records of the ticks from `first` to before `end` that exist."""
+    """Return the number of motors, and the complete records of the ticks from `first` to before `end`.
+
+    Ticks that are not recorded are left out; without a file, there are none.
+    """
     path = folder / MOTORS_FILE
     try:
         with open_regular(path) as file:

@@ -41,7 +41,7 @@ class Push:
 
     @property
     def words(self) -> str:
-        """A sentence about the push for users, without its subject, the robot."""
+        """A sentence for users about how the robot was pushed, without its subject, the robot."""
         aside = f"was pushed {self.aside_mm:.0f} mm aside by {self.at} while it turned"
         if self.times > 1:
             return f"{aside}, {counted(self.times, 'time')}, first at {self.since_s:.2f} s"
@@ -49,7 +49,7 @@ class Push:
 
 
 def find_push(telemetry: TelemetryView, spec: RunSpec) -> Push | None:
-    """Return where and when walls or obstacles pushed the turning robot of a run aside; None if that never happened.
+    """Return a summary of how walls or obstacles pushed the turning robot of a run aside; None if that never happened.
 
     Raises:
         LogError: the recording is damaged.
@@ -90,10 +90,11 @@ def find_push(telemetry: TelemetryView, spec: RunSpec) -> Push | None:
 
 
 def _measure_aside_mm(records: NDArray[Any], spec: RunSpec, reach_mm: float) -> NDArray[Any]:
-    """Return by how much the robot moved in each tick in addition to what its wheels did, shape (2, n).
+    """Return how far the robot moved in each tick beyond the motion of its wheels, along x and y, shape (2, n).
 
-    It is 0 in ticks without a turn near something solid, and where the robot moved so far that a hand must have moved
-    it.
+    It is 0 in ticks in which both wheels rolled in the same direction, or nothing solid was near the robot. It is also
+    0
+    where the robot moved so far that a user must have moved it.
     """
     import numpy as np
 

@@ -10,7 +10,7 @@ RAW_BYTES = 4 << 20
 
 
 def create_raw_file(fd: int) -> int:
-    """Return a descriptor of a new file in memory that replaces descriptor `fd`; its size cannot change.
+    """Return the descriptor of a new file in memory, to replace descriptor `fd`, 1 or 2; the file's size is fixed.
 
     Raises:
         OSError, AttributeError: this system has no such files, or no descriptors left.

@@ -83,7 +83,7 @@ _FIRST_BYTES = 1 << 14
 
 
 class ReadingsWriter(MappedWriter):
-    """Appends readings to the record of a run; readers of the file can see each one immediately."""
+    """A writer that appends readings to the record of a run; readers of the file can see each one immediately."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__(
@@ -141,7 +141,7 @@ class Readings:
     """Number of readings for which the file had no space."""
 
     def find(self, modes: tuple[str, ...]) -> Array:
-        """Return the readings in one of several modes, as rows in their order."""
+        """Return the rows of those readings that were taken in one of several modes, in their order."""
         import numpy as np
 
         rows: Array = self.rows[

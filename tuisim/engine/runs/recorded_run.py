@@ -42,7 +42,7 @@ class Recording:
 
     Args:
         source: A running run, or a stored one.
-        answers: Scripted answers of a running run; for a stored run they are read from its options.
+        answers: The answers to `input()` that were given in advance; for a stored run they are read from its options.
         name: Display name; by default the number, or the id if it has none.
     """
 
@@ -86,7 +86,7 @@ class Recording:
         return self._source.plugged
 
     def hold(self) -> None:
-        """Read telemetry and output up to now; later data stays unread until the next `RunHandle.pump`."""
+        """Read the telemetry and the output that exist now. Later data is not read until the next `RunHandle.pump`."""
         for view in (self.telemetry, self.output):
             view.read_new()
             view.holds = True
@@ -136,7 +136,12 @@ class Recording:
         return self._marks.at(tick)
 
     def instant(self, record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
-        """Return the instant of a record, with motors' scales, and their drivers' values unless these are damaged."""
+        """Return the instant of a tick record, with the motors' scales and their drivers' values.
+
+        A scale is the number of degrees that the program counts for one of the motor. The drivers' values are left out
+        if their
+        file is damaged.
+        """
         motors: tuple[MotorValues, ...] = ()
         with suppress(LogError):
             motors = read_motor_values(self.folder, self.spec, record.tick)
@@ -172,7 +177,10 @@ class Recording:
 
 
 class _TimedMarks:
-    """The mat with the pen's marks at any tick. Marks are only added, and are stored in drawing order."""
+    """The mat with the pen's marks as they were at any tick.
+
+    Marks are never removed, and they are stored in the order in which they were drawn.
+    """
 
     def __init__(self, mat: Field, run: Recording) -> None:
         self._run = run
@@ -208,13 +216,13 @@ _FINEST = 500
 
 
 class _Level:
-    """Detects when a variable has changed by more than `_LEVEL_SHARE` of its range."""
+    """The last notable value of a variable. A change by more than `_LEVEL_SHARE` of the variable's range is notable."""
 
     def __init__(self, value: float) -> None:
         self._low = self._high = self._level = value
 
     def changes(self, value: float) -> bool:
-        """Process the next value of the variable; return whether the variable has changed enough with it."""
+        """Process the next value of the variable; return whether it differs notably from the last notable one."""
         self._low, self._high = min(self._low, value), max(self._high, value)
         if abs(value - self._level) <= _LEVEL_SHARE * (self._high - self._low):
             return False
@@ -223,7 +231,7 @@ class _Level:
 
 
 class RowIndex:
-    """Tick, line and position of each row of an output that has been read so far; the output may still grow."""
+    """The tick, the source line and the position of each output row that has been read; the output may still grow."""
 
     def __init__(self, output: OutputView) -> None:
         self._output = output
@@ -309,7 +317,7 @@ class RowIndex:
             yield from (row for row, _ in islice(rows, len(self) - first))
 
     def find_line(self, name: str, tick: int) -> int:
-        """Return the line of the program that printed the last sample of a name in a tick; 0 if there is none."""
+        """Return the line of the program that printed the last sample `name` of a tick; 0 if there is none."""
         for row in map(self.row, reversed(range(self.until(tick - 1), self.until(tick)))):
             sample = parse_sample(row.text) if row.stream in SAMPLE_STREAMS else None
             if sample is not None and sample[0] == name:

@@ -113,7 +113,10 @@ def is_full(error: OSError) -> bool:
 
 
 def _allow_address_space(more: int) -> None:
-    """Raise this process's limit of address space by `more` bytes, because it is for the program, not its recording."""
+    """Raise this process's limit of address space by `more` bytes.
+
+    The limit is meant for the program: the recording, in the same process, must not use it up.
+    """
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     if soft != resource.RLIM_INFINITY:
         limit = soft + more if hard == resource.RLIM_INFINITY else min(hard, soft + more)
@@ -141,7 +144,7 @@ def _reserve(fd: int, start: int, size: int) -> None:
 
 
 class MappedWriter:
-    """Base class of writers of recordings: a memory-mapped file that grows in ever larger steps.
+    """Base class of writers of recordings, each of which is a memory-mapped file that grows in ever larger steps.
 
     Raises:
         OSError: by the constructor, if the disk is full.
@@ -201,7 +204,10 @@ class MappedWriter:
 
 
 class TelemetryWriter(MappedWriter):
-    """Appends tick records. The simulation writes them into the map of `reserve` directly, then calls `publish`."""
+    """A writer of tick records.
+
+    The simulation writes the records directly into the memory map that `reserve` returns, then calls `publish`.
+    """
 
     def __init__(self, folder: Path) -> None:
         super().__init__(
@@ -226,7 +232,7 @@ class TelemetryWriter(MappedWriter):
 
 
 class OutputWriter(MappedWriter):
-    """Appends rows of output; readers can see each one immediately. When the disk is full, later rows are lost."""
+    """A writer of rows of output; readers can see each row immediately. When the disk is full, later rows are lost."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__(f"{folder}{os.sep}{OUTPUT_FILE}", OUTPUT_MAGIC, 0, OUTPUT_CHUNK)

@@ -49,7 +49,7 @@ loop in which no time passes does, too."""
 
 
 class CommandCheck:
-    """Finds recorded commands that no program can have given.
+    """A check of recorded commands, one after another, for commands that no program can have given.
 
     Args:
         sim: The simulation to which the commands will be given.
@@ -67,7 +67,7 @@ class CommandCheck:
     def find_disorder(self, time_ns: int) -> str:
         """Return a text that says why the next command cannot have been given at a time; empty if it can.
 
-        The text has the same form as that of `find_fault`.
+        The text, like that of `find_fault`, continues a sentence that begins with "a command that".
         """
         if time_ns < self._newest_ns:
             return "goes back in time"
@@ -114,7 +114,7 @@ _LOOK_EVERY = 1000
 
 @dataclass(frozen=True, slots=True)
 class ReplayedTicks:
-    """The records that a run must have made, from a simulation of it."""
+    """The records that result when a run is simulated again from its commands and user actions."""
 
     telemetry: bytearray
     """A record for each tick, without a header; the lines of the program are 0."""
@@ -127,7 +127,7 @@ class ReplayedTicks:
 
 
 class _Motors:
-    """Keeps the records of motors in memory; replaces a `MotorsWriter`."""
+    """The records of motors in memory, instead of in the file of a `MotorsWriter`."""
 
     def __init__(self, robot: RobotSpec) -> None:
         self.tick_bytes = MOTOR_RECORD.size * len(name_motors(robot))
@@ -199,7 +199,7 @@ def replay(
 
 
 def give_command(sim: Simulation, command: SimulationCommand) -> None:
-    """Give a recorded command to a simulation; ignore errors, because the program got them."""
+    """Give a recorded command to a simulation. Ignore any error: in the run, the program got it."""
     time_ns, part, call, values = command
     try:
         obey(sim, time_ns, part, call, *values[: len(CALLS[call].ranges)])
@@ -226,19 +226,20 @@ def replay_run(
 ) -> tuple[StoredRun, str]:
     """Simulate a run that is over again, and replace its recording by the result where they differ.
 
-    The recorded lines of the program and its output stay as they are.
+    The recorded lines of the program and its output stay unchanged.
 
     Args:
         run: The run.
         actions: The user's actions, as known to the process that started the run.
-        limit_s: Seconds of processor time that it may take.
+        limit_s: Seconds of processor time that the simulation may take.
 
     Returns:
-        The run with the new ticks and actions, and the time from which its recording differed, such as `1.50 s`; empty
-        if it did not.
+        The run with the new ticks and actions, and a text: the time from which its recording differed, such as `1.50
+        s`, or
+        empty if it did not differ.
 
     Raises:
-        LogError: the commands are damaged, take too long, no program can have given them, or the result cannot be
+        LogError: the commands are damaged, no program can have given them, they take too long, or the result cannot be
             written.
     """
     import numpy as np

@@ -49,7 +49,9 @@ Passed = Callable[[], None]
 
 
 class ReplayDebugger:
-    """Repeats a run and pauses at a requested instant; to go back, it starts the run again.
+    """A debugger of a recorded run. It repeats the run, and pauses at a requested instant.
+
+    To go back, it starts the run again.
 
     Args:
         arrived: Called with the position of the pause and the program's state there.
@@ -95,7 +97,16 @@ class ReplayDebugger:
     def go_to_line(
         self, recording: Recording, tick: int, line: int, look: protocol.Inspect
     ) -> None:
-        """Pause where a line began for the last time in a tick; if it did not, pause at the end of the tick."""
+        """Pause at the last time in a tick at which a line began.
+
+        If the line did not begin in this tick, pause at the end of the tick.
+
+        Args:
+            recording: The recording of the run to repeat.
+            tick: The tick.
+            line: The line of the program.
+            look: The request for the program's state at the pause.
+        """
         self._request = look
         self._back = 0
         self._next_command = None
@@ -113,7 +124,14 @@ class ReplayDebugger:
     def go_on(
         self, recording: Recording, at: Position, command: protocol.Message, look: protocol.Inspect
     ) -> None:
-        """Pause at an instant, resume with a command, and request the program's state where it pauses next."""
+        """Pause at an instant, then resume with a command, and request the program's state at the next pause.
+
+        Args:
+            recording: The recording of the run to repeat.
+            at: The instant.
+            command: The command that resumes the run, such as a step.
+            look: The request for the program's state.
+        """
         self._line = 0
         self._request = look
         self._back = 0
@@ -218,7 +236,10 @@ class ReplayDebugger:
         self.run.send(protocol.RequestHistory(HISTORY) if is_searched else self._request)
 
     def _choose_line(self, history: LineHistory) -> None:
-        """Go to the requested line of the history; if it is not in it, search a longer history."""
+        """Go to the requested line in a history of executed lines.
+
+        If the history is too short, request a longer one.
+        """
         assert self._of is not None and self._aim is not None
         aim = self._aim
         if self._line:

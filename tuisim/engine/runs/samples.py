@@ -95,7 +95,10 @@ class Counts:
 
 
 def counts_of(output: OutputView) -> Counts:
-    """Return the numbers of printed lines and samples. No row becomes an object, as there may be a million."""
+    """Return the numbers of printed lines and samples.
+
+    No `OutputRow` is created for a row, because there may be a million rows.
+    """
     lines = samples = 0
     for stream, text in output.read_raw_rows():
         if stream in SAMPLE_STREAMS:

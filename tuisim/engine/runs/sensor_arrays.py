@@ -95,7 +95,8 @@ def _sum_discs(col: Array, row: Array, diameter: int, field: Field) -> tuple[Arr
     """Return the sums of red, green and blue over discs, and whether each disc is over the mat or the floor.
 
     Args:
-        col, row: Upper left corners of the discs' boxes, counted from `diameter` pixels before the mat's, shape (n,).
+        col, row: Upper left corners of the boxes around the discs, shape (n,). Column and row 0 are `diameter` pixels
+            before those of the mat.
         diameter: Diameter of the discs in pixels.
         field: The mat.
     """

@@ -106,7 +106,7 @@ def hold(folder: Path) -> int:
 def is_held(folder: Path) -> bool | None:
     """Return whether a living process holds the lock of a run folder.
 
-    None if no process ever did, or this machine cannot find out.
+    Return None if the folder has no lock file, or if this machine cannot find out.
     """
     try:
         # O_NONBLOCK: a pipe that a program has put in its place would block.
@@ -170,7 +170,7 @@ def _convert_errors(path: Path) -> Iterator[None]:
 
 
 def _read_rows(path: Path) -> Iterator[Any]:
-    """Yield the rows of a file of JSON lines; none if the file is missing, and no incomplete last row."""
+    """Yield the rows of a file of JSON lines, without an incomplete last row. A missing file has no rows."""
     try:
         *lines, _ = read_regular(path, MAX_BYTES).split(b"\n")
     except FileNotFoundError:
@@ -326,7 +326,7 @@ MAX_SUMMED_BYTES = 1 << 22
 
 
 def read_state(path: str) -> FileRead | None:
-    """Return the present state of a file, which may be missing; None for a folder, a device and the like."""
+    """Return the present state of a regular file or of a missing one; None for anything else, such as a folder."""
     try:
         status = _stat(path)
     except (OSError, ValueError) as error:

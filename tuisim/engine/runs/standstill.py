@@ -77,7 +77,7 @@ class _Stretch:
 
 
 def find_standstill(telemetry: TelemetryView, spec: RunSpec) -> Standstill | None:
-    """Return where and when walls or obstacles stopped the robot of a run; None if that never happened.
+    """Return a summary of how walls or obstacles stopped the robot of a run; None if that never happened.
 
     Raises:
         LogError: the recording is damaged.
@@ -121,7 +121,7 @@ def touches_solid(pose: PoseTuple, spec: RunSpec) -> bool:
 def _find_stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
     """Yield each stretch of pushing that is long enough for the motors to stall.
 
-    Noise lets the wheels turn a little between ticks in which they are stopped: those are one stretch.
+    With noise, the wheels may turn a little between two stretches; if the motors ran on, these are one stretch.
     """
     # Imported on demand: in most worlds nothing is solid.
     import numpy as np
@@ -165,7 +165,10 @@ def _build_pose(records: NDArray[Any], tick: int) -> PoseTuple:
 
 
 def _find_next_move(records: NDArray[Any], start: int, end: int) -> int | None:
-    """Return the first tick after `start`, up to `end`, at which the robot is elsewhere; None without one."""
+    """Return the first tick after `start`, up to `end`, at which the robot's pose differs from that at `start`.
+
+    Return None if there is no such tick.
+    """
     import numpy as np
 
     moved = np.zeros(max(0, end - start), np.bool_)

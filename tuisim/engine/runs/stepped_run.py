@@ -38,7 +38,7 @@ class SteppedRun:
     Args:
         spec: The run.
         mat: Its mat.
-        is_recorded: Whether its ticks are recorded, as `array` needs it.
+        is_recorded: Whether its ticks are recorded; only then can `array` return them.
     """
 
     program = Program("script", "")
@@ -82,7 +82,10 @@ class SteppedRun:
     def read(
         self, readers: Mapping[str, Callable[[Instant, RunSpec, Field], float]]
     ) -> dict[str, float]:
-        """Return the present value of each reader by its name; sensors see what the pen has drawn so far."""
+        """Return the present values of columns, by the names of their readers.
+
+        Sensors see what the pen has drawn so far.
+        """
         mat = self._mat
         if self._marks is not None:
             self._marks.add_records(self._sim.read_records(self._marks.records))

@@ -150,8 +150,9 @@ class RunStore:
     def finish(self, run: NewRun, end: Ended) -> None:
         """Record how a run ended.
 
-        Its `run.json` is written with its contents from the start and its present tags: the program could have changed
-        it.
+        The whole `run.json` is written again, from what is known of the run's start, because the program could have
+        changed the
+        file. Only the tags are read from it.
 
         Raises:
             LogError: the run does not exist, or cannot be written.

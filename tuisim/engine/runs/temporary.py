@@ -53,7 +53,7 @@ def create_batch_folder() -> Path:
 def create_owned_folder(prefix: str = _PREFIX, parent: Path | None = None) -> Path:
     """Create and return a folder that is marked as in use while this process lives; its name begins with the prefix.
 
-    The first call also removes folders that killed processes have left in `parent` and in the usual places.
+    Folders that killed processes have left in `parent`, and in the system's folders for temporary files, are removed.
 
     Raises:
         LogError: it cannot be created.

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 def change_simulation(sim: Simulation, action: Message) -> None:
-    """Apply a user's action to a simulation right before the next tick, and count it.
+    """Apply a user's action to a simulation right before the next tick, and add 1 to its number of user actions.
 
-    Answers change nothing, and are only counted.
+    Answers to a program change nothing but this number.
 
     Raises:
-        TypeError: the message is not a user action that is counted.
+        TypeError: the message is not a user action.
     """
     match action:
         case protocol.SetPose(x_mm=x, y_mm=y, heading_deg=heading):

@@ -127,8 +127,9 @@ class _View(ABC):
 
     Args:
         folder: The run folder.
-        is_checked: Whether to read only what the simulation can have written, as for a run that is running or
-            falsified. A file that disappears is damage then.
+        is_checked: Whether data that the simulation cannot have written is treated as damage, and not returned. So it
+            is
+            for a run that is running or falsified. If its file disappears, that is damage, too.
 
     Raises:
         LogError: by every method, if this machine cannot read the file.
@@ -165,7 +166,7 @@ class _View(ABC):
 
     @property
     def is_missing(self) -> bool:
-        """Whether the run has no such recording at all, not even an empty one."""
+        """Whether the run does not have this recording. A recording that is empty, but has a header, is not missing."""
         return not self._measure_length() and not self._has_begun
 
     @property
@@ -186,8 +187,8 @@ class _View(ABC):
 
         Args:
             data: The copy of the recording.
-            begin: The first record, or byte, to check.
-            end: The one after the last.
+            begin: The index of the first record, or byte, to check.
+            end: The index after the last one.
         """
 
     @property
@@ -230,7 +231,10 @@ class _View(ABC):
             self._damage = f"{self._path.name} cannot be read: {reason}"
 
     def _is_withheld(self, error: OSError) -> bool:
-        """Return whether this machine forbids reading a file that its owner may read: no program can cause that."""
+        """Return whether a file error means that this machine forbids reading a file that its owner may read.
+
+        No program can cause that.
+        """
         try:
             return isinstance(error, PermissionError) and bool(self._path.stat().st_mode & S_IRUSR)
         except OSError:
@@ -392,10 +396,11 @@ class TelemetryView(_View):
         return end
 
     def _read_again(self, begin: int, end: int) -> memoryview:
-        """Return records that were dropped from memory, read from the file again.
+        """Read records that were dropped from memory from the file again, and return them.
 
-        Those that have been changed meanwhile, which only the program can have done, are replaced by the oldest one
-        that is in memory: whoever follows the run learns of its damage, and must not fail before.
+        Only a program can have changed them in the meantime. Changed records are replaced by the oldest record in
+        memory: the
+        reader learns of the damage later, and must not fail before.
         """
         assert self._source is not None
         size = TICK_RECORD.size
@@ -436,7 +441,7 @@ class TelemetryView(_View):
     def array(self, first: int = 0) -> np.ndarray[Any, Any]:
         """Return all present records from index `first` on, as a read-only structured array of `TICK_FIELDS`.
 
-        It is a view, not a copy, unless the run is running and the first of them are no longer in memory.
+        The array is a view. It is a copy only if some of these records are no longer in memory, as in a long run.
         """
         import numpy as np
 

@@ -77,7 +77,7 @@ def build_part(event: Plugged) -> PluggedPart:
 
 
 def _is_sound(value: object) -> bool:
-    """Return whether all integers in a value of an event are small enough to be stored and shown."""
+    """Return whether all whole numbers in a value of an event, at any depth, are small enough to store and show."""
     match value:
         case int():
             return abs(value) < _MAX_NUMBER
@@ -90,7 +90,7 @@ def _is_sound(value: object) -> bool:
 
 
 class EventStream:
-    """Reads events from the pipe of a child without blocking, and checks that they are allowed.
+    """The events that arrive in the pipe of a child, read without blocking, and checked: not all are allowed.
 
     Args:
         descriptor: The read end, non-blocking.
@@ -112,7 +112,10 @@ class EventStream:
         self._allowed = (*self._allowed, *kinds)
 
     def read(self) -> list[Message]:
-        """Return the events that have arrived. One that cannot come from the simulation ends them, see `falsified`."""
+        """Return the events that have arrived.
+
+        An event that the simulation never sends, and all later ones, are left out; `falsified` then says why.
+        """
         events: list[Message] = []
         for line in self._split_lines():
             event = self._decode_event(line)
@@ -141,7 +144,7 @@ class EventStream:
     def _decode_event(self, line: bytes) -> Message | None:
         """Return the event in a line.
 
-        None if the line is not an event, or the event is not allowed now; the reason is then in `falsified`.
+        Return None, and set `falsified` to the reason, if the line is not an event or the event is not allowed now.
         """
         try:
             event = decode_event(line)

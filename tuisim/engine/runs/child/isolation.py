@@ -291,7 +291,9 @@ def spawn_isolated(
 
 
 def _build_command(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
-    """Return bubblewrap's command without its last options; the process that it starts ends with bubblewrap.
+    """Return bubblewrap's command, to which `spawn_isolated` adds its last options.
+
+    The process that bubblewrap starts ends when bubblewrap does.
 
     Args:
         cwd: The working directory.
@@ -367,7 +369,7 @@ _X32 = 0x40000000
 
 @dataclass(frozen=True, slots=True)
 class _Machine:
-    """The numbers of system calls on one kind of processor, from the tables of Linux."""
+    """The numbers of those system calls that the filter needs, on one kind of processor, from the tables of Linux."""
 
     architecture: int
     """`AUDIT_ARCH_…`"""

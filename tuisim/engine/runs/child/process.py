@@ -31,9 +31,10 @@ _CLOCK_HZ = os.sysconf("SC_CLK_TCK")
 
 
 class FairClock:
-    """A clock that stops while a process has to wait for a processor, because other processes run.
+    """A clock that measures how long a process runs, without the time in which it has to wait for a processor.
 
-    It runs at least as fast as the process uses processors: of many threads, some always wait.
+    The clock never shows less than the time in which the process has used processors: of many threads, some always
+    wait.
 
     Args:
         pid: The process, which has just been started.
@@ -107,7 +108,7 @@ MAX_SHOWN = 500
 
 
 class _Starts:
-    """The processes that this process has started: the warm process, the templates, and the number of children."""
+    """What this process has started: the warm process, the templates, and the number of children."""
 
     warm: WarmProcess | None = None
     templates: ClassVar[OrderedDict[Hashable, Template]] = OrderedDict()
@@ -151,21 +152,22 @@ def start_child(
 ) -> tuple[ChildProcess, int, int, int]:
     """Start the process that executes the run in a folder.
 
-    The first child of this process is started as a new process. Before the second, the warm process is started.
+    The first child is a new process. Before the second child, the warm process is started, which forks all later ones.
 
     Args:
         folder: The run folder.
-        lock_fd: Its lock, which the process inherits; it is closed here.
+        lock_fd: The folder's lock, which the child inherits; the descriptor of this process is closed.
         working_directory: Initial working directory, if it still exists.
         run: The contents of the `run.json` in the folder.
-        template_key: What a template must be prepared for to fork the child; None forks it from the warm process.
-        makes_template: Whether such a template is made if there is none; otherwise the warm process forks the child.
-        isolated_with: The files and folders that it needs besides its run folder and its working directory; it is then
-            a new process, isolated from the others. None starts it without isolation.
+        template_key: Names the template that forks the child; None, or a missing template, for the warm process.
+        makes_template: Whether a missing template is made, and then forks the child.
+        isolated_with: The files and folders that the child needs besides its run folder and its working directory. The
+            child is then a new process, isolated from the others. None starts it without isolation.
 
     Returns:
-        The process; write end of its commands and read end of its events, both non-blocking; and its lifeline, at
-        whose end it dies.
+        The process; the write end of the pipe for commands and the read end of the pipe for events, both non-blocking;
+        and
+        the write end of the lifeline, a pipe: the child is killed when it is closed.
     """
     _Starts.count += 1
     if _Starts.count > 1 and isolated_with is None:
@@ -209,12 +211,12 @@ def _open_pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
 
 
 def prepare_template(key: Hashable, folder: Path, run: Mapping[str, Any]) -> None:
-    """Fork a template from the warm process, if that runs and there is no template for the key yet.
+    """Fork a template from the warm process, unless there is one for the key, or the warm process does not run.
 
     It does not block until the template is ready.
 
     Args:
-        key: What the template is prepared for.
+        key: Names the template.
         folder: The folder of a run that has this key.
         run: The contents of its `run.json`, as it was started.
     """
@@ -284,7 +286,9 @@ def _spawn(folder: Path, cwd: str | None, log: IO[bytes], inherited: Sequence[in
 
 
 def mark(pid: int) -> int:
-    """Mark a child and all its future descendants; a new session, program or environment does not remove the mark.
+    """Mark a child and all its future descendants.
+
+    The mark stays when a descendant starts a new session, another program, or changes its environment.
 
     Returns:
         The mark; 0 if the child cannot be marked.
@@ -334,7 +338,7 @@ def end_descendants(pid: int, marked: int) -> None:
 
 
 def _list_younger(pid: int) -> set[int]:
-    """Return the ids of all processes that may be younger than a process; some of these ids may not be in use."""
+    """Return ids of processes that include all processes that started after a process; some may not be in use."""
     last = int(Path("/proc/loadavg").read_text("ascii").split()[-1])
     # Process ids increase, and wrap around when they are used up.
     if pid <= last < pid + MAX_ID_GAP:
@@ -351,7 +355,7 @@ def _has_mark(pid: int, marked: int) -> bool:
 
 
 def _build_environment() -> dict[str, str]:
-    """Return the environment variables of a child: not those of the user, and with reproducible hashes."""
+    """Return the environment variables of a child: few of those of the user, and others that make runs reproducible."""
     inherited = {
         name: os.environ[name]
         for name in ("PATH", "HOME", "LD_LIBRARY_PATH", "TMPDIR")

@@ -28,7 +28,7 @@ _LENGTH_BYTES = 4
 
 
 class ChildProcess(Protocol):
-    """What the host needs of a run's process; `subprocess.Popen` has the same methods."""
+    """The attributes and methods of a run's process that the host uses; `subprocess.Popen` has them, too."""
 
     pid: int
     returncode: int | None
@@ -104,7 +104,10 @@ class ForkedChild:
 
 
 def _continue_parent(pid: int) -> None:
-    """Continue the process that has to report the end of a child, because a program may have stopped it by a signal."""
+    """Continue the stopped parent of a child that has exited: it must report the exit.
+
+    A program can stop that process by a signal.
+    """
     # Without /proc, or with another user's process, nothing can be done.
     with suppress(OSError, ValueError):
         with open(f"/proc/{pid}/stat", "rb") as file:
@@ -131,7 +134,7 @@ class ForkClient:
 
     @property
     def is_usable(self) -> bool:
-        """Whether this process has started the server itself, not a process from which this one was forked."""
+        """Whether this process itself has started the server; processes that are forked from it must not use it."""
         return self._pid == os.getpid()
 
     def fork(
@@ -189,7 +192,7 @@ class ForkClient:
         return ForkedChild(pid, status_fd)
 
     def _select_changes(self, _run: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the parts of a `run.json` that the server needs; the child reads the rest from the file."""
+        """Return the parts of a `run.json` that are sent to the server: none here; `Template` overrides this."""
         return {}
 
     def _answer(self, status_fd: int) -> bytes:
@@ -200,7 +203,10 @@ class ForkClient:
         raise TimeoutError(errno.ETIMEDOUT, "the server does not answer")
 
     def close(self) -> None:
-        """End the server, unless a process from which this one was forked uses it; its children go on."""
+        """End the server; the children that it has forked go on.
+
+        If another process has started the server, only close the connection.
+        """
         self._socket.close()
         if self._pid != os.getpid():
             return
@@ -273,7 +279,7 @@ class WarmProcess(ForkClient):
 
     @property
     def is_usable(self) -> bool:
-        """Whether the warm process runs, and this process has started it itself."""
+        """Whether the warm process runs, and was started by this process."""
         return super().is_usable and self._process.poll() is None
 
     def fork_template(self, folder: str, run: Mapping[str, Any]) -> Template:
