@@ -74,7 +74,7 @@ SPARE_FRAMES = 100
 
 
 class KnownPrograms:
-    """Compiles programs that are run more than once, and keeps their code.
+    """The compiled code of programs that are run more than once.
 
     When a program is run for the first time, or when there is an error or a warning to report, the process of the run
     compiles it instead.
@@ -147,7 +147,9 @@ class Interrupts:
 
     Args:
         session: The run.
-        soft_codes: Code objects of the runtime in which a handler may raise an exception, unlike in the rest of it.
+        soft_codes: Code objects of the runtime in which a handler may raise an exception; in all other code of the
+            runtime
+            it must not.
     """
 
     def __init__(self, session: Session, soft_codes: frozenset[types.CodeType]) -> None:
@@ -317,13 +319,16 @@ class Child:
         self._known_programs = KnownPrograms()
 
     def expect(self, folder: Path, changes: Mapping[str, Any]) -> None:
-        """Prepare for another run without executing anything of its program; arguments as of `derive_config`."""
+        """Prepare for another run, without executing anything of its program; arguments as of `derive_config`."""
         self._config = config = derive_config(self._config, folder, changes)
         drops_annotations = config.spec.profile.motor_law.library.drops_annotations
         self._runner.code = self._known_programs.code(config.program, drops_annotations)
 
     def _patch_modules(self, turn: Callable[[], None]) -> None:
-        """Replace functions of Python's modules, and create the objects that run the program."""
+        """Replace functions of Python's modules, and create the objects that run the program.
+
+        `turn` is the function that the program calls at the start of each loop body.
+        """
         # Imported here: threads must be patched before anything else imports `threading`.
         from tuisim.engine.runtime.patches.signals import patch_signals
         from tuisim.engine.runtime.patches.threads import patch_threads

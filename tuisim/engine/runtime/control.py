@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 class SessionFlag(IntFlag):
-    """The bits of `Session.flags`; each says that more must be done when time passes than running ticks."""
+    """The bits of `Session.flags`. Each bit says that, when time passes, it is not enough to run ticks."""
 
     LIVE = 1
     """The control is called before ticks."""
@@ -129,7 +129,7 @@ class ControlledRun(Protocol):
 
 
 class RunControl:
-    """Controls a run as the host commands: pauses, speed and user actions.
+    """The control of a run by the host: pauses, speed and user actions.
 
     Args:
         channel: Pipes to the host.
@@ -315,17 +315,22 @@ class RunControl:
         self._raise_here(session, before_tick=moment.ordinal == BEFORE_NEXT_TICK)
 
     def _raise_here(self, session: ControlledRun, before_tick: bool = False) -> None:
-        """Raise a requested stop in this thread, which has waited for commands, instead of in the main thread."""
+        """Raise `StopProgram` in this thread, which has waited for commands, if a stop is requested.
+
+        Otherwise it would be raised in the main thread.
+        """
         try:
             session.check_stop(before_tick)
         finally:
             self.holding = False
 
     def replay_next(self, session: ControlledRun, kind: type[Answer | Reply]) -> bool:
-        """Apply the next known user action, if it is of this kind and was recorded at this place without time passing.
+        """Apply the next known user action if it answers a question of this kind that the program asks now.
+
+        An answer that came only after some simulated time is not applied here.
 
         Returns:
-            Whether it was applied.
+            Whether the action was applied.
         """
         if not self._script or self._script[0].tick > session.sim.tick:
             return False

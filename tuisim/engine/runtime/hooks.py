@@ -30,7 +30,7 @@ def format_safely(write: Callable[[object], str], value: object) -> str:
 
 
 class ErrorHooks:
-    """Replaces the hooks of `sys` and `threading` through which Python shows errors.
+    """Functions that replace the hooks of `sys` and `threading` through which Python shows errors.
 
     Args:
         session: The program's clock.

@@ -13,11 +13,11 @@ from tuisim.base.source import PRELUDE_TEXTS
 
 
 class MissingPart:
-    """Stands for a predefined name whose part the robot does not have.
+    """The value of a predefined name whose part the robot does not have. Any use of it raises an error.
 
     Args:
         name: The name.
-        error: The error on creating the part; raised again whenever the name is used.
+        error: The error on creating the part, which is raised at each use.
     """
 
     __slots__ = ("_error", "_name")
@@ -43,7 +43,7 @@ LOOP_HOOK = "__loop_turn__"
 
 
 class _LoopHooks(ast.NodeTransformer):
-    """Inserts a call of the loop hook at the start of every loop body of a program."""
+    """A transformer that inserts a call of the loop hook at the start of every loop body of a program."""
 
     def _add_hook(self, node: ast.For | ast.While | ast.AsyncFor) -> ast.AST:
         self.generic_visit(node)
@@ -151,14 +151,7 @@ _IMPORT = re.compile(r"^\s*(?:from|import)\s+ev3dev2\b", re.MULTILINE)
 
 
 def add_prelude_note(error: BaseException, text: str) -> None:
-    """Add a note to an error about a predefined name that the program has not enabled: how it can get that name.
-
-    The error's own message names the missing import.
-
-    Args:
-        error: The error.
-        text: The program: one that imports the library makes its parts itself.
-    """
+    """Add a note to the error about a predefined name that the program has not enabled; it says how to get the name."""
     if not isinstance(error, NameError) or not error.name:
         return
     statement = _find_statement(error.name)

@@ -37,7 +37,7 @@ def remember_source(file: str, source: str) -> None:
 
 
 class OwnLoader(SourceFileLoader):
-    """Loads a module of the program from the text that was first read from its file.
+    """The loader of a module of the program, which uses the text that was first read from the module's file.
 
     Args:
         module: The module.
@@ -63,12 +63,12 @@ class OwnLoader(SourceFileLoader):
 
 
 class OwnModules(PathFinder):
-    """Module finder for files, which stores a copy of each module of the user with the run.
+    """Module finder for files. For each module of the user, it stores a copy with the run.
 
     Args:
         run_folder: Where the copies are stored.
         known: Modules of the run that is repeated; they are loaded instead of the files.
-        brick_folder: Stands for the home folder of the brick; empty without a brick.
+        brick_folder: The folder in which modules of the brick's home folder are found; empty without a brick.
         drops_annotations: Whether annotations are left out, not evaluated.
     """
 

@@ -47,12 +47,13 @@ class _Given(NamedTuple):
 
 
 class Addresses:
-    """Replaces addresses in printed texts by numbers that are the same in every run.
+    """The numbers that stand for addresses in printed texts, and are the same in every run.
 
     Each object whose address is printed gets the next number of a fixed sequence. Only addresses that Python itself
-    writes are changed, after ` at 0x`, and the identifiers of threads. A number that cannot be an address stays as it
-    is. Which memory is used again depends on the machine: so a number stands for an object as long as that exists; a
-    later object at the same address gets another number.
+    writes are changed, after ` at 0x`, and the identifiers of threads. A number that cannot be an address stays
+    unchanged.
+    A number stands for an object as long as the object exists; a later object at the same address gets another number,
+    because it depends on the machine which memory is used again.
 
     Args:
         names: Returns the program's global names.
@@ -174,7 +175,7 @@ def _watch(one: object) -> Callable[[], object]:
 
 
 class OutputRecorder:
-    """Writes rows of output to the run folder, each with the time, the tick and the source line that wrote it."""
+    """A writer of rows of output to the run folder, each with the time, the tick and the source line that wrote it."""
 
     writer: OutputWriter
     """The file; set before the first row."""

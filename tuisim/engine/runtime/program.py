@@ -44,7 +44,7 @@ _FOLDER_CALLS = ("listdir", "scandir", "chdir")
 
 
 class HomeFolder:
-    """Makes paths in the brick's home folder work: their files are looked for beside the program.
+    """The replacement of functions that take paths: files of the brick's home folder are looked for beside the program.
 
     Args:
         own_folder: Returns the folder of the program.
@@ -107,7 +107,7 @@ MAX_REST_NS = NS_PER_S // 2
 def finish_moves(session: Session) -> str:
     """Run until all moves to a position or for a time have ended; then let the wheels come to rest.
 
-    Wheels are not waited for if a motor would turn on for ever.
+    If a motor would turn on for ever, do not wait for the wheels.
 
     Returns:
         Which motors would turn on for ever, in words; empty for none, and for motors without a driver.
@@ -188,7 +188,7 @@ def _add_caught(outcome: ProgramOutcome) -> ProgramOutcome:
 
 
 class ProgramRunner:
-    """Runs the program in this process: its prelude, its streams, its end.
+    """The part of the child process that runs the program, with its predefined names, its streams and its end.
 
     Args:
         session: The program's clock.
@@ -225,7 +225,7 @@ class ProgramRunner:
         self._loop_hook = loop_hook
 
     def prepare(self, prelude: str) -> None:
-        """Do what is the same for every program: replace streams and functions, and run the prelude with this name."""
+        """Prepare for any program: replace streams and functions, and run the prelude, which makes predefined names."""
         vars(builtins)[LOOP_HOOK] = self._loop_hook
         self._patch()
         vars(self._module)["__builtins__"] = builtins
@@ -297,7 +297,10 @@ class ProgramRunner:
         return ProgramOutcome(End.FINISHED)
 
     def _hold_at_end(self, outcome: ProgramOutcome) -> ProgramOutcome:
-        """Let the debugger pause if the program has ended before a requested instant; return the outcome."""
+        """If the program has ended before a requested instant, let the debugger pause. Return the outcome.
+
+        It is another outcome if the user stops the run during this pause.
+        """
         if self._session.debugger is None or self._session.stop_reason is not None:
             return outcome
         try:

@@ -76,7 +76,7 @@ class RawFile:
 
 
 class RawOutput:
-    """Passes on what is written to descriptors 1 and 2, such as by C code.
+    """A reader of bytes that are written to descriptors 1 and 2 directly, such as by C code.
 
     Args:
         stdout: Receives what was written to descriptor 1.

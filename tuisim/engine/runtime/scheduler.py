@@ -136,7 +136,7 @@ Queue = list[ScheduledThread] | deque[ScheduledThread]
 
 
 class Scheduler:
-    """Runs the program's threads, one at a time.
+    """The scheduler of the program's threads, of which it runs one at a time.
 
     Args:
         session: The program's clock.
@@ -398,7 +398,7 @@ class Scheduler:
 
 
 class SimulatedLock:
-    """Replaces `_thread.lock`. Only one thread runs at a time, so a flag and a queue are enough."""
+    """The replacement of `_thread.lock`. Only one thread runs at a time, so a flag and a queue are enough."""
 
     def __init__(self, scheduler: Scheduler) -> None:
         self._scheduler = scheduler

@@ -88,9 +88,9 @@ class Deadlock(RuntimeError):
 
 
 class Session:
-    """The clock of one run, and what happens when simulated time passes.
+    """The clock of one run. When simulated time passes, it runs the ticks that are due.
 
-    It is prepared without a run; time may pass after `connect`.
+    It is created without a run; time may pass only after `connect`.
 
     Args:
         sim: The simulation.
@@ -150,7 +150,14 @@ class Session:
     def connect(
         self, channel: Channel, steering: RunControl, limits: RunLimits, program_file: str
     ) -> None:
-        """Connect the session to the run that is about to begin; arguments as the attributes."""
+        """Connect the session to the run that is about to begin.
+
+        Args:
+            channel: The pipes to the host.
+            steering: The control of the run.
+            limits: The limits that end the run.
+            program_file: The file name of the program.
+        """
         self.channel = channel
         self.steering = steering
         self.limits = limits

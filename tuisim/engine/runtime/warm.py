@@ -78,7 +78,7 @@ def serve(socket_fd: int) -> Child | None:
 
 
 class ForkServer:
-    """Forks a child for each request of the host, and reports how children end.
+    """A server that forks a child for each request of the host, and reports how children end.
 
     Args:
         socket_fd: The socket to the host.

@@ -53,7 +53,8 @@ Apart = Callable[[Callable[[], bytes]], bytes | None]
 class LineCondition:
     """The condition of one line breakpoint.
 
-    It is evaluated in this process if that cannot run code of the program, otherwise in a copy of the process.
+    If the evaluation cannot run code of the program, it takes place in this process, otherwise in a copy of the
+    process.
 
     Args:
         text: An expression without syntax errors.
@@ -108,9 +109,9 @@ Value = Callable[[], float]
 
 
 class Watcher:
-    """Checks the breakpoints of a run that are not on a line: conditions on values, times, stalls and printed rows.
+    """All breakpoints of a run that are not on a line: conditions on values, times, stalls and printed rows.
 
-    Without such breakpoints, it takes no time.
+    The session calls it after ticks and at printed rows, only if it has such breakpoints.
 
     Args:
         session: The run.
@@ -133,7 +134,10 @@ class Watcher:
         return bool(self._on_row)
 
     def set(self, breaks: Iterable[Breakpoint]) -> None:
-        """Replace the breakpoints; those that were set before keep what they know of earlier values."""
+        """Replace the breakpoints.
+
+        A breakpoint that was set before remembers the earlier values of its column or sample.
+        """
         ticks = self._after_tick
         rows = self._on_row
         self._after_tick = {}
@@ -212,7 +216,10 @@ class Watcher:
 
 
 def _find_first(matches: Iterator[tuple[str, str]]) -> tuple[str, str] | None:
-    """Return the first match, or None. All checks are made, because each check follows its value over time."""
+    """Return the first match; None if there is none.
+
+    The iterator is read to its end, because each of its checks has to process each new value.
+    """
     met = [(text, value) for text, value in matches if value]
     return met[0] if met else None
 

@@ -230,7 +230,7 @@ class _Place:
 
 
 class Inspector:
-    """Reads the state of a paused run: its threads, stack, variables and watched expressions.
+    """A reader of the state of a paused run: its threads, stack, variables and watched expressions.
 
     Args:
         session: The run.

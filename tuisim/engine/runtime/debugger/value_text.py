@@ -42,7 +42,7 @@ def cut(text: str, most: int = MAX_CHARACTERS) -> str:
 
 
 class Renderer:
-    """Converts values to short texts until the time limit is reached.
+    """A converter of values to short texts, which stops when its time limit is reached.
 
     Args:
         seconds: CPU time for the program's own code, for all values together.

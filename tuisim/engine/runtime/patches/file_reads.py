@@ -41,7 +41,7 @@ def _get_argument(index: int, name: str, given: Sequence[Any], named: Mapping[st
 
 
 class FileReads:
-    """Records which files a program reads, by following the files that it opens."""
+    """A record of the files that a program reads. It follows the files that the program opens."""
 
     def __init__(self) -> None:
         self._folder: Path | None = None
@@ -56,7 +56,7 @@ class FileReads:
         self._noted = self._left_out = 0
 
     def patch(self) -> None:
-        """Replace the functions that open and rename files by ones that also record this."""
+        """Replace the functions that open and rename files by functions that also record the file."""
         real_open = builtins.open
         real_os_open = os.open
 

@@ -45,7 +45,7 @@ _WRITES = ("send", "sendto")
 
 
 class FileWaits:
-    """Makes calls that wait for sockets and the brick's files wait in simulated time: they poll instead of blocking.
+    """Functions that wait for sockets and files of the brick in simulated time: they poll instead of blocking.
 
     Args:
         session: The run.
@@ -150,7 +150,7 @@ class FileWaits:
             selector_class.select = self._build_select(selector_class.select)
 
     def _build_selector_class(self, name: str) -> Any:
-        """Return a replacement for the class with which a selector polls; it never waits, because the selector does."""
+        """Return the class of the object with which a selector polls. It never waits: the selector itself does."""
         real: Any = self._classes[name]
         return staticmethod(lambda: _AtOnce(self, real())) if name in ("poll", "epoll") else real
 
@@ -282,7 +282,7 @@ def _is_server(descriptor: int) -> bool:
 
 
 class _RefusedEpoll:
-    """Replaces `select.epoll`, which `selectors` opens and closes when it is imported."""
+    """The replacement of `select.epoll`, which programs cannot use; `selectors` opens and closes one at its import."""
 
     def __init__(self, *_arguments: Any) -> None:
         pass
@@ -311,11 +311,11 @@ def _convert_to_ns(timeout: Any, per_unit: int) -> int | None:
 
 
 class _Polling:
-    """Replaces an object of `select.poll`: it polls in the same way, but waits in simulated time.
+    """The replacement of an object of `select.poll`: it polls in the same way, but waits in simulated time.
 
     Args:
-        waits: How to wait.
-        real: The object that it replaces.
+        waits: Waits in simulated time.
+        real: The object that is replaced.
     """
 
     def __init__(self, waits: FileWaits, real: Any) -> None:
@@ -383,7 +383,7 @@ def _has_devices(selector: Any) -> bool:
 
 
 def _join_parts(real: Any) -> Callable[..., int]:
-    """Return a `sendmsg` that sends its parts with `send`, because an isolated program may only use that.
+    """Return a replacement of `sendmsg`, which isolated programs may not use: it sends its parts with `send`.
 
     With ancillary data, such as descriptors, it calls the real `sendmsg`, which is refused there.
     """
