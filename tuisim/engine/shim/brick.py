@@ -282,7 +282,7 @@ def board(session: DeviceSession) -> SimDevice:
 
 
 def tacho_of(session: DeviceSession, motor: Motor, port: str, kind: str) -> Tacho:
-    """Return the simulated driver that belongs to the class of a motor.
+    """Return the simulated driver of a motor; the class of the motor determines the class of the driver.
 
     Args:
         session: The run.

@@ -140,7 +140,7 @@ def font_size(name: str) -> tuple[int, int] | None:
 
 
 class Terminal:
-    """Writes text to the brick's screen, and sets its font."""
+    """The text screen of the brick, on which programs print, and its font."""
 
     def __init__(self, session: DeviceSession, screen: Screen) -> None:
         self._session = session

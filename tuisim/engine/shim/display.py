@@ -43,7 +43,7 @@ VARIABLE_INFO = struct.pack(
 
 
 class Screen:
-    """Records the contents of the brick's screen, images and text, each time they change."""
+    """The recorder of the brick's screen: it records images and texts each time they change."""
 
     def __init__(self, session: DeviceSession) -> None:
         self._session = session

@@ -37,7 +37,7 @@ def led_name(name: str) -> str:
 
 
 class Lights:
-    """All LEDs of the brick; records each change of their brightness."""
+    """All LEDs of the brick. Each change of their brightness is recorded."""
 
     def __init__(self, session: DeviceSession) -> None:
         self.session = session

@@ -301,7 +301,7 @@ class TachoMotor(SignedTacho):
         self._begun()
 
     def _begun(self) -> None:
-        """Handle rare cases after the start of a move: ramps, which `run-direct` ignores, and a target speed of 0."""
+        """Handle rare cases after the start of a move: ramps, except for `run-direct`, and a target speed of 0."""
         if self._ramps and not self._direct:
             self._ramp()
         motor = self._motor

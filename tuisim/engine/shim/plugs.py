@@ -53,7 +53,7 @@ def find_port(address: object) -> str:
 
 
 class Plugs:
-    """Plugs missing parts into the robot of a run when the program looks for them.
+    """The robot's parts that a program needs and the robot lacks: they are plugged in when the program looks for them.
 
     Args:
         built: The brick.
@@ -105,7 +105,7 @@ class Plugs:
             device.is_opened = True
 
     def refuse_value(self, path: str, number: int) -> NotSimulated | None:
-        """Return the error for reading a value that the sensor at a path has in no mode; None if it has it."""
+        """Return the error for reading a value that the sensor at a path has in no mode; None if a mode has it."""
         found = (
             sensor for port, sensor in self._built.sensors.items() if self.find_path(port) == path
         )
@@ -142,7 +142,10 @@ class Plugs:
         return True
 
     def make_wheels(self, left: str, right: str, part: str) -> None:
-        """Plug in two motors as the robot's wheels; if a wheel has turned already, as motors without wheels.
+        """Plug in two motors as the robot's wheels.
+
+        If a wheel has turned already, they will be plugged in later as motors without wheels, when the program uses
+        them.
 
         Args:
             left, right: Their ports.

@@ -249,7 +249,10 @@ class ColorDevice(LegoSensor):
         return self.channels()
 
     def switch(self, mode: str) -> None:
-        """Switch to a mode, which at first still returns the values from when the sensor was last in it."""
+        """Switch to a mode.
+
+        For a short time, the sensor then still returns the values from the end of the last time in this mode.
+        """
         if self._stale_ns and not self._session.free:
             self._left_values[self.mode] = self.modes[self.mode].measure()
             self._old_until_ns = self._session.now + self._stale_ns

@@ -124,7 +124,7 @@ class Mixer:
 
 
 class Loudspeaker:
-    """Passes sounds to the session, which records them and lets their time pass."""
+    """The loudspeaker of the brick. It passes sounds to the session, which records them and lets their time pass."""
 
     def __init__(self, session: DeviceSession) -> None:
         self._session = session

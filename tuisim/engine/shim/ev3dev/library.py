@@ -23,7 +23,7 @@ from tuisim.engine.shim.waits import Wait, waits_for
 
 
 class Patience:
-    """Remembers what the library waits for while it calls `poll`: the call itself does not say it."""
+    """Whether the library only waits for motors to stop while it calls `poll`; the call itself does not tell."""
 
     def __init__(self) -> None:
         self.until_motors_stop = 0
@@ -47,7 +47,7 @@ class Patience:
 
 
 class MotorPoll:
-    """Replaces `select.poll` in the library: waits in simulated time until a motor ends a move."""
+    """The replacement of `select.poll` in the library: it waits in simulated time until a motor ends a move."""
 
     def __init__(self, session: DeviceSession, patience: Patience) -> None:
         self._session = session
@@ -76,8 +76,8 @@ def connect(
     Args:
         session: The run.
         brick: The devices.
-        plugs: Plugs in what is missing.
-        hint: Returns what to add to the error about a missing device of a class.
+        plugs: Plugs in a missing device.
+        hint: Returns a hint for the error about a missing device of a class.
     """
     import ev3dev2
 
@@ -269,7 +269,7 @@ def _patch_tank(motor: Any, plugs: Plugs) -> None:
 
 
 def refuse_values(sensor: Any, plugs: Plugs) -> None:
-    """Patch `value` of a class of sensors: for a number that the sensor has in no mode, it raises NotSimulated."""
+    """Patch `value` of a class of sensors: it raises NotSimulated for a value that the sensor has in no mode."""
     read = sensor.value
 
     @wraps(read)

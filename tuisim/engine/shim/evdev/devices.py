@@ -206,7 +206,7 @@ class InputDevice:
         return changes(before, now, self._session.now)
 
     def read_one(self) -> InputEvent | None:
-        """Return the next event, or None if there is none, and let the time of a read pass.
+        """Return the next event; None if there is none. The time of a read passes.
 
         A button that was pressed and released since the last read is not noticed.
         """
@@ -215,10 +215,10 @@ class InputDevice:
         return self._events.pop(0) if self._events else None
 
     def read(self) -> Iterator[InputEvent]:
-        """Return the events since the last read, and let the time of a read pass.
+        """Return the events since the last read. The time of a read passes.
 
         Raises:
-            BlockingIOError: there are none.
+            BlockingIOError: there is no event.
         """
         first = self.read_one()
         if first is None:
@@ -275,7 +275,7 @@ class InputDevice:
 
 
 class UInput:
-    """Refuses to create an input device.
+    """The class of evdev with which programs create input devices, which is not simulated.
 
     Raises:
         NotSimulated: always.
@@ -286,7 +286,7 @@ class UInput:
 
 
 class _Looked:
-    """Remembers whether the program has listed the input devices."""
+    """Whether the program has listed the input devices."""
 
     def __init__(self) -> None:
         self.for_devices = False

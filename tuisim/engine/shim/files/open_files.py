@@ -173,8 +173,9 @@ class DeviceIO(_real_file):
 def _in_turn(kind: Any) -> Any:
     """Return a subclass of a buffered file class whose methods only one thread of the program can run at a time.
 
-    The class's own lock knows nothing of the program's simulated threads: a thread that waits for it would wait for
-    ever if the thread inside lets time pass in the driver.
+    The class's own lock would block the process for ever: the thread that has the lock may wait for simulated time, and
+    no
+    time passes while another thread blocks.
     """
 
     def method(name: str) -> Any:

@@ -117,7 +117,7 @@ def _inode(entry: Folder | DeviceFile) -> int:
 
 
 class FilePatches:
-    """Replaces the functions of Python that open, read and list files, so that they also work on device files.
+    """Replacements of Python's functions that open, read and list files, which also work on device files.
 
     Args:
         tree: The device files.
@@ -454,11 +454,11 @@ def _names(tree: DeviceTree, path: Any) -> tuple[str, ...] | None:
 
 
 def _branching(real: type, choose: Callable[..., Any]) -> type:
-    """Return a class that replaces one of Python's.
+    """Return a class that replaces a class of Python; programs can derive from it, and test for it with `isinstance`.
 
-    A call of it returns what `choose` returns, or a real object if that is None.
-
-    Programs can test for it and derive from it as from the real class.
+    A call of the class returns the result of `choose`. If that is None, or the arguments are wrong, it returns an
+    object of
+    the real class.
     """
 
     class Branching(type):

@@ -11,7 +11,7 @@ from tuisim.engine.shim.pybricks.brick import whole
 
 
 class Animation:
-    """Shows frames one after another in a background thread, until it is stopped or shows other frames."""
+    """Frames that a background thread shows one after another, until they are stopped or replaced by others."""
 
     _number = 0
 

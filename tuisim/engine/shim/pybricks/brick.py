@@ -42,8 +42,8 @@ class Awaited:
     """The awaitable object that a blocking call returns while a task runs.
 
     Args:
-        waiting: What takes the time.
-        stop: Ends what the call has begun if the task that awaits it is closed.
+        waiting: Yields the times until which the call waits.
+        stop: Ends the motion or sound that the call has begun, if the task that awaits it is closed.
     """
 
     def __init__(self, waiting: Waiting[Any], stop: Callable[[], object]) -> None:

@@ -37,10 +37,10 @@ MOST_PIXELS = 4_000_000
 
 
 def paint_of(color: Any) -> Rgb | None:
-    """Return red, green and blue of a colour; None, with which nothing is drawn, for None.
+    """Return red, green and blue of a colour; None for None, with which nothing is drawn.
 
     Raises:
-        TypeError: it is not a colour.
+        TypeError: `color` is not a colour.
     """
     if color is None:
         return None

@@ -25,7 +25,7 @@ class Mailbox(Connected):
     """A named value that is sent from one end of a connection to the other.
 
     Args:
-        name: The same at both ends.
+        name: The name of the mailbox, which is the same at both ends.
         connection: A server or a client.
         encode, decode: Turn a value into bytes and back; None if values are bytes.
     """

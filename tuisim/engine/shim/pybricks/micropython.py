@@ -82,8 +82,8 @@ class MicroPythonFinder:
     """Module finder for MicroPython's modules.
 
     Args:
-        of_python: As `OF_PYTHON`.
-        refused: As `BUILT_IN`.
+        of_python: The module of Python that has the same functions, by MicroPython's name, such as `utime`.
+        refused: Modules that a program can import but not use, with the hardware or feature that they are for.
     """
 
     def __init__(self, of_python: Mapping[str, str], refused: Mapping[str, Hardware]) -> None:
@@ -109,7 +109,7 @@ class MicroPythonFinder:
         )
 
     def exec_module(self, module: types.ModuleType) -> None:
-        """Add the names of Python's own module to MicroPython's form of it."""
+        """Add the names of a module of Python to the module of MicroPython that corresponds to it."""
         if (source := self._of_python.get(module.__name__)) is not None:
             names = vars(import_module(source))
             vars(module).update(
@@ -201,7 +201,7 @@ def _opt_level(level: int | None = None) -> int | None:
 
 
 def _lenient(real: Callable[..., Any], fitted: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that calls `real`, Python's own one, and `fitted` if that raises ValueError."""
+    """Return a function that calls `real`, a function of Python; if it raises ValueError, call `fitted` instead."""
 
     @wraps(real)
     def function(*given: Any, **named: Any) -> Any:

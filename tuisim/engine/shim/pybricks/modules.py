@@ -44,7 +44,7 @@ Names = dict[str, dict[str, Any]]
 
 
 def _read_names(version: str) -> Names:
-    """Return what is defined in the modules of a folder of `engine/shim/names`, by module and name."""
+    """Return the names and values in the modules of a folder of `engine/shim/names`: a dictionary for each module."""
     package = import_module(f"tuisim.engine.shim.names.{version}")
     prefix = f"{package.__name__}."
     return {
@@ -58,7 +58,7 @@ def _read_names(version: str) -> Names:
 
 
 def read_version_2() -> Names:
-    """Return what each module of Pybricks 2.0 defines, by module and name."""
+    """Return the names and values of each module of Pybricks 2.0: a dictionary for each module."""
     names = _read_names("version_2")
     names["pybricks.iodevices"] |= refused_classes("pybricks.iodevices", IO_DEVICES)
     names["pybricks.nxtdevices"] |= refused_classes("pybricks.nxtdevices", NXT_DEVICES)
@@ -66,7 +66,7 @@ def read_version_2() -> Names:
 
 
 def read_version_4(hub: str = "") -> Names:
-    """Return what each module of Pybricks 4 defines, by module and name.
+    """Return the names and values of each module of Pybricks 4: a dictionary for each module.
 
     Args:
         hub: The robot's hub, one of `HUBS`; empty for the EV3.
@@ -97,7 +97,7 @@ def _name_later(owner: str, name: str) -> str:
 
 
 def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Names:
-    """Return what each module of the library defines in a run.
+    """Return the names and values that each module of the library has in a run: a dictionary for each module.
 
     It also sets the hints for names of other versions of the library, and the version of the interpreter.
 

@@ -60,7 +60,7 @@ class DriveBase(Connected):
         self.reset()
 
     def _take_place(self, earlier: DriveBase) -> None:
-        """Stop the earlier drive base, whose motors this one may use."""
+        """Stop the earlier drive base, because this one may use the same motors."""
         earlier.stop()
 
     def tell(self, call: Call, *values: float | None) -> None:

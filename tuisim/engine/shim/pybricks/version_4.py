@@ -80,7 +80,10 @@ class Motor(motor.Motor):
             self.control.pid(*kind.compute_gains(tolerance)[:2])
 
     def _command(self) -> None:
-        """Count a command. If a drive base moves or holds the motor, that lets both of its motors coast."""
+        """Count a command.
+
+        If a drive base moves or holds the motor, stop the drive base, so that both its motors coast.
+        """
         self.brick.command()
         guide = self.simulated.guide
         if (
@@ -424,7 +427,7 @@ def run_task(task: Any = None) -> Any:
 
 
 class multitask:  # noqa: N801 - as the library names it
-    """Runs several tasks at the same time when a task awaits it."""
+    """Several tasks that run at the same time when a task awaits this object."""
 
     def __init__(self, *tasks: Any, race: bool = False) -> None:
         self._tasks = [_steps(task) for task in tasks]

@@ -80,7 +80,7 @@ class Streams:
 
 
 def refuse(what: str, hint: str) -> Exception:
-    """Return the error for something that is not simulated; Python's modules treat it as that of a missing program."""
+    """Return the error for a feature that is not simulated. It is an OSError, like that for a missing program."""
     return refused_as(OSError, f"{what} is not part of the simulated brick", hint)
 
 
@@ -127,7 +127,7 @@ def _name_instead(call: Call) -> str:
 
 
 class Shell:
-    """Runs the simulated commands of the brick's shell."""
+    """The simulated shell of the brick, with its commands."""
 
     def __init__(self, session: DeviceSession, terminal: Terminal, mixer: Mixer) -> None:
         self.session = session
@@ -188,7 +188,10 @@ class Running:
     """Commands of the shell that run in the background.
 
     Args:
-        several: Whether more sounds may follow the first one, so that progress must not depend on calls of `poll`.
+        session: The run.
+        steps: The steps of the commands, each of which yields how long it takes.
+        several: Whether more sounds may follow the first one. A thread then runs them, even if the program never calls
+            `poll`.
     """
 
     def __init__(self, session: DeviceSession, steps: Steps, several: bool = False) -> None:

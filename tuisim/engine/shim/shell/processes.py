@@ -66,7 +66,7 @@ class OutPipe(io.RawIOBase):
 
 
 class Process:
-    """Replaces `subprocess.Popen`, with the same arguments and methods, for commands of the brick.
+    """The replacement of `subprocess.Popen` for commands of the brick, with the same arguments and methods.
 
     In each run the program gets a subclass in which `system` is set.
     """
@@ -292,7 +292,7 @@ def _sink(target: Any, own: Sink) -> Sink:
 
     Args:
         target: As of `stdout` in `subprocess.Popen`, but no pipe.
-        own: The function for None.
+        own: The function that is returned if the target is None.
     """
     if target is None:
         return own

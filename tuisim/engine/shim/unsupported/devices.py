@@ -148,7 +148,7 @@ def _told(where: str, kind: Hardware, name: str) -> tuple[str, str]:
 
 
 def foreign_mode(mode: str, port: str, plugged: str) -> NotSimulated | None:
-    """Return the error for a mode that only a sensor has which is not simulated; None for any other mode.
+    """Return the error for a mode that belongs to a sensor that is not simulated; None for any other mode.
 
     Args:
         mode: The mode, which the sensor on the port does not have.

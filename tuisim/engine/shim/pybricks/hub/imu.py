@@ -145,7 +145,7 @@ class IMU(Accelerometer):
         """Set the thresholds of rest and the corrections; without arguments, return them. They change no measurement.
 
         Raises:
-            ValueError: a correction or a scale is far from a whole turn.
+            ValueError: `heading_correction` or a scale, both in degrees per turn, is too far from 360.
         """
         given = (
             angular_velocity_threshold,
