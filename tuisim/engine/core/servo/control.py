@@ -117,17 +117,9 @@ class Controller:
         then_us = now_us - self._paused_us
         return self.trajectory.find_segment(then_us).find_milli(then_us) - self._behind_milli
 
-    def list_millis(self, times_us: range) -> list[int]:
-        """Return where the motion should be at several times of one segment, in thousandths of a count."""
-        return [self.milli(time_us) for time_us in times_us]
-
     def find_target(self, now_us: int, _motor: object) -> int:
         """Return the position that a motor should have, in half thousandths of a count; see `motor.Guide`."""
         return 2 * self.milli(now_us)
-
-    def list_targets(self, times_us: range, _motor: object) -> list[int]:
-        """Return the positions that a motor should have at several times of one segment; see `motor.Guide`."""
-        return [2 * milli for milli in self.list_millis(times_us)]
 
     def rate(self, now_us: int, _motor: object = None) -> int:
         """Return the rate that the motion should have, in counts per second; 0 while the controller is passive."""

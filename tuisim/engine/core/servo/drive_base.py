@@ -380,15 +380,6 @@ class DriveBase:
         total, difference = self._millis
         return total + difference if motor is self.left else total - difference
 
-    def list_targets(self, times_us: range, motor: ServoMotor) -> list[int]:
-        """Return the positions that a motor should have at several times of one segment; see `motor.Guide`."""
-        both = zip(
-            self.distance.list_millis(times_us), self.heading.list_millis(times_us), strict=True
-        )
-        if motor is self.left:
-            return [total + difference for total, difference in both]
-        return [total - difference for total, difference in both]
-
     def rate(self, now_us: int, motor: ServoMotor) -> float:
         """Return the rate that a motor should have, in counts per second."""
         total = self.distance.rate(now_us)

@@ -49,9 +49,6 @@ class Guide(Protocol):
     def find_target(self, now_us: int, motor: ServoMotor) -> int:
         """Return the position that the motor should have at a time, in half thousandths of a count."""
 
-    def list_targets(self, times_us: range, motor: ServoMotor) -> list[int]:
-        """Return the positions that the motor should have at several times of one segment of its trajectory."""
-
     def rate(self, now_us: int, motor: ServoMotor) -> float:
         """Return the rate that the motor should have, in counts per second."""
 
@@ -388,7 +385,7 @@ class ServoMotor:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
         tick_us = self._tick_us
         times_us = range((self._tick + 1) * tick_us, (self._tick + ticks + 1) * tick_us, tick_us)
-        halves = self._guide.list_targets(times_us, self)
+        halves = [self._guide.find_target(time_us, self) for time_us in times_us]
         turns = [
             self._convert_to_deg(after - before)
             for before, after in pairwise([self._course, *halves])
