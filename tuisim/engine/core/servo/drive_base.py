@@ -10,7 +10,6 @@ from dataclasses import replace
 from math import pi
 from typing import TYPE_CHECKING
 
-from tuisim.engine.core.motors import FOREVER
 from tuisim.engine.core.servo.control import Controller, Ending
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.servo.settings import (
@@ -300,9 +299,6 @@ class DriveBase:
 
     def drive(self, now_us: int, speed_mm_s: int, turn_rate_dps: int) -> None:
         """Begin to drive at a speed and a rate of turn, until the next command."""
-        runs = self.active and all(
-            motor.mode == FOREVER and not motor.blocked_ticks for motor in self.motors
-        )
         self._begin(now_us)
         distance = self.distance
         heading = self.heading
@@ -315,9 +311,7 @@ class DriveBase:
         )
         distance.run(now_us, self._measure_total, ours.counts(speed_mm_s), accelerations[0])
         heading.run(now_us, self._measure_difference, other.counts(turn_rate_dps), accelerations[1])
-        self._at_us = -1
-        if not runs:
-            self._take(Ending.HOLD)
+        self._take(Ending.HOLD)
 
     def stop(self, now_us: int, duty: int | None) -> None:
         """Stop controlling the motors, and run them with a constant power; `duty` is as of `ServoMotor.run_freely`."""

@@ -208,11 +208,6 @@ class ServoMotor:
             guide: The guide; None for the motor's own controller, which has just got its trajectory.
             ending: What the motor does at the end of the motion.
         """
-        if guide is not None and guide is self._guide:
-            self._ending = ending
-            self.mode = FOREVER if guide.end_us is None else POSITION
-            self.blocked_ticks = 0
-            return
         if self._guide is None:
             self._course = round(self.position_deg * self.sign * HALVES_PER_DEG)
         if guide is not None:
