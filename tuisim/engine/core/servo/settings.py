@@ -216,10 +216,9 @@ def find_steady_dps(kind: str, actuation: int) -> float:
         from tuisim.engine.core.servo.hub_motors import PLANTS
 
         model = PLANTS[kind]
-    ideal_dps = BATTERY_V * abs(actuation) / FULL_ACTUATION / model.back_emf_v_s * 180 / pi
+    ideal_dps = BATTERY_V * actuation / FULL_ACTUATION / model.back_emf_v_s * 180 / pi
     friction_v = model.resistance_ohm * model.friction_nm / model.torque_nm_per_a
-    speed = max(0.0, ideal_dps - friction_v / model.back_emf_v_s * 180 / pi)
-    return speed if actuation >= 0 else -speed
+    return max(0.0, ideal_dps - friction_v / model.back_emf_v_s * 180 / pi)
 
 
 def combine_settings(motor: ControlSettings, counts_per_unit: float) -> ControlSettings:
