@@ -141,9 +141,9 @@ class ServoMotor:
         return self._guide
 
     @property
-    def follows_itself(self) -> bool:
-        """Whether the motor follows its own controller, not a drive base."""
-        return self._guide is self.control
+    def follows_base(self) -> bool:
+        """Whether the motor follows a drive base, not its own controller."""
+        return self._guide not in (None, self.control)
 
     @property
     def milli(self) -> int:

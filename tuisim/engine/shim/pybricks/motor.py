@@ -99,8 +99,7 @@ class DCMotor(Connected):
             OSError: a drive base moves or holds the motor.
         """
         self.brick.command()
-        motor = self.simulated
-        if motor.guide is not None and not motor.follows_itself:
+        if self.simulated.follows_base:
             raise not_permitted()
 
     def _run_freely(self, actuation: int | None) -> None:

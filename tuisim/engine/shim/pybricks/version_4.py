@@ -85,12 +85,7 @@ class Motor(motor.Motor):
         If a drive base moves or holds the motor, stop the drive base, so that both its motors coast.
         """
         self.brick.command()
-        guide = self.simulated.guide
-        if (
-            guide is not None
-            and not self.simulated.follows_itself
-            and DriveBase.current is not None
-        ):
+        if self.simulated.follows_base and DriveBase.current is not None:
             DriveBase.current.stop()
 
     def dc(self, duty: float) -> None:
