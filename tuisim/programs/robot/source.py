@@ -116,8 +116,7 @@ def find_missing_module(program: Program, modules: dict[str, Module]) -> str:
     The result is empty if there is no such module.
     """
     known = {"", *modules, *LIBRARIES, *SPIKE_MODULES, *sys.stdlib_module_names}
-    named = (name.split(".")[0] for module in modules.values() for name in _list_imported(module))
-    for name in dict.fromkeys(named):
+    for name in dict.fromkeys(name.split(".")[0] for name in _list_all_imported(modules)):
         if name not in known and (folder := find_module_folder(name, own_folder(program))):
             return f"it imports {name}, which is in {folder}: PYTHONPATH={folder} finds it"
     return ""
@@ -175,18 +174,28 @@ def _list_imported(module: Module) -> Iterator[str]:
         match node:
             case ast.Import(names=names):
                 for alias in names:
-                    parts = alias.name.split(".")
-                    yield from (".".join(parts[:end]) for end in range(1, len(parts) + 1))
+                    yield from _list_packages(alias.name)
             case ast.ImportFrom(module=name, level=level, names=names):
                 base = module.absolute(name, level)
-                parts = base.split(".") if base else []
-                yield from (".".join(parts[:end]) for end in range(1, len(parts) + 1))
+                if base:
+                    yield from _list_packages(base)
                 yield from (f"{base}.{alias.name}" if base else alias.name for alias in names)
+
+
+def _list_packages(name: str) -> Iterator[str]:
+    """Yield the names of the packages in which a module is, the outermost first, and then its own name."""
+    parts = name.split(".")
+    yield from (".".join(parts[:end]) for end in range(1, len(parts) + 1))
+
+
+def _list_all_imported(modules: Mapping[str, Module]) -> list[str]:
+    """Return the names in the imports of several modules, in their order."""
+    return [name for module in modules.values() for name in _list_imported(module)]
 
 
 def is_for_other_hub(modules: dict[str, Module]) -> bool:
     """Return whether a program or one of its own modules imports one that only LEGO's Python for SPIKE hubs has."""
-    names = {name for module in modules.values() for name in _list_imported(module)} - {*modules}
+    names = {*_list_all_imported(modules)} - {*modules}
     return bool(names & {*SPIKE_MODULES}) and not names & {
         *EV3_MODULES,
         HUB_DEVICES,
@@ -200,22 +209,17 @@ EV3_MODULES = frozenset({"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3de
 
 def find_hub(modules: dict[str, Module]) -> str:
     """Return the hub, one of `HUBS`, for which a program or one of its own modules is; empty for the EV3 or no hub."""
-    names = {name: None for module in modules.values() for name in _list_imported(module)}
-    if not names.keys().isdisjoint(EV3_MODULES):
+    names = _list_all_imported(modules)
+    if not EV3_MODULES.isdisjoint(names):
         return ""
-    named = [hub for name in names if (hub := name.removeprefix("pybricks.hubs.")) in HUBS]
-    if named:
-        return named[0]
-    if HUB_DEVICES in names:
-        return "PrimeHub"
-    return ""
+    usual = "PrimeHub" if HUB_DEVICES in names else ""
+    named = (name.removeprefix("pybricks.hubs.") for name in names)
+    return next((hub for hub in named if hub in HUBS), usual)
 
 
 def find_library(modules: dict[str, Module]) -> Library | None:
     """Return the library for a brick that a program or one of its own modules imports; None for none."""
-    names = {
-        name.split(".")[0] for module in modules.values() for name in _list_imported(module)
-    } & {*LIBRARIES}
+    names = {name.split(".")[0] for name in _list_all_imported(modules)} & {*LIBRARIES}
     if PYBRICKS in names:
         return Library.PYBRICKS
     return Library.EV3DEV2 if names else None
