@@ -98,6 +98,21 @@ def test_a_drive_base_may_be_made_in_each_turn_of_a_loop(run: Run) -> None:
     assert_is_replayed(done)
 
 
+ENDINGS = """\
+from pybricks.ev3devices import Motor
+from pybricks.parameters import Port, Stop
+motor = Motor(Port.B)
+for then in (Stop.NONE, Stop.COAST_SMART, Stop.BRAKE_SMART):
+    motor.run_angle(500, 90, then=then)
+"""
+
+
+def test_each_ending_of_a_move_is_replayed(run: Run) -> None:
+    done = run(ENDINGS, profile="pybricks4", prelude="none")
+    assert done.ended.summary == ""
+    assert_is_replayed(done)
+
+
 # What no program can have given
 
 

@@ -15,6 +15,7 @@ from tuisim.engine.core.commands.calls import MAX_NUMBER, MAX_VALUES, Call, Valu
 from tuisim.engine.core.motors import MEDIUM_MAX_SPEED_DPS
 from tuisim.engine.core.plugged import PART_CODES
 from tuisim.engine.core.profile import MotorLaw
+from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.settings import FULL_ACTUATION
 
 if TYPE_CHECKING:
@@ -112,7 +113,7 @@ SERVO_LAWS = frozenset({MotorLaw.PYBRICKS, MotorLaw.PYBRICKS_4})
 _ANY: Range = -MAX_NUMBER, MAX_NUMBER
 _POSITIVE: Range = 0.0, MAX_NUMBER
 _FLAG: Range = 0.0, 1.0
-_ENDING: Range = 0.0, 3.0
+_ENDING: Range = 0.0, float(max(Ending))
 _SPEED: Range = -MEDIUM_MAX_SPEED_DPS, MEDIUM_MAX_SPEED_DPS
 _DUTY: Range = -float(FULL_ACTUATION), float(FULL_ACTUATION)
 _INT: Range = -float(2**31), float(2**31)
