@@ -64,9 +64,7 @@ MODULES: Mapping[str, Hardware] = {
 """Modules that can be imported but not used, with all that is in them."""
 
 VERSION_4: Mapping[str, tuple[str, ...]] = {
-    "pybricks.iodevices": (
-        *("AnalogSensor", "I2CDevice", "LUMPDevice", "LWP3Device", "PUPDevice", "UARTDevice"),
-    ),
+    "pybricks.iodevices": (*IO_DEVICES, "LWP3Device", "PUPDevice"),
     "pybricks.messaging": ("BLERadio",),
     "pybricks.tools": ("AppData",),
     "pybricks.robotics": ("Car", "SpikeBase"),
