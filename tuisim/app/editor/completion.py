@@ -40,7 +40,7 @@ _SENTENCE_END = re.compile(r"\.(?= [A-Z])")
 _COURSE = "from tuisim.engine.shim.names.course import ColorSensor\n"
 _PYBRICKS = "tuisim.engine.shim.pybricks."
 _SIMULATED_NAMES = frozenset(
-    {"KIND", "ENDINGS", "SETTINGS_WHILE_ACTIVE", "brick", "device_port", "port", "sign"}
+    {"KIND", "STOPS", "SETTINGS_WHILE_ACTIVE", "brick", "device_port", "port", "sign"}
 )
 """Names that only the simulated classes of Pybricks have."""
 _GENERAL = frozenset({"ev3dev2", "ev3dev2.sensor"})

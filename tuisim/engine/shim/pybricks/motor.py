@@ -55,19 +55,19 @@ def gear_ratio(gears: Any) -> float:
     return ratio
 
 
-def ending_of(known: Mapping[Any, Ending], then: Any) -> Ending:
+def ending_of(stops: tuple[type[Enum], ...], then: Any) -> Ending:
     """Return the ending of a move that a member of the library's `Stop` stands for.
 
     Args:
-        known: The endings by member.
+        stops: The classes of such members.
         then: The member.
 
     Raises:
         TypeError: it is not such a member.
     """
-    if not isinstance(then, Enum) or then not in known:
+    if not isinstance(then, stops):
         raise TypeError(f"a Stop is needed, not {then!r}")
-    return known[then]
+    return Ending(then.value)
 
 
 class DCMotor(Connected):
@@ -122,8 +122,8 @@ class DCMotor(Connected):
 class Motor(DCMotor):
     """A large or medium motor."""
 
-    ENDINGS: ClassVar[Mapping[Any, Ending]] = {stop: Ending(stop.value) for stop in Stop}
-    """What the motor does after a move, by the member of the library's `Stop`."""
+    STOPS: ClassVar[tuple[type[Enum], ...]] = (Stop,)
+    """The classes whose members say what the motor does after a move."""
     log = refused_part("Motor", "log", LOGGER)
 
     def __init__(
@@ -254,7 +254,7 @@ class Motor(DCMotor):
 
     def _begin(self, then: Stop, wait: bool, call: str) -> None:
         motor = self.simulated
-        self._follow(ending_of(self.ENDINGS, then))
+        self._follow(ending_of(self.STOPS, then))
         if wait:
             waiting = self.brick.until_done(lambda now_us: self._done(now_us, call), motor.control)
             return self.brick.finish(waiting, self.stop)
@@ -305,7 +305,7 @@ class Motor(DCMotor):
         )
         angle = self.angle()
         if motor.control.stalled or not self.brick.in_task:
-            self._rest(ending_of(self.ENDINGS, then))
+            self._rest(ending_of(self.STOPS, then))
         return angle
 
     def _rest(self, ending: Ending) -> None:

@@ -95,7 +95,7 @@ class DriveBase(Connected):
         *,
         wait: bool = True,
     ) -> None:
-        ending = ending_of(self.left.ENDINGS, then)
+        ending = ending_of(self.left.STOPS, then)
         self.brick.command()
         try:
             self.tell(Call.MOVE_BASE, distance_mm, angle_deg, ending)

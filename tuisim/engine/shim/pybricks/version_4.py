@@ -5,13 +5,11 @@ In a task, which `run_task` runs, a blocking call immediately returns an object 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import atan2, degrees, hypot, radians
-from typing import Any, ClassVar
+from typing import Any
 
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.commands.servo import SETTINGS
-from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.motor import MAX_WINDOW_MS
 from tuisim.engine.core.servo.settings import (
     BATTERY_V,
@@ -55,10 +53,7 @@ class Stop(NamedEnum):
 class Motor(motor.Motor):
     """A motor under version 4 of Pybricks."""
 
-    ENDINGS: ClassVar[Mapping[Any, Ending]] = {
-        **motor.Motor.ENDINGS,
-        **{stop: Ending(stop.value) for stop in Stop},
-    }
+    STOPS = (*motor.Motor.STOPS, Stop)
     model = refused_part("Motor", "model", MODEL)
 
     def __init__(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.shim.pybricks import motor, robotics
 from tuisim.engine.shim.pybricks.parameters import Stop
 from tuisim.engine.shim.pybricks.tools import wait
@@ -14,7 +15,7 @@ class Motor(motor.Motor):
         """Stop the motor: it coasts, brakes or holds."""
         if not isinstance(stop_type, Stop):
             raise ValueError("Invalid Argument")
-        self._rest(self.ENDINGS[stop_type])
+        self._rest(Ending(stop_type.value))
 
     def stalled(self) -> bool:
         """Return whether something blocks the motor."""
