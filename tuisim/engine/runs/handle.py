@@ -73,6 +73,8 @@ from tuisim.engine.runs.views import TelemetryView, open_views
 STUCK_AFTER_S = 0.3
 """Time after a stop at which a child that has not ended is killed; see `RunHandle.time_used_s`."""
 ASK_AGAIN_S = 0.05
+WAIT_S = 0.15
+"""Interval at which `RunHandle.wait` checks a child that sends nothing, unless the child has been asked to stop."""
 LOOK_EVERY_S = 0.03
 """Interval of checks of a running child's recording: most runs are over before the first check."""
 ENDED_CHILD_S = 0.2
@@ -460,7 +462,9 @@ class RunHandle:
         until = None if timeout_s is None else time.monotonic() + timeout_s
         while self.ended is None:
             now = time.monotonic()
-            rest = ASK_AGAIN_S if until is None else min(ASK_AGAIN_S, until - now)
+            rest = WAIT_S if self._stop_at is None else ASK_AGAIN_S
+            if until is not None:
+                rest = min(rest, until - now)
             if rest <= 0:
                 break
             if (
