@@ -181,6 +181,10 @@ async def test_buttons_press_the_keys_that_go_back_and_forth(serve: Serve, tmp_p
             await page.js(f"document.querySelector('[data-key={key}]').click()")
         # The terminal tells the app of its size, too.
         assert (await page.js("typed")).endswith("<,\x1b[F!")
+        await page.js("document.getElementById('ctrl').click()")
+        for letter in "pp":
+            await page.do("Input.insertText", text=letter)
+        await page.until("typed.endsWith('\\x10p')")
         # All buttons are in sight, and large enough for a finger.
         least = "Math.min(...[...document.querySelectorAll('#keys button')].map((button) => button.clientWidth))"
         assert await page.js(least) >= 44

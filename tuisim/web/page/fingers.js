@@ -56,6 +56,7 @@ class Fingers {
       const { act, key, text } = target.dataset;
       if (act) say("act", act);
       if (key) this.terminal.input(KEYS[key]);
+      if (target.id === "ctrl") target.setAttribute("aria-pressed", String(target.ariaPressed !== "true"));
       if (text) this.setText((this.chosenPx || this.terminal.options.fontSize) + Number(text));
       const opens = target.getAttribute("aria-controls");
       for (const menu of bar.querySelectorAll("menu")) {
@@ -206,5 +207,14 @@ class Fingers {
 function apart(first, second) {
   return Math.hypot(first.clientX - second.clientX, first.clientY - second.clientY);
 }
+
+// The button Ctrl is for the next letter.
+holdCtrl = (data) => {
+  const button = document.getElementById("ctrl");
+  const [kind, text] = JSON.parse(data);
+  if (button.ariaPressed !== "true" || kind !== "stdin" || !/^[a-z]$/i.test(text)) return data;
+  button.setAttribute("aria-pressed", "false");
+  return JSON.stringify([kind, String.fromCharCode(text.toUpperCase().charCodeAt(0) - 64)]);
+};
 
 terminalUsers.push((terminal) => new Fingers(terminal));

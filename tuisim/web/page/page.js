@@ -17,6 +17,9 @@ window.open = (url, ...more) => {
 // Functions that get the terminal as soon as there is one.
 const terminalUsers = [];
 
+// Returns what is sent to the app, with the ctrl key that a finger holds.
+let holdCtrl = (data) => data;
+
 // Connects the terminal once more; what has come of a sequence is dropped.
 let connect = null;
 
@@ -63,7 +66,7 @@ window.WebSocket = class extends Socket {
 
   // The terminal speaks on after its app has ended.
   send(data) {
-    if (this.readyState === Socket.OPEN) super.send(data);
+    if (this.readyState === Socket.OPEN) super.send(holdCtrl(data));
   }
 };
 
