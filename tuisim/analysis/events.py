@@ -49,9 +49,9 @@ def find_crossings(
 
     Args:
         time_s: Shape (n,), in any order.
-        values: Shape (n,); those that are not finite are skipped.
+        values: Shape (n,); values that are not finite are skipped.
         threshold: The threshold.
-        hysteresis: A crossing counts if the signal is this far from the threshold before and after it.
+        hysteresis: How far the signal must be from the threshold, before and after it, for a crossing.
 
     Raises:
         LogError: the hysteresis is negative.
@@ -88,7 +88,7 @@ def find_crossings(
 
 
 def _find_changes(time_s: FloatArray, values: FloatArray) -> list[Crossing]:
-    """Return the instants at which the value of a signal differs from the one before, in order of time."""
+    """Return the instants at which the value of a signal differs from its previous value, in order of time."""
     known = np.arange(len(values))[sort_known(time_s, values)]
     turns = np.flatnonzero(np.diff(values[known]))
     pairs = zip(known[turns].tolist(), known[turns + 1].tolist(), strict=True)
@@ -129,11 +129,11 @@ class Threshold(ValueCondition):
 
     @property
     def level(self) -> str:
-        """The value of the threshold as it is shown; empty for a change."""
+        """The value of the threshold as a text for display; empty for a change."""
         return f"{float(self.value):g}" if self.value else ""
 
     def select_series(self, series: Sequence[Series]) -> list[Series]:
-        """Return the series of the threshold's variable, of all runs or of the run that the threshold names."""
+        """Return the series of the threshold's variable, either of all runs or of the run that the threshold names."""
         return [
             candidate
             for candidate in series
@@ -221,7 +221,7 @@ def parse_event(text: str) -> EventChoice | None:
 
 
 def parse_events(text: str, log: Log) -> tuple[EventChoice, ...]:
-    """Return the thresholds and searches for commands in a text, see `FORM`; none if it is empty.
+    """Return the thresholds and searches for commands in a text, see `FORM`; an empty text has none.
 
     Raises:
         LogError: a part of it is not a threshold, or there is no such variable.

@@ -239,7 +239,7 @@ class AnalysisModel:
         self.mark_s = mark_s
 
     def go_to_row(self, row: int) -> None:
-        """Move the cursor to a row; if there is no such row, to the first or the last one."""
+        """Move the cursor to a row; if the log has no such row, move it to the first or the last row."""
         self.row = min(max(row, 0), max(self.log.rows - 1, 0))
 
     def select(self, step: int) -> None:
@@ -347,7 +347,7 @@ class AnalysisModel:
         return self._reported[1]
 
     def find_measured_span(self) -> Limits | None:
-        """Return the range between the two cursors on the x axis; None if the second one, A, is not set."""
+        """Return the range between the two cursors on the x axis; None if the second cursor, A, is not set."""
         if self.mark_s is None or not self.log.rows:
             return None
         return min(self.mark_s, self.cursor_s), max(self.mark_s, self.cursor_s)

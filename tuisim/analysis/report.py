@@ -352,7 +352,7 @@ def list_run_facts(runs: Sequence[StoredRun]) -> list[Fact]:
 
 
 def list_log_facts(log: Log) -> list[Fact]:
-    """Return the facts of a log file for its report; if it is an export of runs, also those of the runs."""
+    """Return the facts of a log file for its report; for an export of runs, also the facts of the runs."""
     rows: list[Fact] = [
         ("file", log.title),
         (

@@ -46,7 +46,7 @@ class _Reading:
 
 
 def request_file(file: str, choices: ReadChoices = NO_CHOICES) -> LogRequest:
-    """Return the request to open a file; without choices, it has those that the user made for this file before."""
+    """Return the request to open a file; without choices, it has those that the user made for the file before."""
     remembered = find_choices(file) if choices == NO_CHOICES else None
     return LogRequest(file, choices=remembered or choices, is_remembered=remembered is not None)
 
@@ -60,7 +60,9 @@ def find_choices(file: str) -> ReadChoices | None:
 
 
 def remember_choices(file: str, choices: ReadChoices) -> None:
-    """Store the choices of how to read a file, in place of earlier ones; of too many files, the oldest are dropped.
+    """Store the choices of how to read a file, in place of its earlier choices.
+
+    If choices for too many files are stored, the oldest are dropped.
 
     Raises:
         OSError: they cannot be stored.
@@ -165,7 +167,7 @@ class OpenedLog:
         return (find_notes_file(file),) if file.is_file() else ()
 
     def stamp(self) -> object:
-        """Return an object that differs from an earlier one if the source of the log has grown since."""
+        """Return an object that compares as different after the source of the log has grown."""
         if self.runs:
             return tuple(
                 (run.telemetry.count if self.request.telemetry else run.output.length)
@@ -198,7 +200,7 @@ class Note:
 
 
 def find_notes_file(path: Path) -> Path:
-    """Return the path of the file with the notes on a log file; there may be no file there yet.
+    """Return the path of the file with the notes on a log file; the file need not exist yet.
 
     It depends on the path and the first line of the log: another log at the same path has other notes.
 
@@ -215,7 +217,7 @@ def find_notes_file(path: Path) -> Path:
 
 
 def read_notes(place: Path) -> tuple[Note, ...]:
-    """Return the notes in a file; none if there is no such file.
+    """Return the notes in a file; if the file does not exist, there are none.
 
     Raises:
         LogError: it cannot be read, or a row is not a note.

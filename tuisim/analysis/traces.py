@@ -86,7 +86,7 @@ class LogTrace(Trace):
         Args:
             x_limits: Visible range of the x axis.
             columns: Width of the chart.
-            hold: Whether each value is kept until the next sample, as a step line.
+            hold: Whether the chart draws a step line, which keeps each value until the next sample.
         """
         times_s, values = self.pyramid.select_points(x_limits, columns)
         self._shown = sample_and_hold(times_s, values) if hold else (times_s, values)
@@ -122,7 +122,7 @@ class LogTraces(Traces):
         self._show_light_columns()
 
     def set_log(self, log: Log) -> None:
-        """Replace the log by the same log with other derived variables; new ones become visible."""
+        """Replace the log by the same log with other derived variables; new variables become visible."""
         remaining = [
             trace
             for trace in self
@@ -167,7 +167,7 @@ class LogTraces(Traces):
         return [trace for trace in self if trace.on]
 
     def find_span_s(self) -> Limits:
-        """Return the first and the last time of the visible traces in s, moved apart if they are equal."""
+        """Return the first and the last time of the visible traces in s; if these are equal, a range around them."""
         ends = [
             trace.pyramid.times_s[[0, -1]]
             for trace in self.list_ticked()

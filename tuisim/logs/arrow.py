@@ -146,7 +146,7 @@ def format_cell(cell: pa.Scalar) -> str:
 
 
 def make_names_unique(names: Sequence[str], notes: Notes | None = None) -> list[str]:
-    """Return column names of which repeated ones are changed to be unique; the changes are added to `notes`."""
+    """Return column names in which repeated names are changed to be unique; the changes are added to `notes`."""
     unique: list[str] = []
     for number, name in enumerate(names, 1):
         unique_name = name or f"column {number}"

@@ -120,10 +120,10 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
     Args:
         log: The log.
         name: The variable.
-        search: Returns the plateaus of an array of samples, which are the bands.
+        search: Returns the plateaus of an array of samples; each plateau is a band.
 
     Raises:
-        LogError: there is no such variable.
+        LogError: the log has no variable of that name.
     """
     series = log.series(name)
     light = read_light(log.metadata, series.run)
@@ -189,7 +189,7 @@ def describe_width(band: Band) -> str:
 
 
 def read_light(metadata: Mapping[str, Any], run: int) -> Light:
-    """Return the light noise of a run and the response of its colour sensor; defaults if the metadata lack them.
+    """Return the light noise of a run and the response of its colour sensor, or the defaults if the metadata lack them.
 
     Args:
         metadata: The metadata of the log.
@@ -271,9 +271,9 @@ _FAR_OF_STEP, _FAR_OF_SPREAD = 0.75, 4.0
 
 @np.errstate(over="ignore", invalid="ignore")
 def measure_widths(values: FloatArray, driven_mm: FloatArray, levels: Levels) -> FloatArray:
-    """Return the widths of levels in mm, shape (n,), each from the edge before it to the edge after it.
+    """Return the widths of levels in mm, shape (n,): each from the edge before the level to the edge after it.
 
-    NaN where an edge is not known: before the first level, after the last one, and between two levels with samples of
+    NaN where an edge is not known: before the first level, after the last level, and between two levels with samples of
     another level between them.
 
     Args:
@@ -291,7 +291,7 @@ def measure_widths(values: FloatArray, driven_mm: FloatArray, levels: Levels) ->
 def _find_edges(
     values: FloatArray, driven_mm: FloatArray, levels: Levels, pairs: tuple[IntArray, IntArray]
 ) -> FloatArray:
-    """Return where samples pass the middle between each level and the next one, in mm, shape (n - 1,).
+    """Return where samples pass the middle between each level and the next level, in mm, shape (n - 1,).
 
     With noise, they may pass it several times: the edge is in the middle between the first and the last time.
     """
@@ -326,6 +326,6 @@ def _find_pairs(last: IntArray, first: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def _measure_reach(levels: Levels) -> FloatArray:
-    """Return by how much samples between each level and the next may differ from the middle of both, shape (n - 1,)."""
+    """Return by how much a sample between two successive levels may differ from their middle, shape (n - 1,)."""
     spread = np.maximum(levels.spread[:-1], levels.spread[1:])
     return _FAR_OF_STEP * np.abs(np.diff(levels.true_level)) + _FAR_OF_SPREAD * spread

@@ -46,10 +46,10 @@ class LineCutter:
 
     Args:
         longest: Characters of the longest line that is allowed.
-        encoding: Name of the text's encoding as Python knows it; empty to find it.
+        encoding: Python's name of the text's encoding; empty to find the encoding.
 
     Raises:
-        LogError: there is no such encoding.
+        LogError: Python has no encoding of that name.
     """
 
     def __init__(self, notes: Notes, longest: int = MAX_LINE_BYTES, encoding: str = "") -> None:

@@ -72,7 +72,7 @@ _TRUTHS = NumberForm(r"^(?i:true|false)$", ((r"(?i)true", "1"), (r"(?i)false", "
 
 
 def parse_numbers(cells: pa.Array, form: NumberForm) -> tuple[pa.Array, pa.Array]:
-    """Return texts as float64, with nulls for those that are not numbers.
+    """Return texts as float64, with nulls for the texts that are not numbers.
 
     Args:
         cells: The texts.
@@ -95,7 +95,7 @@ def parse_numbers(cells: pa.Array, form: NumberForm) -> tuple[pa.Array, pa.Array
 
 
 def _trim(cells: pa.Array) -> tuple[Any, Any]:
-    """Return texts without blanks around them, with null for the empty ones, and a mask of the empty ones."""
+    """Return texts without blanks around them, with null for empty texts, and a mask of the empty texts."""
     texts: Any = pc.utf8_trim_whitespace(cells)
     empty = pc.or_(pc.is_null(texts), pc.is_in(texts, value_set=build_text_array(EMPTY_CELLS)))
     return pc.if_else(empty, pa.scalar(None, pa.string()), texts), empty

@@ -184,7 +184,7 @@ def _unwrap(seconds: FloatArray, period: float, words: str) -> Times:
 def parse_times(column: pa.ChunkedArray) -> Times:
     """Return texts as times: time spans and times of day in seconds, dates in seconds since the first date.
 
-    Each time that the time of day begins again at 0, a day is added. The time is NaN for other texts.
+    Each time that the time of day begins again at 0, a day is added. Any other text becomes NaN.
     """
     import pandas as pd
 
@@ -260,7 +260,7 @@ def list_numeric_columns(schema: pa.Schema) -> list[str]:
 
 
 def list_time_columns(table: pa.Table) -> list[str]:
-    """Return the names of the columns that can be the time: those of numbers, dates, times and time spans."""
+    """Return the names of the columns that can be the time: columns of numbers, dates, times or time spans."""
     names = list_numeric_columns(table.schema)[:_MAX_TIMES]
     return [*names, *_list_moments(table)]
 
@@ -279,8 +279,8 @@ def _list_moments(table: pa.Table) -> list[str]:
 def guess_columns(table: pa.Table) -> Layout:
     """Guess the roles of the columns from their names and types.
 
-    The time is the column with the most certain name, else one with a type for times, else the rows are counted.
-    If no column has a name, the first one is the time if it rises. A text column with a known name next to a
+    The time is the column with the most certain name, else a column with a type for times, else the number of the row.
+    If no column has a name, the first column is the time if its numbers rise. A text column with a known name next to a
     column `value` has the variables; otherwise every other numeric column is a variable.
     """
     names = table.column_names
@@ -366,7 +366,7 @@ def find_unread_time(table: pa.Table, layout: Layout) -> str:
 
 
 def has_guessed_order(table: pa.Table, layout: Layout) -> bool:
-    """Return whether the times are dates such as 03/04/2024, in which it is only a guess that the day comes first."""
+    """Return whether the times are dates such as 03/04/2024, of which it is only guessed that the day comes first."""
     if not layout.time or not is_text(table.field(layout.time).type):
         return False
     return order_is_guessed(table.column(layout.time).cast(pa.string()))
@@ -404,10 +404,10 @@ def _is_rising(table: pa.Table, name: str) -> bool:
 
 
 def choose_columns(table: pa.Table, choices: ReadChoices) -> Layout:
-    """Return the roles of a table's columns: those that the user has chosen, the others guessed.
+    """Return the roles of a table's columns: the user's choices, and guesses for all others.
 
     Raises:
-        LogError: there is no such column, or it is not numeric.
+        LogError: the table has no such column, or it is not numeric.
     """
     layout = guess_columns(table)
     time = choices.time

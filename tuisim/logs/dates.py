@@ -106,7 +106,7 @@ def _replace_patterns(texts: Any, changes: Sequence[tuple[str, str]]) -> Any:
 def _find_largest_parts(texts: Any) -> tuple[int, int]:
     """Return the largest first number and the largest second number of dates with the year at the end.
 
-    Both are 0 without such dates.
+    Both are 0 if no text is a date of this form.
     """
     parts: Any = pc.extract_regex(texts, _YEAR_AT_END)
     numbers = (pc.cast(pc.struct_field(parts, name), pa.int64()) for name in ("first", "second"))

@@ -188,11 +188,11 @@ def add_named_columns(log: Log, text: str) -> Log:
 
 
 def read_spec(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
-    """Return the specification of a run from the metadata of a log; None if they have none, or are damaged.
+    """Return the specification of a run from the metadata of a log; None if they lack it, or are damaged.
 
     Args:
         metadata: The metadata.
-        run: Index of the run among those of the log, from 0.
+        run: Index of the run among the runs of the log, from 0.
     """
     try:
         entry = metadata["runs"][run]
@@ -204,7 +204,7 @@ def read_spec(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
 
 
 def _read_scale_changes(metadata: Mapping[str, Any]) -> Iterator[ScaleChange]:
-    """Yield the changes of motor scales in the first run of a log, without damaged ones."""
+    """Yield the changes of motor scales in the first run of a log, without damaged entries."""
     for change in metadata["runs"][0].get(SCALES, ()):
         match change:
             case int(tick), str(port), int(scale) | float(scale) if scale:

@@ -101,7 +101,7 @@ class DocumentReader:
         return CsvReader(self._notes, self._choices).read(Block(1, text.getvalue()))
 
     def _list_rows(self, value: Mapping[str, Any]) -> list[Any]:
-        """Return the rows in a JSON object: those of its only table or of its columns, or the object itself."""
+        """Return the rows in a JSON object: the rows of its only table or of its columns, or else the object itself."""
         inner = [name for name, cells in value.items() if _is_table(cells)]
         if len(inner) > 1:
             raise LogError(f"has several tables: {listed(map(repr, inner))}", _ALLOWED)

@@ -234,7 +234,7 @@ def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) 
 
 
 def build_table_metadata(table: str, columns: Iterable[str]) -> dict[str, Any]:
-    """Return the metadata that every table has: its format, what the table is, and its columns' names."""
+    """Return the metadata that every table has: its format, the kind of the table, and the names of its columns."""
     return {"format": LOG_FORMAT, "table": table, "columns": list(columns)}
 
 
@@ -247,7 +247,7 @@ Metadata = Mapping[str, Any]
 
 
 def describe_files(target: Path) -> str:
-    """Return the names of the files of an export: the file, and the companion file with metadata, if there is one."""
+    """Return the names of the files of an export: the file and, if there is one, its companion file with metadata."""
     exporter = EXPORTERS.get(target.suffix.lower())
     beside = (
         f"; what it is and its units: {find_companion(target).name}"

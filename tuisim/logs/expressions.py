@@ -127,7 +127,7 @@ def find_names(text: str) -> list[str]:
 
 
 def _read(text: str) -> tuple[ast.Expression, dict[str, str]]:
-    """Return a parsed expression, and its names in backticks by the placeholders that replace them."""
+    """Return a parsed expression, and the names in backticks by the placeholders that replace them in it."""
     if len(text) > MAX_CHARS:
         raise LogError(f"the expression has {len(text)} characters", f"at most {MAX_CHARS}")
     names: dict[str, str] = {}
@@ -158,7 +158,7 @@ def _parse(source: str, text: str) -> ast.Expression:
 
 
 class _Evaluation:
-    """The evaluation of one expression; `names` has its names in backticks by their placeholders."""
+    """The evaluation of one expression; `names` has the expression's names in backticks, by their placeholders."""
 
     def __init__(
         self,

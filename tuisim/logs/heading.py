@@ -122,8 +122,8 @@ def find_heading(
     """Return where a table begins in the first lines of a text.
 
     Args:
-        lines: Those that are not blank, each with its number in the file.
-        notes: Receives what was guessed.
+        lines: The lines that are not blank, each with its number in the file.
+        notes: Receives notes on the guesses.
         separator: One of `SEPARATORS` or `BLANKS`; empty to find it.
         header_row: Number of the line with the heading; 0 to find it.
 
@@ -164,7 +164,7 @@ def find_heading(
 
 
 def _skip_to(lines: Sequence[tuple[int, str]], row: int) -> Sequence[tuple[int, str]]:
-    """Return the lines from the one with a number on; raise LogError if no line has that number."""
+    """Return the lines from the line with a number on; raise LogError if no line has that number."""
     lines = [line for line in lines if line[0] >= row]
     if not lines or lines[0][0] != row:
         raise LogError(f"has no line {row} for --header", "lines count from 1")
@@ -196,7 +196,7 @@ def _split_comments(
 def _read_comment(comment: tuple[int, str], below: _Line, separator: str) -> _Line | None:
     """Return a comment as a line of column names.
 
-    The result is None if its number of words is not that of the cells in the next line.
+    The result is None if the comment has another number of words than the next line has cells.
     """
     row, text = comment
     names = [name.strip() for name in split_cells(text.lstrip("#%/; \t"), separator)]
@@ -243,14 +243,14 @@ def _split_lines(lines: Sequence[tuple[int, str]], separator: str) -> list[_Line
 def split_rows(
     lines: Sequence[tuple[int, str]], separator: str, width: int
 ) -> Iterator[tuple[int, list[str], int]]:
-    """Yield for each row its line number, its cells, and the number of the next row's line.
+    """Yield for each row its line number, its cells, and the line number of the next row.
 
     A quoted cell may span lines.
 
     Args:
-        lines: Each with its number in the file; blank ones are skipped.
+        lines: Each with its number in the file; blank lines are skipped.
         separator: The separator of cells.
-        width: Number of cells of a row; 0 if it is that of the next line.
+        width: Number of cells of a row; 0 for the number of cells of the next line.
     """
     # Searching for the end of each unclosed quote, an ordinary character, would be too slow.
     joins_left = _MAX_JOINS
@@ -426,7 +426,7 @@ def _has_units(cells: Sequence[str], names: _Line) -> bool:
 
 
 def _has_names(rows: Sequence[_Line]) -> bool:
-    """Return whether the first row is a heading, given that its cells are of the same kinds as those of the others."""
+    """Return whether the first row is a heading, given that it has the same kinds of cells as the other rows."""
     first = rows[0]
     if first.kinds[0] == "t" and (len(rows) < 2 or rows[1].kinds[0] == "t"):
         return False

@@ -102,7 +102,7 @@ class Light(NamedTuple):
     """The sensor's reading of white, in percent."""
 
     def undo_response(self, percents: FloatArray) -> FloatArray:
-        """Return the greys of the mat, 0 to 100 %, for which the sensor gives some readings, 0 to 100."""
+        """Return the greys of the mat, 0 to 100 %, for which the sensor gives these readings, 0 to 100."""
         return (percents - self.black) / ((self.white - self.black) / 100.0)
 
     def seen(self, percents: FloatArray) -> FloatArray:

@@ -85,7 +85,7 @@ def _encode_column(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
 
 
 def _group_rows(codes: IntArray, count: int) -> list[IntArray]:
-    """Return for each code from 0 to `count` - 1 the rows that have it."""
+    """Return for each code from 0 to `count` - 1 the rows with this code."""
     if not count:
         return []
     # The codes are stored in one or two bytes if possible, as such integers are sorted in linear time.
@@ -182,7 +182,7 @@ class Log:
         """Return the series of a name. Its arrays must not be modified, as they may be shared.
 
         Raises:
-            LogError: there is no such series.
+            LogError: the log has no series of that name.
         """
         if name in self.derived:
             return self.derived[name]

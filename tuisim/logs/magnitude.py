@@ -15,7 +15,9 @@ MAX_DRAWN = 1e300
 
 
 def find_scale(low: float, high: float) -> float:
-    """Return the power of two by which to divide numbers before they are summed: 1 unless they are huge or tiny.
+    """Return the power of two by which to divide numbers before their sum is computed.
+
+    It is 1 unless the numbers are huge or tiny.
 
     Args:
         low, high: The least and the greatest of the numbers, finite.
@@ -25,7 +27,7 @@ def find_scale(low: float, high: float) -> float:
 
 
 def limit_drawn(numbers: FloatArray) -> FloatArray:
-    """Return numbers in which finite ones are limited to ±`MAX_DRAWN`, for charts."""
+    """Return numbers with all finite numbers limited to ±`MAX_DRAWN`, for charts."""
     if not len(numbers) or (numbers.min() >= -MAX_DRAWN and numbers.max() <= MAX_DRAWN):
         return numbers
     return np.where(np.isfinite(numbers), numbers.clip(-MAX_DRAWN, MAX_DRAWN), numbers)

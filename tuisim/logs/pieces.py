@@ -106,13 +106,13 @@ def _join_seams(
     min_step: float,
     sigma: float,
 ) -> Pieces:
-    """Return pieces of a log; those on both sides of a seam are joined if the right one continues the left one.
+    """Return pieces of a log; the pieces on both sides of a seam are joined if the right one continues the left one.
 
     Args:
         values: The log.
         pieces: Its pieces.
-        seams: Shape (n, 2): for each seam the index of the piece after the left one, and the index of the right one.
-            They are equal if the two pieces are neighbours, and differ if strays are between them.
+        seams: Shape (n, 2): for each seam the index of the piece after the left piece, and the index of the right
+            piece. They are equal if the two pieces are neighbours, and differ if strays are between them.
         min_samples: Fewest samples on either side.
         min_step: The smallest step between levels.
         sigma: Standard deviation of the noise.
@@ -217,8 +217,8 @@ def _sum_products(left: FloatArray, right: FloatArray) -> FloatArray:
 def _estimate_steps(before: _Lines, after: _Lines) -> tuple[FloatArray, FloatArray]:
     """Return the least-squares steps between pieces of one drift, and their standard deviations in units of the noise.
 
-    The slope is that of both pieces together, each about its own means (analysis of covariance); the step is the
-    remaining difference of the means.
+    Both pieces have one slope, which is estimated from both, each about its own means (analysis of covariance); the
+    step is the remaining difference of the means.
 
     Args:
         before: The pieces before the steps.

@@ -126,12 +126,11 @@ def measure_noise(values: FloatArray) -> float:
 
 
 def _find_steps(differences: FloatArray) -> BoolArray:
-    """Return for each difference between neighbours whether it is a step, if the log has only short levels.
+    """Return for each difference between neighbours whether it is a step, if most levels of the log are short.
 
-    Otherwise all are False.
-
-    If more than a fifth of the differences are far larger than the ones before and after them, most levels have two or
-    three samples, without edges or strays between them. In noise, large differences follow each other.
+    If more than a fifth of the differences are far larger than the differences before and after them, most levels have
+    two or three samples, without edges or strays between them. In noise, large differences follow each other. For a log
+    with longer levels, all values are False.
     """
     calm = np.minimum(differences[1:], differences[:-1]).max(initial=0.0)
     steps: BoolArray = differences > FAR * calm
@@ -212,9 +211,9 @@ def _join_pieces(
 def _settle(
     values: FloatArray, plateaus: PlateauArray, parts: PlateauArray, ground: Ground, min_step: float
 ) -> PlateauArray:
-    """Return plateaus that are extended at their ends and joined where one continues another, without moving ones.
+    """Return plateaus that are extended at their ends and joined where one continues another, if they have a level.
 
-    Those of `parts`, the level parts of slopes, that overlap no plateau are added.
+    The parts in `parts`, the level parts of slopes, are added if they overlap none of the plateaus.
     """
     if len(plateaus):
         # After they were extended, two plateaus may be separated only by a stray, so they are joined again.
@@ -374,7 +373,7 @@ def _find_ramps(values: FloatArray, plateaus: PlateauArray, sigma: float) -> Boo
 
 
 def _add_ends(values: FloatArray, plateaus: PlateauArray, min_step: float) -> PlateauArray:
-    """Return plateaus, with the first and the last sample as further ones if they are a step away from the nearest.
+    """Return plateaus; the first and the last sample become plateaus, too, if they are a step away from the nearest.
 
     A program that logs until it meets a value ends its log at the first sample of that level.
     """

@@ -89,7 +89,7 @@ def _split_time(line: str) -> tuple[str | None, str, bool]:
 
 
 def _strip_prefixes(text: str, pattern: re.Pattern[str]) -> str:
-    """Return a text without prefixes such as those of a logger; empty if the rest does not match a pattern."""
+    """Return a text without prefixes such as a logger's; empty if the rest does not match a pattern."""
     while pattern.fullmatch(text) is None:
         prefix = _PREFIX.match(text)
         if prefix is None:
@@ -108,11 +108,11 @@ def _is_row(line: str) -> bool:
 def choose_reader(
     lines: Sequence[str], is_table: bool, notes: Notes, choices: ReadChoices
 ) -> CsvReader | ObjectReader | None:
-    """Return a reader for a file of lines that a program printed; None if its first lines are not such lines.
+    """Return a reader for a file of lines that a program printed; None if its first lines have another form.
 
     Args:
         lines: The first lines.
-        is_table: Whether the file has the name of a table; then only lines with times count as printed by a program.
+        is_table: Whether the file has the name of a table; its lines then must have times to be read as printed lines.
         notes: Receives warnings.
         choices: The user's choices for reading the file.
     """

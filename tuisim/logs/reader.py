@@ -330,7 +330,7 @@ def read_text_parts(
 
 
 def _refuse_binary(data: bytes) -> None:
-    """Raise LogError if the first bytes of a file are those of a binary format."""
+    """Raise LogError if the first bytes of a file show a binary format."""
     if data.startswith((*arrow.FORMATS, *MAGICS)):
         raise LogError(
             "only text can be read from a pipe or inside a compressed file",

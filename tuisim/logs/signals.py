@@ -83,7 +83,7 @@ def compute_integral(
 
 
 def compute_moving_average(values: FloatArray, width: int) -> FloatArray:
-    """Return the centred rolling mean of `width` samples, shape (n,); at both ends it is that of fewer samples.
+    """Return the centred rolling mean of `width` samples, shape (n,); at both ends, the mean of fewer samples.
 
     Values that are not finite are ignored.
 

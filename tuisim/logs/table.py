@@ -109,7 +109,7 @@ class Rows:
     def place(self, row: int) -> int:
         """Return the position of a row of the log in the table.
 
-        For a hidden row, it is the position of the next one, or 0 in a sorted table.
+        For a hidden row, it is the position of the next shown row, or 0 in a sorted table.
         """
         if self.view.order is None or not len(self.view.order):
             return row
@@ -123,7 +123,7 @@ class Rows:
         return format_cell(self._log.table.column(column)[row])
 
     def shown(self, first: int = 0, last: int | None = None) -> LogTable:
-        """Return the shown rows and columns as a table; of the rows those from position `first` to before `last`."""
+        """Return the shown rows and columns as a table, with the rows from position `first` to before `last`."""
         table = self._log.table.select(self.columns)
         order = self.view.order
         return table[first:last] if order is None else table.take(order[first:last])
@@ -263,7 +263,7 @@ class Rows:
 
 
 def _split_places(from_place: int, count: int, step: int) -> Iterator[tuple[int, int]]:
-    """Yield ranges (first, one after the last) of all positions, from the one next to a position, wrapping around."""
+    """Yield ranges (first, one after the last) of all positions: they begin next to a position, and wrap around."""
     middle = from_place + 1 if step > 0 else from_place
     onwards = [(first, min(first + _STRETCH, count)) for first in range(middle, count, _STRETCH)]
     before = [(first, min(first + _STRETCH, middle)) for first in range(0, middle, _STRETCH)]

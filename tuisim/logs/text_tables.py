@@ -101,7 +101,7 @@ class CsvReader:
         return None
 
     def finish(self) -> None:
-        """Check at the end of the file that the table that the user chose exists.
+        """Check at the end of the file that it has the table that the user has chosen.
 
         Raises:
             LogError: the file has fewer tables.
@@ -215,7 +215,7 @@ class CsvReader:
     def _parse_lines(self, block: Block) -> tuple[list[pa.Array], list[int]]:
         """Return rows parsed line by line, and their rows in the file.
 
-        Short rows are filled, long ones cut, both with a note.
+        Short rows are filled, long rows are cut, both with a note.
         """
         width = len(self._heading.names)
         rows = []

@@ -38,9 +38,9 @@ _MIN_STEPS = {1e-9: 1e7, 1e-6: 1e4, 1e-3: 5.0}
 
 
 def join_times(table: pa.Table) -> pa.Table:
-    """Return a table with its time in one column, joined if it was in two.
+    """Return a table with its time in one column; a time in two columns is joined.
 
-    Two columns can be seconds and their fractions, or date and time of day.
+    The two columns can be seconds and their fractions, or date and time of day.
     """
     names = {}
     for name in table.column_names:
@@ -106,9 +106,7 @@ def order_times(
 ) -> tuple[pa.Table, Layout, FloatArray | None]:
     """Return a table, its layout, and its times in seconds, None without times.
 
-    If the time begins again, another run begins there.
-
-    The runs are then in a further column of the table.
+    Where the time begins again, another run begins; the table then gets a further column with the runs.
 
     Args:
         table: The table.

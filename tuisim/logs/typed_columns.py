@@ -64,11 +64,11 @@ class TypedColumns:
         list_rows: Callable[[], Sequence[int]],
         separator: str,
     ) -> pa.Table:
-        """Return a table of texts with its columns converted to their types; columns that have their type are kept.
+        """Return a table of columns that are converted from texts to their types; other columns are unchanged.
 
         Args:
             columns: The columns by name.
-            list_rows: Returns the row of each cell in the file; called if one of them is not a number.
+            list_rows: Returns the row of each cell in the file; called if a cell is not a number.
             separator: The separator of cells in a line.
         """
         texts = {
@@ -122,7 +122,7 @@ class TypedColumns:
 
 
 def _choose_text_kind(cells: pa.Array) -> pa.DataType:
-    """Return the type for a text column: `CODED` if its first cells often repeat, else that of strings."""
+    """Return the type for a text column: `CODED` if its first cells often repeat, else the type of strings."""
     count = len(cells)
     often = count > _MIN_CELLS and _MIN_REPEATED * pc.count_distinct(cells).as_py() <= count
     return CODED if often else pa.string()
