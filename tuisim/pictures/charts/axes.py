@@ -159,9 +159,9 @@ def extend_limits(limits: Limits, rows: int) -> Limits:
     """Return limits for a vertical axis on which round ticks are in the middle of rows, at equal distances.
 
     The limits are extended as little as possible. The axis has 2 to 6 parts: it begins at the multiple of a round step
-    that is not above the values, and has as many rows between two ticks as fit. The shortest of these axes is chosen;
-    an axis with few parts counts as longer by `_SPARSE`, and one with ticks in neighbouring rows by the span of the
-    values.
+    that is not above the values, and has as many rows between two ticks as fit. The shortest of these axes is chosen.
+    For this choice, `_SPARSE` is added to the length of an axis with few parts, and the span of the values to the
+    length of an axis with ticks in neighbouring rows.
 
     Args:
         limits: The lowest and the highest value.

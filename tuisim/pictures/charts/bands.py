@@ -96,7 +96,7 @@ def place_names(
         places: The columns of each span.
         rows, columns: Size of the canvas.
         is_free: Returns whether nothing is drawn in a row between two columns.
-        avoided: Columns, such as that of a cursor, which names do not cover if they have room beside them.
+        avoided: Columns, such as a cursor's, which names do not cover if they have room beside them.
     """
     names: list[tuple[int, int, str]] = []
     letters = [len(place) if len(place) >= _MIN_COLUMNS else 0 for place in places]

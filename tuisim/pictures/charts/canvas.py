@@ -266,11 +266,11 @@ def build_style(rgb: Rgb | None) -> Style:
 def drop_hidden_points(
     xs: FloatArray, ys: FloatArray, limits: Sequence[axes.Limits], columns: int, rows: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a path that are visible on a canvas: of successive points at the same dot only the first.
+    """Return the points of a path that are visible on a canvas: of successive points at the same dot, only the first.
 
     Args:
         xs, ys: Finite, shape (n,).
-        limits: Those of x and of y.
+        limits: The limits of x and of y.
         columns, rows: Size of the canvas in characters.
     """
     (left, right), (low, high) = limits
@@ -297,7 +297,7 @@ def draw_xy_chart(
     """Return a chart of one variable against another as lines of text.
 
     Args:
-        xs, ys: Values of both, shape (n,); pairs that are not finite are left out.
+        xs, ys: The values of the two variables, shape (n,); pairs that are not finite are left out.
         here: Index of the point to mark, None for none.
         names: Names of x and of y.
         rgb: Colour of the points.

@@ -111,7 +111,7 @@ class CellScales:
         return Curve(trace.times_s, values, trace.rgb, trace.mark if marks else BRAILLE)
 
     def frame_row(self, row: int, inside: list[Run]) -> list[Run]:
-        """Return a row of the canvas with the labels left of it and the last values right of it."""
+        """Return a row of the chart: the row of the canvas with labels on its left and last values on its right."""
         text = self.labels[0].get(row, "")
         line = [
             (text.rjust(self.left_width - 1), self.styles[0]),
@@ -147,7 +147,10 @@ def _measure_width(labels: dict[int, str]) -> int:
 def _place_end_values(
     drawn: Sequence[Trace], scales: Scales, rows: int, x_limits: Limits
 ) -> tuple[dict[int, Run], int]:
-    """Return the last visible values by row, each where its line ends or in a row next to it, and their width."""
+    """Return the last visible values of the traces by row, and their width.
+
+    Each value is in the row in which its line ends, or in a row next to that.
+    """
     ends: list[tuple[int, Run]] = []
     width = 0
     for trace in drawn:
@@ -181,7 +184,10 @@ def _round_value(value: float, scale: Scale) -> str:
 
 
 def _separate_rows(ends: Sequence[tuple[int, Run]], rows: int) -> dict[int, Run]:
-    """Return texts by row, each in its own row or one next to it, so that no two share a row; equal texts only once."""
+    """Return texts by row: each in its own row or, if that is taken, in a row next to it; else it is left out.
+
+    Equal texts of a row appear once.
+    """
     taken: dict[int, Run] = {}
     row_of: dict[int, int] = {}
     for row, run in ends:

@@ -91,7 +91,7 @@ class ChartData:
 
 
 def add_unit(name: str) -> str:
-    """Return the name of a variable with its unit, as it is written beside a chart; without a unit, the name alone."""
+    """Return the name of a variable with its unit, for display beside a chart; without a unit, the name alone."""
     unit = find_unit(name)
     return printable(f"{name} ({unit})" if unit else name)
 
@@ -372,7 +372,7 @@ class Scales:
     def group(cls, variables: Sequence[Variable], zoomed: bool) -> Scales:
         """Return the scales for variables.
 
-        On the left is the scale of light and of variables without a known unit, else that of the first variable.
+        On the left is the scale of light and of variables without a known unit, else the scale of the first variable.
 
         Args:
             variables: The variables.
@@ -441,7 +441,7 @@ def _measure_widest(limits: Limits) -> float:
 
 
 def _match_scales(chart: ChartData, frame: Frame) -> Frame:
-    """Return a frame for a chart: if it is a path on the field, with the same mm per pixel on both axes."""
+    """Return a frame for a chart; for a path on the field, both axes of the frame have the same mm per pixel."""
     names = [chart.x_label.partition(" (")[0], *(line.name for line in chart.lines)]
     if not chart.path or {find_unit(name) for name in names} != {"mm"}:
         return frame
@@ -555,7 +555,7 @@ _NARROW = 8
 
 
 def fit_names(spans: Sequence[Span], letters: Sequence[float], overhang: int = 0) -> list[str]:
-    """Return a name for each span, all long ones or all short ones.
+    """Return a name for each span: the long names of all spans, or the short names of all.
 
     Long names are used if they fit into all but very narrow spans; a name that does not fit is empty.
 

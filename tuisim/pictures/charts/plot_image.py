@@ -60,7 +60,7 @@ class Plot:
         return (times_s - low) / (high - low) * (self.columns - 0.5) * width + 1
 
     def down(self, values: FloatArray, height: int) -> _Points:
-        """Return how many points values are below the canvas's top; `height` is that of a cell in points."""
+        """Return how many points values are below the canvas's top; `height` is the height of a cell in points."""
         return axes.measure_row(values, self.y_limits, self.rows) * height
 
     def draw(self, cell: tuple[int, int], inks: PlotInks) -> Pixels:
@@ -68,7 +68,7 @@ class Plot:
 
         Args:
             cell: Width and height of a cell in points.
-            inks: The colours besides those of the curves.
+            inks: The colours that are not those of curves.
         """
         width, height = cell
         rows, cols = self.size
@@ -92,7 +92,7 @@ class Plot:
 
 @dataclass(frozen=True, slots=True)
 class PlotInks:
-    """The colours of a chart's image, besides those of its curves."""
+    """The colours of a chart's image that are not those of its curves."""
 
     ground: Rgb
     axis: Rgb
@@ -116,7 +116,7 @@ _LINE_SHARE, _MARK_SHARE = 1 / 9, 1 / 5
 
 
 def _find_cells(span: Span, plot: Plot, width: int) -> tuple[int, int]:
-    """Return the first column of points of a span on the canvas, and the one after its last."""
+    """Return the first column of points of a span on the canvas, and the column after its last one."""
     start, stop = np.clip(
         plot.measure_across(np.array([span.start, span.stop]), width), 0, plot.columns * width
     ).astype(int)
@@ -195,7 +195,7 @@ def _mix_colors(ground: Rgb, rgb: Rgb, share: float) -> Rgb:
 
 
 def _measure_coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np.uint8]:
-    """Return for each point of the canvas how much of it a curve covers, from 0 to `_LEVELS`."""
+    """Return for each point of the canvas how much of the point a curve covers, from 0 to `_LEVELS`."""
     # This is imported on demand, since few terminals need it.
     from PIL import Image, ImageDraw
 

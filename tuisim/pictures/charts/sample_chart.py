@@ -29,7 +29,7 @@ def build_sample_chart(
     Args:
         samples: The samples.
         columns: Width in pixels; points that it could not show apart are left out.
-        limits: Range of time; None for that of the samples.
+        limits: Range of time; None for the time range of the samples.
     """
     points: dict[str, list[tuple[float, float]]] = {}
     for sample in samples:
@@ -71,7 +71,7 @@ def build_line(
         scale: The name of its scale.
         limits: Range of time.
         columns: Width in pixels; points that it could not show apart are left out.
-        hold: Whether it is a step line.
+        hold: Whether to draw a step line.
     """
     xs, ys = reduce_points(*points, limits, columns)
     xs, ys = clip_line(*(sample_and_hold(xs, ys) if hold else (xs, ys)), limits)

@@ -54,7 +54,7 @@ class Trace:
     """A variable as points in order of time, with a colour; ticked traces are drawn.
 
     Args:
-        name: The name that was logged, or that of a column of telemetry.
+        name: The name that was logged, or the name of a column of telemetry.
         number: Chooses colour and mark.
         logged: Whether the program has printed the values; else the app measured them.
     """
@@ -133,7 +133,7 @@ class Trace:
 
 
 class Traces:
-    """The traces of a chart; those that the program has logged come first.
+    """The traces of a chart; the traces that the program has logged come first.
 
     Args:
         traces: The traces at first, by name.
@@ -172,7 +172,7 @@ class Traces:
         trace.add(times_s, values)
 
     def clear(self) -> None:
-        """Remove all traces; a trace that gets points later has its tick and its colour again."""
+        """Remove all traces; a trace that gets points later is ticked or not as before, and has the same colour."""
         for trace in self._by_name.values():
             trace.clear()
         self._cleared.update(self._by_name)
@@ -273,7 +273,7 @@ class Pyramid:
 
     Args:
         times_s: Shape (n,).
-        values: Shape (n,); those that are not finite are left out, as are times beyond `MAX_DRAWN`.
+        values: Shape (n,); points with values that are not finite, or times beyond `MAX_DRAWN`, are left out.
     """
 
     def __init__(self, times_s: FloatArray, values: FloatArray) -> None:

@@ -60,7 +60,7 @@ def encode_gif(
 
 
 class _Palette:
-    """A palette of at most 255 colours: the most frequent colours of some frames, and colours near the others.
+    """A palette of at most 255 colours: the most frequent colours of some frames, and colours near their other colours.
 
     Args:
         frames: The frames.
@@ -141,7 +141,7 @@ class Clip:
 
         Args:
             path: The file.
-            watch: Called after each frame with the number of frames done and that of all.
+            watch: Called after each frame with the number of frames that are done, and the number of all frames.
 
         Raises:
             ConfigError: the movie is too large, or its panels do not fit.

@@ -143,7 +143,7 @@ class FramePainter:
             self._arrays = SensorArrays(recorded)
 
     def image(self, moment: ClipMoment) -> Image:
-        """Return a frame as a Pillow image; each call must be for the same instant as the last one, or a later one."""
+        """Return a frame as a Pillow image; no call may be for an earlier instant than the call before."""
         from PIL import Image
 
         image = Image.new("RGB", self.size, "white")
@@ -267,7 +267,7 @@ class MovingWorld:
         """Number of records whose pen traces are drawn."""
 
     def draw_moment(self, moment: ClipMoment) -> Image:
-        """Return the picture of the world at an instant; each call must be for the same or a later instant."""
+        """Return the picture of the world at an instant; no call may be for an earlier instant than the call before."""
         from PIL import Image
 
         self._painter.trace.add(

@@ -36,7 +36,7 @@ _FINEST = 80
 
 @dataclass(frozen=True, slots=True)
 class DiscFace:
-    """What a colour sensor sees, as it is shown: the pixels of its disc, its values, and the program's thresholds."""
+    """What pictures show of a colour sensor: the pixels of its disc, its values, and the program's thresholds."""
 
     name: str
     box: bytes
@@ -122,7 +122,7 @@ class DiscFace:
 def list_disc_faces(
     spec: RunSpec, instant: Instant, field: Field, program: Program | None
 ) -> list[DiscFace]:
-    """Return what each colour sensor of a run sees at an instant, as it is shown.
+    """Return for each colour sensor of a run what pictures show of it at an instant.
 
     Args:
         spec: The run.

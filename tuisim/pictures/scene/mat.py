@@ -148,7 +148,7 @@ def _reduce_rows(
 
 
 def _keep_detail(mean: _Numbers, low: _Numbers, high: _Numbers, middle: _Numbers) -> Pixels:
-    """Return the colours of pixels: that of the area that covers most of a pixel, or that of a thin line in it.
+    """Return the colour of each pixel: that of the area that covers most of the pixel, or that of a thin line in it.
 
     A thin line is drawn in the pixels that it covers more of than their neighbours.
 

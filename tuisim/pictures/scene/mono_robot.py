@@ -41,7 +41,7 @@ def draw_mono_robot(
     """Paint a robot into a picture in place, as `draw_robot` does, for a terminal of two colours.
 
     Each point is black or white: mixed colours would become a pattern, as the greys of the mat do. A white rim
-    separates the robot from what is around it.
+    separates the robot from its surroundings.
     """
     on_white, on_black = np.full_like(picture, 255), np.zeros_like(picture)
     for canvas in (on_white, on_black):

@@ -43,7 +43,7 @@ _FAINT = 0.07
 
 
 def find_mat_floor_rgb(mat: Pixels) -> Rgb:
-    """Return the colour of the floor around a mat, which is that of the mat's edges.
+    """Return the colour of the floor around a mat, which is the colour of the mat's edges.
 
     Args:
         mat: Shape (height, width, 3).
@@ -60,7 +60,7 @@ def find_grid_rgb(floor_rgb: Rgb) -> Rgb:
 
 
 def find_field_pixels(view: Viewport) -> tuple[int, int, int, int]:
-    """Return the left, upper, right and lower edge of the field in pixels of a picture; negative ones become 0."""
+    """Return the left, upper, right and lower edge of the field in pixels of a picture; a negative edge becomes 0."""
     left, top = (max(round(edge), 0) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
     right, low = (max(int(edge), 0) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
     return left, top, right, low
@@ -94,7 +94,7 @@ class Faint(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class SceneState:
-    """The objects on the mat at one instant, as they are drawn."""
+    """The objects on the mat at one instant, in the form in which they are drawn."""
 
     robot: RobotSpec
     pose: Pose
@@ -116,7 +116,7 @@ class SceneState:
 
 
 class ScenePainter:
-    """Draws the field with all objects on it; stores what stays the same from frame to frame.
+    """Draws the field with all objects on it; stores the parts that stay the same from frame to frame.
 
     Args:
         mat: The mat, shape (height in mm, width in mm, 3).
@@ -126,7 +126,7 @@ class ScenePainter:
         mono: Draw for a terminal without any colours.
         coarse: Draw the robot with few details, for glyphs that show less than the points of their cells.
         whole_cells: End the mat where a cell ends, for glyphs that do not fill their cells.
-        for_file: Draw for a file: the mat as it is, and a frame around it.
+        for_file: Draw for a file: the mat unchanged, and a frame around it.
         has_floor: Whether the mat lies on a floor in the colour of its edges.
     """
 
@@ -290,7 +290,8 @@ def draw_rays(
         y_mm: World y of the sensor.
         rays: (world angle in degrees, length in mm) each.
         grey: Whether the terminal shows only brightness.
-        is_solid: Whether they hide what is below: the thin lines of a file would hardly be visible on white.
+        is_solid: Whether the rays hide the picture below them: the thin lines of a file would hardly be visible on
+            white.
     """
     col, row = view.to_px(x_mm, y_mm)
     low_col, low_row = (round(edge) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))

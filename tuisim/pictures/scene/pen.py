@@ -80,7 +80,7 @@ def _spread(width_px: float) -> FloatArray:
 
 
 def _join_points(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a trace, with further ones between them so that gaps are at most `step_mm`; without NaN."""
+    """Return the points of a trace without NaN, with further points so that no gap is larger than `step_mm`."""
     good = np.isfinite(xs) & np.isfinite(ys)
     if len(xs) < 2:
         return xs[good], ys[good]
@@ -146,7 +146,7 @@ class PenTrace:
         """How often the trace was cleared."""
 
     def add(self, piece: Piece) -> None:
-        """Add a piece; its points are joined to the last ones if the pen is the same."""
+        """Add a piece; its points are joined to those of the piece before if the pen is the same."""
         if not len(piece.xs_mm):
             return
         self.count += len(piece.xs_mm)
@@ -166,7 +166,7 @@ class PenTrace:
         return pieces
 
     def put_back(self, pieces: list[Piece]) -> None:
-        """Insert pieces of a cleared trace before all others; painters then draw the whole trace again."""
+        """Insert pieces of a cleared trace before all other pieces; painters then draw the whole trace again."""
         self._pieces[:0] = pieces
         self.clears += 1
 
@@ -198,7 +198,10 @@ def place_pen_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatAr
 def place_drawn_mm(
     robot: RobotSpec, telemetry: npt.NDArray[Any]
 ) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
-    """Return x and y of the pen in mm at each record, NaN where it is up; and whether it is up. Each has shape (n,)."""
+    """Return x and y of the pen in mm at each record, NaN where the pen is up; and whether it is up.
+
+    Each has shape (n,).
+    """
     xs_mm, ys_mm = place_pen_mm(robot, telemetry)
     lifted = (telemetry["flags"] & FLAG_PEN_DOWN) == 0
     xs_mm[lifted] = ys_mm[lifted] = np.nan

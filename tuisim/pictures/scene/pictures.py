@@ -98,7 +98,7 @@ def fit_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD
 
 
 def build_scene(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> SceneState:
-    """Return the objects on the field of a run, as they are drawn.
+    """Return the objects on the field of a run, in the form in which they are drawn.
 
     Args:
         spec: The run.

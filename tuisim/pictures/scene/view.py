@@ -132,7 +132,7 @@ def follow_robot(
 
 
 def _shift_view(view: Viewport, zoom: int, pose: Pose) -> Viewport:
-    """Return a view that is moved by thirds of its size so far that the robot is not near its edges."""
+    """Return a view that is moved by thirds of its size until the robot is not near its edges."""
     share = _KEEP_ON_FLOOR if zoom == 1 else _KEEP_INSIDE
     col, row = view.to_px(pose.x_mm, pose.y_mm)
     right_px = _count_steps(col, view.width_px, share, view.cell.cols)
