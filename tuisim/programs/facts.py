@@ -54,7 +54,7 @@ class WheelTurn:
 
 
 def list_wheel_turns(tree: ast.Module) -> Iterator[WheelTurn]:
-    """Yield the calls of a program that turn the wheels in opposite directions by an angle common for robots' turns.
+    """Yield the calls of a program that turn the wheels in opposite directions by an angle usual for turns of robots.
 
     Two calls one after the other, each for one motor, are one turn.
     """
@@ -265,7 +265,7 @@ class ProgramFacts:
 
         Args:
             call: A name such as `time.sleep`, a method of an object that the prelude defines such as `tank_drive.on`,
-                or the name of a function or method alone. Methods of other objects of the same class count as well.
+                or the name of a function or method alone. Methods of other objects of the same class are found as well.
 
         Raises:
             SyntaxError, ValueError, RecursionError: it is not Python.
@@ -286,18 +286,18 @@ class ProgramFacts:
 
     @cached_property
     def loop_ends(self) -> tuple[LoopEnd, ...]:
-        """The loops that end when a comparison in the text becomes true, the inner ones first."""
+        """The loops that end when a comparison in the text becomes true, the inner loops first."""
         return list_loop_ends(self._short_tree, self._constants)
 
     @cached_property
     def counts(self) -> tuple[tuple[int, LoopEnd], ...]:
-        """The lines in loops that add 1 to a variable when a value passes a constant, with the comparison of both."""
+        """The lines in loops that add 1 to a variable when a value passes a constant, each with that comparison."""
         return tuple(list_counts(self._short_tree, self._constants))
 
     def find_turns(self, line: int) -> tuple[float, str] | None:
         """Return by how much a call on a line turns a motor or both wheels, and the unit.
 
-        The result is None if the line has no such call.
+        The result is None if the line has no call that turns them.
         """
         return find_turns(self._short_tree, self._constants, line)
 
@@ -320,7 +320,7 @@ class ProgramFacts:
     def idle_definition(self) -> tuple[int, str] | None:
         """The last function or class of a program that only has definitions, and why it does nothing.
 
-        It is None for others.
+        The value is None for any other program.
         """
         return find_idle_definition(self._short_tree)
 
@@ -339,7 +339,7 @@ class ProgramFacts:
         return places
 
     def find_place(self, line: int) -> tuple[int, range]:
-        """Return where a line is: the first line of its function, 0 without one, and the lines of the loop around it.
+        """Return the first line of the function around a line, 0 without one, and the lines of the loop around it.
 
         Without a loop, these are the lines of the statement around it.
         """
@@ -445,8 +445,8 @@ def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
         tree: The program.
         prelude: Its prelude, a key of `PRELUDE_TEXTS`.
         wanted: The call: a name such as `time.sleep`, a method of an object that the prelude defines such as
-            `tank_drive.on`, or the name of a function or method alone. Methods of other objects of the same class count
-            as well.
+            `tank_drive.on`, or the name of a function or method alone. Methods of other objects of the same class are
+            found as well.
     """
     scopes = _list_scopes(build_scope(Module("", "", tree)))
     names = _Names(_build_prelude_scope(prelude))

@@ -27,8 +27,8 @@ def read_function(function: Callable[..., object]) -> ProgramSource:
     """Return a program that calls a function, a method of an object, or a `partial` of one with its arguments.
 
     Each line has the number that it has in the function's file. The program contains everything that the function uses:
-    imports of libraries for a brick and of Python's own modules, functions and classes as they are written, and values
-    as they are written or as expressions that compute them. Names without a definition are those of the prelude.
+    imports of libraries for a brick and of Python's own modules, the text of functions and classes, and values as text
+    or as expressions that compute them. Names without a definition are those of the prelude.
 
     Raises:
         ConfigError: it is no function with a name and a source, takes arguments, uses something else, or its file has
@@ -239,7 +239,7 @@ class _Reader:
             self._statements.append(statement)
 
     def _add_named(self, name: str, value: Any, around: Surroundings, user: str) -> bool:
-        """Add the object of a name if it is a module, a class or a function; return whether it is."""
+        """Add the object of a name if it is a module, a class or a function; return whether it is one of these."""
         function = inspect.unwrap(value)
         if statement := write_import(name, value):
             self._add_import(name, statement, user)
@@ -254,7 +254,7 @@ class _Reader:
         return True
 
     def _add_value(self, name: str, around: Surroundings, user: str) -> None:
-        """Add a value: as it is written, if that still has the same value, else as an expression for it."""
+        """Add a value: its text if that still gives the same value, else an expression for the value."""
         origin, source = around.find_origin(name)
         if origin == name:
             around = source

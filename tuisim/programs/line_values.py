@@ -18,10 +18,10 @@ _OWN_NAMES = (ast.Lambda, ast.ClassDef, ast.ListComp, ast.SetComp, ast.DictComp,
 
 
 def map_line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ...]]:
-    """Return the variables to show beside each line of a paused program: those that it has assigned, by line from 1.
+    """Return the variables to show beside the lines of a paused program: those that a line has assigned, by its number.
 
-    Of several lines that assign a variable, above the current line or in a loop around it, only the one that ran last
-    and the current line are included. A line that assigns a constant is left out if the variable now has another value.
+    If several lines assign a variable, above the current line or in a loop around it, only the line that ran last and
+    the current line are included. A line that assigns a constant is left out if the variable now has another value.
 
     Args:
         text: The program that runs.
@@ -89,7 +89,7 @@ def _find_values(
             lines_of.setdefault(name, []).append(line)
 
     def rank_age(line: int) -> tuple[int, int]:
-        """Return a sort key for when a line ran: in this iteration of the loop, in the one before, or earlier."""
+        """Return a sort key for when a line ran: in this iteration of the loop, in the previous one, or earlier."""
         if not first <= line <= last:
             return 2, -line
         return (0 if line < here else 1), -line
@@ -105,7 +105,7 @@ def _find_values(
 
 
 def _walk_scope(scope: ast.AST) -> Iterator[ast.AST]:
-    """Yield the syntax nodes of a scope, without those of functions, classes and comprehensions in it."""
+    """Yield the syntax nodes of a scope, without the nodes inside functions, classes and comprehensions."""
     for node in ast.iter_child_nodes(scope):
         if not isinstance(node, (*_OWN_NAMES, ast.FunctionDef, ast.AsyncFunctionDef)):
             yield node
@@ -113,7 +113,7 @@ def _walk_scope(scope: ast.AST) -> Iterator[ast.AST]:
 
 
 def _list_assignments(scope: ast.Module | _Function) -> Iterator[tuple[int, str, str | None]]:
-    """Yield line, name and value of each assignment in a scope; the value is its text if it is constant, else None."""
+    """Yield line, name and value of each assignment in a scope; the value is the text of a constant, else None."""
     if not isinstance(scope, ast.Module):
         arguments = scope.args
         parameters = [

@@ -41,7 +41,7 @@ def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
 def find_idle_definition(tree: ast.Module) -> tuple[int, str] | None:
     """Return the last function or class of a program that only has definitions, and why it does nothing.
 
-    The result is None for others.
+    The result is None for any other program.
     """
     last: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | None = None
     for node in tree.body:
@@ -114,7 +114,7 @@ def _dump(nodes: Sequence[ast.AST]) -> list[str]:
 def _find_idle_comparison(tree: ast.Module) -> tuple[int, str] | None:
     """Return the first line with a comparison whose result is not used, and a description; None if there is none.
 
-    A comparison in a `try` is left out: the program may use whether it raises an error.
+    A comparison in a `try` is ignored: the program may use whether it raises an error.
     """
     nodes = [*ast.walk(tree)]
     tried = {part for node in nodes if isinstance(node, ast.Try) for part in ast.walk(node)}
@@ -133,7 +133,7 @@ def _find_idle_comparison(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _describe_idle(test: ast.Compare, function: str) -> str:
-    """Return what is wrong with a comparison whose result is not used.
+    """Return why a comparison whose result is not used does nothing.
 
     Args:
         test: The comparison.

@@ -33,7 +33,7 @@ def _name_remedy(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
 
 
 def describe_newest(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
-    """Return in words which part was plugged in last; empty for a left wheel, which is described with the right one."""
+    """Return in words which part was plugged in last; empty for a left wheel, whose words come with the right one."""
     last = parts[-2:] if parts[-1].role == RIGHT else parts[-1:]
     words = f"{list_parts(last)}{_name_remedy(last, spec)}"
     return "" if parts[-1].role == LEFT else f"— plugged in, because the program opened it: {words}"

@@ -233,7 +233,7 @@ def resolve_files(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def is_file_name(word: str) -> bool:
-    """Return whether the value of one of `FILE_FIELDS` is the path of a file, not the name of something built in."""
+    """Return whether the value of one of `FILE_FIELDS` is a path, and not the name of something built in."""
     return os.sep in word or bool(Path(word).suffix)
 
 
@@ -266,7 +266,7 @@ def find_magic(text: str, name: str) -> Magic | None:
 
 
 def replace_mat(text: str, name: str, mat: str) -> str:
-    """Return a program with another mat in its magic line; if it has no magic line, with a new one.
+    """Return a program with another mat in its magic line; a program without a magic line gets a new one.
 
     Args:
         text: The program.

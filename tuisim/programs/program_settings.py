@@ -128,7 +128,7 @@ class Decided:
 
     @property
     def refusal(self) -> str:
-        """The first line that the brick's Python would refuse, and the number of further ones; empty for none."""
+        """The first line that the brick's Python would refuse, and how many more it would refuse; empty for none."""
         if not self.refused:
             return ""
         first, *others = self.refused
@@ -276,7 +276,7 @@ def build_program_settings(
 
 
 def find_free_paths(settings: Settings) -> frozenset[str]:
-    """Return which of `PROGRAM_PATHS` the user has not chosen; walls count as chosen if the floor was chosen."""
+    """Return the paths among `PROGRAM_PATHS` that the user has not chosen; who chooses the floor chooses the walls."""
     free = {path for path in PROGRAM_PATHS if settings.given.get(path) is None}
     return frozenset(free if "floor" in free else free - {*GROUND_PATHS})
 
@@ -362,7 +362,10 @@ def _check_prelude(program: Program) -> None:
 
 
 def _find_law(named: str | ProfileSpec) -> MotorLaw | None:
-    """Return the motor law of a profile or of the profile of a name; None if there is none, which is reported later."""
+    """Return the motor law of a profile or of the profile with a name.
+
+    The result is None if there is no such profile, which is reported later.
+    """
     try:
         return _load_profile(named).motor_law
     except ProfileError:
@@ -370,7 +373,10 @@ def _find_law(named: str | ProfileSpec) -> MotorLaw | None:
 
 
 def _is_fitting(settings: Settings, facts: SourceFacts) -> bool:
-    """Return whether the chosen profile is for a program; True if there is no such profile, which is reported later."""
+    """Return whether the chosen profile is for a program.
+
+    The result is True if the profile does not exist, which is reported later.
+    """
     law = _find_law(settings["profile"])
     if law is None:
         return True
@@ -378,7 +384,7 @@ def _is_fitting(settings: Settings, facts: SourceFacts) -> bool:
 
 
 def _can_move(law: MotorLaw, library: Library, is_for_hub: bool) -> bool:
-    """Return whether a motor law is for a library and, if the program is for a hub, for hubs."""
+    """Return whether a motor law is for a library; if the program is for a hub, the law must also be for hubs."""
     return law.library is library and (law is MotorLaw.PYBRICKS_4 or not is_for_hub)
 
 
@@ -453,7 +459,7 @@ def _describe_course_rules(source: ProgramSource, facts: SourceFacts) -> str:
 def _describe_decision(
     source: ProgramSource, facts: SourceFacts, layer: Mapping[str, Any], free: Collection[str]
 ) -> tuple[str, str, str]:
-    """Return three texts: what the source of a program decided, the same in brief, and how to change it.
+    """Return three texts: what the source of a program decided, a brief form of this, and how to change it.
 
     The texts are empty if the source decided nothing.
 

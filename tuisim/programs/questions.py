@@ -31,7 +31,7 @@ _ENDINGS = _RECORDERS | {
 
 
 def _list_key_words(port: str, keys: Sequence[str]) -> dict[Word, str]:
-    """Return the keys of a controller by the words for them; a word for several keys has the first of them."""
+    """Return the keys of a controller by the words for them; a word for several keys has the first of these keys."""
     names = [(key.removeprefix(f"{port}."), key) for key in keys]
     parts = [(name.rpartition("_")[0], key) for name, key in reversed(names) if "_" in name]
     return dict[Word, str]([*parts, *names])
@@ -331,7 +331,10 @@ def _is_test(step: ast.stmt) -> bool:
 
 
 def _is_noted(step: ast.stmt, compared: Set[str]) -> bool:
-    """Return whether a step only prints a value, or stores it in a variable compared with it, such as a maximum."""
+    """Return whether a step only prints a value, or stores the value in a variable that it is compared with.
+
+    Such a variable has, for example, the maximum.
+    """
     match step:
         case ast.Assign(targets=targets):
             return {name for target in targets for name in _list_names(target)} <= compared

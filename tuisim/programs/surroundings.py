@@ -129,14 +129,14 @@ class Surroundings:
         return f"from {module} import {original} as {name}" if is_library(module) else ""
 
     def find_origin(self, name: str) -> tuple[str, Surroundings]:
-        """Return the name of a value in the module that defines it, and the surroundings there."""
+        """Return the name of a value in the module that defines it, and the surroundings in that module."""
         module, original = self._find_module(name)
         if not module:
             return name, self
         return Surroundings.read_module(sys.modules[module]).find_origin(original)
 
     def _find_module(self, name: str) -> tuple[str, str]:
-        """Return the module from which a name is imported, and its name there; empty texts if it is not imported."""
+        """Return the module from which a name is imported, and the name in that module; both empty without an import."""
         statement, _ = self.find(name)
         if isinstance(statement, ast.ImportFrom):
             names = {alias.asname or alias.name: alias.name for alias in statement.names}
@@ -151,7 +151,7 @@ class Surroundings:
     def list_attributes(self, name: str, text: str) -> set[str]:
         """Return the attributes that a text reads of a user's own module.
 
-        The result is empty for another module, or if the text does more with it than read attributes.
+        The result is empty for another module, or if the text uses the module otherwise than by reading its attributes.
 
         Args:
             name: The name of the module in these surroundings.
@@ -218,7 +218,7 @@ def _is_pure(value: object) -> bool:
 
 
 def _parse(text: str) -> list[ast.stmt]:
-    """Return the statements of a text outside functions and classes; those in a block follow the block's statement."""
+    """Return the statements of a text outside functions and classes; the statements in a block follow the block's."""
     try:
         return [*_list_statements(parse_module(text).body)]
     except NOT_PYTHON:

@@ -100,7 +100,7 @@ def build_value_error(value: object) -> ConfigError:
 
 
 def write_value(value: object, known: Collection[str] = ()) -> str:
-    """Return an expression with a given value that uses only Python's own names and known ones.
+    """Return an expression with a given value that uses only Python's own names and the names in `known`.
 
     Args:
         value: The value.

@@ -47,7 +47,7 @@ class LoopEnd:
 
 
 def list_loop_ends(tree: ast.Module, constants: Mapping[str, Word]) -> tuple[LoopEnd, ...]:
-    """Return the loops of a program that end when a comparison in the text becomes true or false, the inner ones first.
+    """Return the loops of a program that end when a comparison in the text becomes true or false, inner loops first.
 
     Args:
         tree: The program.
@@ -59,7 +59,7 @@ def list_loop_ends(tree: ast.Module, constants: Mapping[str, Word]) -> tuple[Loo
 
 
 def list_counts(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[tuple[int, LoopEnd]]:
-    """Yield each line in a loop that adds 1 to a variable when a value passes a constant, and the comparison of both.
+    """Yield each line in a loop that adds 1 to a variable when a value passes a constant, with that comparison.
 
     Nothing else may change the variable after its first value, and no division may use it.
 
@@ -158,7 +158,7 @@ def _is_drive(node: ast.AST) -> TypeGuard[ast.Call]:
 def _find_ends(
     loop: ast.While, tree: ast.Module, constants: Mapping[str, Word]
 ) -> Iterator[LoopEnd]:
-    """Yield the comparisons that end a loop, from its condition or, if it is endless, from that of a `break`."""
+    """Yield the comparisons that end a loop: from its condition or, for an endless loop, from that of a `break`."""
     is_endless = isinstance(loop.test, ast.Constant) and bool(loop.test.value)
     if not is_endless:
         yield from _find_end(loop, loop.test, tree, constants, is_break=False)
@@ -189,7 +189,7 @@ def _find_end(
         loop: The loop.
         test: The condition.
         tree: The program.
-        words: Values of names in the program, which count as constants.
+        words: Values of names in the program, which are read as constants.
         is_break: Whether the loop ends if the condition is true; otherwise it ends if it is false.
     """
     if isinstance(test, ast.BoolOp):
@@ -301,7 +301,7 @@ def _is_set(node: ast.Name) -> bool:
 
 
 def _find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None:
-    """Return the text or number of a constant expression, or a name in capitals such as `RED`; None for others."""
+    """Return the text or number of a constant expression, or a name in capitals such as `RED`; else None."""
     match node:
         case ast.Name(id=name):
             return constants.get(name)
@@ -320,7 +320,7 @@ def _find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None
 
 
 def _find_attribute(node: ast.expr) -> str:
-    """Return the attribute or method that an expression reads, without an argument or with 0; empty for others."""
+    """Return the attribute or method that an expression reads, without an argument or with 0; else an empty text."""
     match node:
         case (
             ast.Attribute(attr=attr)

@@ -85,7 +85,7 @@ class BuiltRobot:
 
 
 def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot | None:
-    """Return the robot that a program needs; None if the usual one has every part on its port.
+    """Return the robot that a program needs; None if the usual robot has every part on its port.
 
     Args:
         mentions: The devices that the program creates.
@@ -117,7 +117,7 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
 
 
 def find_shown_ports(mentions: Mentions, robot: RobotSpec) -> tuple[str, ...]:
-    """Return the ports on a robot of the parts that a program's text shows, even if it shows them without ports."""
+    """Return the ports of a robot whose parts a program's text shows, even if the text does not show the ports."""
     pairs = [port for pair in mentions.pairs for port in (pair.left, pair.right)]
     ports = {device.port for device in mentions.devices} | {*pairs}
     taken_anywhere = {device.kind for device in mentions.devices if device.is_any}
@@ -295,7 +295,7 @@ class _Builder:
                 missing -= 1
 
     def _read_sizes(self, pair: Pair | None) -> dict[str, float]:
-        """Return the wheel sizes in mm that the program gives to the class of its wheels, if they are not usual."""
+        """Return the wheel sizes in mm that the program gives to the class of its wheels, without the usual sizes."""
         sizes: dict[str, float] = {}
         if pair and pair.wheel_mm and pair.wheel_mm[0] != self.usual.wheel_diameter_mm:
             sizes["wheel_diameter_mm"], width_mm = pair.wheel_mm
@@ -321,7 +321,7 @@ class _Builder:
         }
 
     def _list_exact(self) -> Iterator[str]:
-        """Yield the field names of the sizes that a `DriveBase` gives, even if they are the usual ones."""
+        """Yield the field names of the sizes that a `DriveBase` gives, even if these are the usual sizes."""
         for pair in self.mentions.pairs:
             if PAIRS[pair.class_name].takes_motors:
                 yield from ["wheel_diameter_mm"] if pair.wheel_mm else []
@@ -351,7 +351,7 @@ class _Builder:
         self._tell_sizes({key: Size(mm, wheels.where) for key, mm in sizes.items()})
 
     def _find_kinds(self, mentions: Iterable[Mention]) -> dict[str, DeviceKind]:
-        """Return the kind of device on each port that the program names; of several kinds the one named most often."""
+        """Return the kind of device on each port that the program names; of several kinds, that named most often."""
         votes: dict[str, Counter[DeviceKind]] = {}
         for mention in mentions:
             if mention.port:
@@ -460,10 +460,10 @@ class _Builder:
         return ported
 
     def _stay(self, left: list[SensorSpec], placed: dict[str, SensorSpec]) -> None:
-        """Put the usual sensors that the program does not name on their ports or, if taken, on free ones.
+        """Put the usual sensors that the program does not name on their ports; if a port is taken, on a free port.
 
         Args:
-            left: These sensors.
+            left: The usual sensors that the program does not name.
             placed: The sensors by port, to which they are added.
         """
         moving = []
@@ -505,7 +505,7 @@ class _Builder:
 
 
 def _is_there(sensor: SensorSpec, mention: Mention | None, *, by_side: bool) -> bool:
-    """Return whether a sensor of the usual robot is the one that the program creates on its port.
+    """Return whether a sensor of the usual robot is the sensor that the program creates on the port.
 
     Args:
         sensor: The sensor.

@@ -48,7 +48,7 @@ def _find_refused(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 
 def _name_refused(node: ast.AST) -> str:
-    """Return the name of a node's syntax if the brick's Python refuses it; empty if it accepts it."""
+    """Return the name of a node's syntax if the brick's Python refuses the syntax; else an empty text."""
     match node:
         case ast.alias(name=name) | ast.ImportFrom(module=str(name)) if name in MISSING_MODULES:
             return name

@@ -19,7 +19,7 @@ def has_course_names(modules: Mapping[str, Module], text: str) -> bool:
 
     Args:
         modules: The program and its own modules.
-        text: The text of the program, whose names may be those of a prelude.
+        text: The text of the program, whose names may be defined by a prelude.
     """
     trees = [module.tree for module in modules.values()]
     defined = {name for tree in trees for name in find_definitions(tree)}

@@ -107,8 +107,8 @@ class Mechanics:
         Args:
             port: The motor's port.
             targets: The target positions.
-            places: Positions that the program sets for the motor, as at an end stop: targets then count from the end
-                stop.
+            places: Positions that the program sets for the motor, for example at an end stop: targets then are measured
+                from the end stop.
         """
         far = max(
             (abs(target.deg - place) for target in targets for place in places or (0.0,)), default=0
@@ -132,7 +132,7 @@ class Mechanics:
         return before < driven
 
     def turn_motor(self, port: str, gear_ratio: float, *, is_turned: bool) -> None:
-        """Convert the recorded angles of a motor from those of the program to its own.
+        """Convert the recorded angles of a motor from the program's angles to the angles of the motor itself.
 
         Args:
             port: The motor's port.

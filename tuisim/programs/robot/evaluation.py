@@ -337,7 +337,7 @@ class Evaluation:
                     yield from _add_call(node, self.find_returned(value))
 
     def _call_get(self, base: ast.expr, node: ast.Call, scope: Scope) -> Iterator[Value]:
-        """Yield the values that a call of a dict's `get`, or of that of `os.environ`, can return."""
+        """Yield the values that a call of `get` of a dict or of `os.environ` can return."""
         owners = self.values(base, scope)
         tables = [value for value in owners if isinstance(value, SourceCollection)]
         for table in tables:

@@ -12,9 +12,9 @@ _TURN_DEG = 360
 
 
 def find_formula_size(node: ast.AST) -> tuple[str, float] | None:
-    """Return field name and number of a wheel's size in an expression that divides by its circumference.
+    """Return field name and number of a wheel's size in an expression that divides by the wheel's circumference.
 
-    The result is None for others.
+    The result is None for any other expression.
     """
     match node:
         case ast.BinOp(op=ast.Div(), right=product) if isinstance(product, ast.BinOp):

@@ -279,7 +279,7 @@ def find_mode_kind(text: object) -> DeviceKind | None:
 
 
 def list_names(node: ast.AST) -> tuple[str, ...]:
-    """Return the names and texts in an expression that may say what a device is for, without those of ports."""
+    """Return the names and texts in an expression that may say what a device is for, without names of ports."""
     names = []
     for inner in ast.walk(node):
         match inner:

@@ -364,7 +364,7 @@ class _MechanicsReader:
         return list(dict.fromkeys(ports))
 
     def _evaluate(self, node: ast.expr, scope: Scope) -> Sequence[Value]:
-        """Return the values of an expression where it is: after the nearest assignment above, within its object."""
+        """Return the values that an expression has in its place: after the nearest assignment above, in its object."""
         match node:
             case ast.Name(id=name):
                 known = [
@@ -392,7 +392,7 @@ class _MechanicsReader:
         return self.evaluation.values(node, scope)
 
     def _enter_object(self, value: Value) -> Evaluation:
-        """Return an evaluation of expressions within one object of a class of the program."""
+        """Return an evaluation of expressions within one object, whose class is one of the program."""
         match value:
             case Instance(of=OwnClass(scope=scope), call=ast.Call() as call):
                 if call not in self.inside:

@@ -368,7 +368,7 @@ class _Reader:
         return replace(motor, is_turned=is_turned, gear_ratio=self._read_gears(call))
 
     def _read_gears(self, call: Call) -> float:
-        """Return a motor's turns per turn of what it drives, from a list of gears, or a list of lists, in a call."""
+        """Return a motor's turns per turn of the axle that it drives, from a list of gears, or a list of lists."""
         parts = [*self._flatten(self.evaluation.find_argument(call, library.GEARS, 2) or ())]
         trains = [
             [*self._flatten([part])] for part in parts if isinstance(part, SourceCollection)
@@ -633,7 +633,7 @@ def _needs_motors(name: str) -> bool:
 
 
 def _is_maker(call: ast.Call | None, owner: Scope | None, value: Instance) -> bool:
-    """Return whether a call creates an instance: it is the instance's own, or calls `__init__` in its class `owner`."""
+    """Return whether a call creates an instance: it is the instance's call, or calls `__init__` of class `owner`."""
     if value.call is not None and value.call is call:
         return True
     from_init = (

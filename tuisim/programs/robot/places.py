@@ -119,7 +119,7 @@ SENSOR_SPECS: Mapping[DeviceKind, type[SensorSpec]] = {
 def _choose_sides(
     mentions: Mapping[str, Mention], *, first_free: bool, kind: DeviceKind
 ) -> dict[str, Side]:
-    """Return the side of each sensor by port: the one that its name says, else the next free one.
+    """Return the side of each sensor by port: the side that the sensor's name says, else the next free side.
 
     Args:
         mentions: The sensors, by port.
@@ -148,7 +148,7 @@ def on_port(sensor: Any, port: str) -> SensorSpec:
 
 
 def mount(sensor: SensorSpec, mention: Mention) -> SensorSpec:
-    """Return a distance sensor turned to the side or back if the program's name for it says so.
+    """Return a distance sensor turned to the side or back if the program's name for the sensor says this.
 
     Other sensors are returned unchanged.
     """
@@ -160,7 +160,7 @@ def mount(sensor: SensorSpec, mention: Mention) -> SensorSpec:
 
 
 def build_fields(placed: Mapping[str, SensorSpec], usual: RobotSpec) -> dict[str, Any]:
-    """Return sensors as fields of a robot, those of the usual robot first and in its order."""
+    """Return sensors as fields of a robot: first the sensors of the usual robot in its order, then all others."""
     order = [sensor.name for sensor in usual.sensors]
     sensors = sorted(
         placed.values(),

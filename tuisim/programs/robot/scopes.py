@@ -76,7 +76,7 @@ class Scope:
 
     @property
     def owner(self) -> Scope | None:
-        """The class of which this scope is the body or a method; None for others."""
+        """The class of which this scope is the body or a method; None for any other scope."""
         if isinstance(self.node, ast.ClassDef):
             return self
         return self.outer.owner if self.outer is not None else None
@@ -211,7 +211,7 @@ def _bind_target(scope: Scope, target: ast.expr, bound: Bound) -> None:
 
 
 def list_blocks(scope: Scope) -> Iterator[list[ast.stmt]]:
-    """Yield each list of statements in a scope: its body, and those of its loops and branches."""
+    """Yield each list of statements in a scope: its body, and the bodies of its loops and branches."""
     yield scope.node.body
     for node in scope.body:
         for name in ("body", "orelse", "finalbody"):

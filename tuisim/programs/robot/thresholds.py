@@ -32,7 +32,7 @@ _PRELUDE = "*prelude"
 
 @dataclass(frozen=True, slots=True)
 class ProgramThreshold:
-    """A value in a program with which it compares a colour sensor's reading, or which it controls the reading to."""
+    """A value in a program with which it compares a colour sensor's reading, or to which it controls the reading."""
 
     read: LightRead
     sign: str
@@ -74,7 +74,7 @@ def find_light_read(text: str) -> LightRead:
 def find_light_reads(program: Program, robot: RobotSpec) -> Mapping[str, LightRead]:
     """Return which reading of each colour sensor a program compares first or, without one, reads first, by sensor name.
 
-    For a sensor without a reading in the text it is that of `find_light_read`.
+    For a sensor without a reading in the text, it is the reading that `find_light_read` returns.
     """
     usual = find_light_read(program.text)
     reads: dict[str, tuple[int, LightRead]] = {}
@@ -99,8 +99,8 @@ def find_thresholds(
 ) -> Mapping[str, tuple[ProgramThreshold, ...]]:
     """Return the values with which a program compares its colour sensors, in the order of its lines, by sensor name.
 
-    They are read from its syntax tree, so values that it computes while it runs are missing. Empty for a program that
-    is not Python, or too deeply nested to be read.
+    The values are read from the syntax tree, without those that the program computes while it runs. The result is empty
+    for a program that is not Python, or too deeply nested to be read.
     """
     try:
         return _find_thresholds(program, robot)

@@ -70,7 +70,7 @@ def find_wheels(
     Args:
         mentions: The devices that the program creates.
         kinds: The motors that the program names, by port.
-        usual: The robot whose wheels are taken if nothing says otherwise.
+        usual: The robot whose wheels are used if the program does not show other wheels.
         tools: Ports of motors that drive no wheel, unless the program drives them as a pair.
     """
     devices = mentions.devices
@@ -186,7 +186,7 @@ def _choose_usual(
     usual: RobotSpec,
     other_tools: Collection[str],
 ) -> WheelMotors:
-    """Return the usual ports of the wheels, or others if motors of the program take the usual ones."""
+    """Return the usual ports of the wheels, or other ports if motors of the program take the usual ones."""
     ports = (usual.left_port, usual.right_port)
     sensors = {device.port for device in devices if not device.kind.is_motor}
     if (
@@ -229,14 +229,14 @@ _MAX_MEDIUM = 2
 
 
 def add_tools(kinds: Mapping[str, DeviceKind], mentions: Mentions) -> dict[str, DeviceKind]:
-    """Return the kinds of motors by port; motors whose names say that they move a tool become medium ones."""
+    """Return the kinds of motors by port; a motor whose name says that it moves a tool becomes a medium motor."""
     return _add_medium(
         kinds, mentions, [port for port in kinds if is_tool(_list_names(port, mentions))]
     )
 
 
 def add_others(kinds: Mapping[str, DeviceKind], mentions: Mentions) -> dict[str, DeviceKind]:
-    """Return the kinds of motors that drive no wheel, by port; those of an unknown kind become medium ones."""
+    """Return the kinds of motors that drive no wheel, by port; motors of an unknown kind become medium motors."""
     return _add_medium(kinds, mentions, [*kinds])
 
 
@@ -281,7 +281,7 @@ class Size:
 
 
 def find_sizes(mentions: Mentions) -> dict[str, Size | None]:
-    """Return the wheels' diameter and distance in mm, by field of `RobotSpec`, from numbers with such names.
+    """Return the wheels' diameter and distance in mm, by field of `RobotSpec`, from numbers named like these sizes.
 
     A size is None if the program does not name it, or not clearly.
     """
@@ -366,7 +366,7 @@ def _read_number(value: object) -> float:
 
 
 def _pick_only(named: list[tuple[str, Size]], limits: tuple[float, float]) -> Size | None:
-    """Return the size in mm if all named sizes agree; None if they differ, or if it is not within the limits."""
+    """Return the size in mm if all named sizes agree; None if they differ, or if the size is not within the limits."""
     low, high = limits
     sizes: list[Size] = []
     for name, size in named:

@@ -97,7 +97,7 @@ def _split_name(name: str) -> list[str]:
 
 
 def find_side(names: Iterable[str]) -> Side:
-    """Return the side that the first name with one says, as in `left_motor`; `Side.NONE` if no name has one."""
+    """Return the side that the first name with a side says, as in `left_motor`; `Side.NONE` if no name has a side."""
     for name in names:
         for part in _split_name(name):
             if part in _SIDES_BY_WORD:
@@ -114,12 +114,12 @@ def is_aside(names: Iterable[str]) -> bool:
 
 
 def is_diameter(name: str) -> bool:
-    """Return whether a name is that of the diameter of a wheel."""
+    """Return whether a name means the diameter of a wheel."""
     return _is_of_wheel(name, _DIAMETER) or _is_alone(name, _DIAMETER)
 
 
 def is_radius(name: str) -> bool:
-    """Return whether a name is that of the radius of a wheel."""
+    """Return whether a name means the radius of a wheel."""
     return _is_of_wheel(name, _RADIUS)
 
 
@@ -145,7 +145,10 @@ def find_girth(name: str, number: float) -> float:
 
 
 def _is_alone(name: str, measure: frozenset[str]) -> bool:
-    """Return whether a name is only a long word of a measure, such as `diameter_mm`, which must be that of a wheel."""
+    """Return whether a name is, apart from its unit, a single long word of a measure, such as `diameter_mm`.
+
+    The measure must then be that of a wheel.
+    """
     parts = {*_split_name(name)} - _UNITS_MM.keys()
     return len(parts) == 1 and parts <= measure and len(*parts) >= _LONG_WORD
 
@@ -157,7 +160,7 @@ def _is_of_wheel(name: str, measure: frozenset[str]) -> bool:
 
 
 def is_spacing(name: str) -> bool:
-    """Return whether a name is that of the distance between the wheels."""
+    """Return whether a name means the distance between the wheels."""
     parts = {*_split_name(name)} - _BETWEEN - {"axle", "width"}
     if not parts <= _WHEEL | _TRACK | _APART | _UNITS_MM.keys():
         return False
