@@ -192,7 +192,7 @@ def run_on_cluster(
     A result does not depend on the worker. Tasks of a worker that has died are executed on another one.
 
     Args:
-        tasks: The tasks; the next ones are taken as workers become free, as by `run_many`.
+        tasks: The tasks; as for `run_many`, further tasks are taken as workers become free.
         scheduler: Address of a scheduler, such as `tcp://host:8786`; empty starts a cluster on this machine.
         workers: Number of worker processes of a cluster on this machine.
 

@@ -89,7 +89,7 @@ Choice = tuple[Value, ...] | SampleValues
 
 @dataclass(frozen=True, slots=True)
 class ParameterAxis:
-    """Parameters of a batch that vary together: a single one, or those of a Latin hypercube."""
+    """Parameters of a batch that vary together: a single parameter, or the parameters of a Latin hypercube."""
 
     names: tuple[str, ...]
     points: tuple[tuple[Value, ...], ...]

@@ -89,7 +89,7 @@ class Plan:
             self._check(subject)
 
     def _check(self, subject: Subject) -> None:
-        """Raise ConfigError if a combination of a program's parameters is wrong; seeds are left out."""
+        """Raise ConfigError if a combination of a program's parameters is wrong; seeds are not checked."""
         own = [axis for axis in self.grid.axes if axis.names != (SEED,)]
         for name in self.choices:
             if name in subject.given:
@@ -114,11 +114,11 @@ class Plan:
         """Check the expressions for further columns of the table before any run starts.
 
         Args:
-            expressions: By the name of the column.
+            expressions: The expressions by the name of their column.
 
         Raises:
-            ConfigError: one cannot be parsed, names a column that the table will not have, or has the name of such a
-                column.
+            ConfigError: one cannot be parsed, names a column that the table will not have, or has the name of a column
+                that the table will have.
         """
         check_expressions(expressions, self.names, [goal.name for goal in self.goals])
 

@@ -42,7 +42,7 @@ def parse_precision(text: str, key: str, plan: Plan, columns: Iterable[str]) -> 
         text: The text; `+-` is the same as `±`.
         key: The argument, for errors.
         plan: The runs.
-        columns: The columns that the table has besides those of every batch.
+        columns: The columns of this batch's table that not every batch has.
 
     Raises:
         ConfigError: it cannot be parsed, there will be no such column of numbers, or the seeds are too few.

@@ -142,12 +142,12 @@ def has_batch(path: Path, identity: Mapping[str, Any]) -> bool:
 
 
 def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -> dict[int, Row]:
-    """Return the rows of a complete table by the index of their task; empty if the table is not that of the batch.
+    """Return the rows of a complete table by the index of their task; empty if the table belongs to another batch.
 
     Args:
         path: The file of the table.
         identity: What identifies the batch.
-        columns: The columns of rows besides those of sample variables; further columns of the table are left out.
+        columns: The columns to read, in addition to the columns of sample variables.
     """
     from tuisim.logs.frames import read_log
 
@@ -233,7 +233,7 @@ class Sweep:
         plan: The plan.
         expressions: Further columns of the table, by name.
         out: The file of the table; None for none.
-        version: Version of tuisim: an interrupted batch is resumed only with the same.
+        version: Version of tuisim: only the version that began a batch can resume it.
         resumes: Whether to resume an interrupted batch.
 
     Attributes:
@@ -285,7 +285,7 @@ class Sweep:
         measure: Callable[[Result], Row] = lambda _: {},
         due: Iterator[int] | None = None,
     ) -> None:
-        """Execute the tasks without a row, and block until all are done.
+        """Execute the tasks that have no row yet, and block until all are done.
 
         An interrupt stops the running tasks and is raised again; finished rows are kept.
 
@@ -293,7 +293,7 @@ class Sweep:
             workers: The processes that execute the tasks.
             on_row: Called with each new row.
             measure: Returns further columns of a run by name.
-            due: The indices of the tasks; None for all. After it has stopped, it may go on when there are further rows.
+            due: The indices of the tasks; None for all. An iterator that has stopped is asked again after further rows.
 
         Raises:
             ConfigError, HostError: there is no such cluster, or the connection to it is lost.
@@ -325,7 +325,7 @@ class Sweep:
                 self._partial.close()
 
     def build_frame(self, indices: Iterable[int] | None = None) -> pd.DataFrame:
-        """Return the table of the finished runs, or of those with some indices.
+        """Return the table of the finished runs, or of the finished runs with some indices.
 
         Raises:
             LogError: an expression is invalid, or names a column that does not exist.

@@ -47,7 +47,7 @@ def build_row(result: Result, program: str, seed: int) -> Row:
 
     Args:
         result: The result of the run.
-        program: The program's name; empty if all runs have the same one.
+        program: The program's name; empty if all runs have the same program.
         seed: The seed of the run, whether it is a parameter or not.
     """
     row: Row = {RUN: result.index + 1}
@@ -147,7 +147,7 @@ def _is_numeric(column: Any) -> bool:
 
 
 def is_statistic(name: str) -> bool:
-    """Return whether a name can be that of a column of a sample variable, such as `Light_mean`."""
+    """Return whether a column of a sample variable can have a name, such as `Light_mean`."""
     return name.endswith(tuple(f"_{statistic}" for statistic in STATISTICS))
 
 
@@ -183,13 +183,13 @@ def check_expressions(
     """Check expressions for further columns before any run starts.
 
     Args:
-        expressions: By the name of their column.
+        expressions: The expressions by the name of their column.
         parameters: The names of the parameters.
         goals: The names of the goals.
 
     Raises:
-        ConfigError: one cannot be parsed, names a column that the table will not have, or has the name of such a
-            column.
+        ConfigError: one cannot be parsed, names a column that the table will not have, or has the name of a column that
+            the table will have.
     """
     known = list_usual_columns(parameters, goals)
     for name, text in expressions.items():

@@ -150,7 +150,7 @@ def open_app(**given: Any) -> int:
 
 
 def _select_app_settings(settings: Settings) -> dict[str, Any]:
-    """Return the settings of the app itself, without those of a run, by the field names of `AppSettings`."""
+    """Return the settings of the app itself, without settings of a run, by the field names of `AppSettings`."""
     return {
         "quiet": settings["quiet"],
         "rays": settings["rays"],
@@ -228,7 +228,7 @@ def _load_world_goals(world: WorldFile | None, mats: str | None) -> GoalsFile | 
 
 
 def _list_words(arguments: Arguments, goals: GoalsFile | None) -> tuple[str, ...]:
-    """Return the words of the command line, with the goals file in front as the world if they name no world."""
+    """Return the words of the command line; if they name no world, with the goals file in front, as the world."""
     from tuisim.settings.worlds import is_world_name
 
     words: tuple[str, ...] = arguments.words

@@ -83,7 +83,7 @@ def batch(**given: Any) -> int:
     Raises:
         ConfigError: a program, a parameter, a goal, an expression or an option is wrong; nothing was run.
         ExportError: the table cannot be written; checked before anything is run.
-        KeyboardInterrupt: ctrl-C; what is done has been written.
+        KeyboardInterrupt: ctrl-C; the rows of finished runs have been written.
     """
     arguments = Arguments(**given)
     return _Batch(read_request(arguments), as_json=arguments.as_json).run()

@@ -60,7 +60,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
 
     Args:
         run: The run.
-        most_bytes: If its output is longer, `lines` and `samples` are None instead of counts; None for no limit.
+        most_bytes: If the run's output is longer, `lines` and `samples` are None instead of counts; None for no limit.
     """
     last = run.telemetry.last()
     end = run.end

@@ -109,7 +109,7 @@ def _iterate_names(word: str, store: RunStore) -> Iterator[str]:
 
 
 def _find_differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
-    """Yield a note if the user changed the run while it ran, and one if its start is not that of the goals file."""
+    """Yield a note if the user changed the run while it ran, and a note if its start differs from the goals file's."""
     presses = press_actions(merge_settings(file.settings)["press"], run.spec.profile.tick_hz)
     if run.actions and run.actions != presses:
         yield f"run {run.number} was changed while it ran: {counted(len(run.actions), 'action')} of the user"
@@ -175,9 +175,9 @@ def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> N
 
 
 def _choose_mark(judgement: Judgement) -> str:
-    """Return the character in front of a goal, which shows whether it is met.
+    """Return the character in front of a goal, which shows whether the goal is met.
 
-    A missed goal that takes points off counts as met.
+    For a goal that takes points off, it shows whether the goal is missed.
     """
     is_decided = judgement.state in (GoalState.MET, GoalState.MISSED)
     is_penalty = judgement.goal.points < 0 and is_decided

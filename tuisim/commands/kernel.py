@@ -92,7 +92,10 @@ kernel = Group.of(
 def _place(
     user: bool, sys_prefix: bool, prefix: str | None, name: str | None
 ) -> tuple[KernelSpecManager, str | None, str | None]:
-    """Return Jupyter's manager of kernels, and the folder for kernels and the name that the user chose, or None."""
+    """Return Jupyter's manager of kernels, the user's folder for kernels, and the user's name for the kernel.
+
+    Folder and name are None if the user chose none.
+    """
     options = {"--user": user, "--sys-prefix": sys_prefix, "--prefix": prefix is not None}
     places = [flag for flag, is_given in options.items() if is_given]
     if len(places) > 1:
@@ -134,7 +137,7 @@ def _iterate_kernels(folders: Sequence[str]) -> Iterator[InstalledKernel]:
 
 
 def _read(file: Path) -> dict[str, Any] | None:
-    """Return the kernel spec in a file; None if it cannot be read or is not that of a tuisim kernel."""
+    """Return the kernel spec in a file; None if it cannot be read, or does not belong to a tuisim kernel."""
     try:
         spec = json.loads(file.read_bytes())
         ours = EXTENSION in spec["argv"] and isinstance(spec["display_name"], str)

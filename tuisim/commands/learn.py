@@ -76,7 +76,7 @@ def open_lesson(word: str | None, folder: str | None, library: str | None, as_te
 
 
 def _choose_next_lesson(lessons: Sequence[Lesson], progress: dict[str, LessonProgress]) -> Lesson:
-    """Return the lesson to go on with: the one opened last if it has an open step, else the first with an open step."""
+    """Return the lesson to go on with: the lesson opened last if it has an open step, else the first with one."""
 
     def is_open(lesson: Lesson) -> bool:
         return progress.get(lesson.name, LessonProgress()).current(lesson) is not None

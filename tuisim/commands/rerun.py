@@ -55,10 +55,10 @@ def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
 
 
 def same(run: StoredRun, again: StoredRun) -> RunDiff:
-    """Return the difference between a run and its re-run; its `same` is true if all bits are equal.
+    """Return the difference between a run and its re-run; the `same` of the result is true if all bits are equal.
 
     Args:
-        run: The run; one that was cut off is compared up to its last record, unless the position of its stop is known.
+        run: The run; if it was cut off, it is compared up to its last record, unless the position of its stop is known.
         again: Its re-run.
     """
     if not _has_obeyed_stop(run):

@@ -245,7 +245,7 @@ def prepare_replay(
         run: Its number, its id or the start of its id, its folder's path, or `last`.
         words: Other words of the command line; must be empty.
         arguments: The arguments of the command line.
-        config: The user's defaults, of which those of the app apply.
+        config: The user's defaults; only the defaults of the app apply.
 
     Raises:
         ConfigError: a program, a world or an option of a run is given, too.
@@ -271,7 +271,7 @@ def prepare_runs(
 ) -> list[Prepared | NotRun]:
     """Return the programs that the user named, to be run one after another in the named world, if any.
 
-    An error in one notebook of a folder does not prevent the others from running.
+    An error in one notebook of a folder does not prevent the other notebooks from running.
 
     Args:
         words: The programs and worlds that the user named.

@@ -71,7 +71,7 @@ def list_sample_columns() -> Table:
 
 
 def list_telemetry_columns() -> Table:
-    """Return the table of the columns of telemetry of the default robot."""
+    """Return the table of telemetry columns of the default robot."""
     sensors = [name for mount in list_mounted(RobotSpec()) for name in mount.names]
     return _build_column_table(("time", *MOTION_COLUMNS, *sensors, "line"))
 
@@ -159,7 +159,7 @@ def list_breakpoints() -> Table:
 
 
 def list_columns() -> Table:
-    """Return the table of the columns of a run of the default robot, with those of motors only in profile `ev3`."""
+    """Return the table of a run's columns for the default robot, with columns of motors only in profile `ev3`."""
     return _build_column_table(
         list_column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"]))
     )

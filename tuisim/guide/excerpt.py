@@ -40,7 +40,7 @@ def draw_excerpt(
     Args:
         passage: The passage.
         width: The width of the lines in columns.
-        max_lines: The largest number of lines; an ellipsis stands for what is left out.
+        max_lines: The largest number of lines; an ellipsis stands for the omitted text.
         pattern: Matches the words of the question; None for the beginning. The excerpt of a long passage begins at the
             sentence, or the line of code, after which there are most matches.
     """
@@ -96,7 +96,7 @@ def _wrap_code(line: str, width: int) -> list[str]:
 
 
 def _draw_shortened(markdown: str, width: int, max_lines: int) -> list[Line]:
-    """Return the first lines of Markdown, with an ellipsis at the end of the last one if there are more."""
+    """Return the first lines of Markdown; if there are more, the last one ends in an ellipsis."""
     lines = _draw_markdown(markdown, width)
     if len(lines) <= max_lines:
         return lines

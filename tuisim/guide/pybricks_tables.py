@@ -12,7 +12,7 @@ _WHEELS = ((55.5, 104), (56, 114), (56, 180), (43.2, 120), (68.8, 150))
 
 
 def list_motors() -> Table:
-    """Return the table of the settings of a new motor of each kind, in each profile of Pybricks."""
+    """Return the table of a new motor's settings, for each kind of motor and each profile of Pybricks."""
     settings = {
         f"{kind}, {code(profile.name)}": words
         for profile in _PROFILES

@@ -201,7 +201,7 @@ class _Index:
         return rows
 
     def _sum_questions(self, question_stems: Iterable[_Stems]) -> list[dict[str, float]]:
-        """Return for each passage the sum of the vectors of its questions, each of length 1."""
+        """Return for each passage the sum of the vectors of its questions; each vector has the length 1."""
         sums: list[dict[str, float]] = [{} for _ in self.passages]
         for row, stems in zip(self.row_of_ask, question_stems, strict=True):
             weights = self.weights(stems)
@@ -219,9 +219,9 @@ class _Index:
         }
 
     def expand_stems(self, typed: _Stems) -> _Stems:
-        """Return the known stems for those of a question.
+        """Return the known stems for the stems of a question.
 
-        An unknown stem is replaced by those that begin with it, or by the most similar.
+        An unknown stem is replaced by the known stems that begin with it, or by the most similar stem.
         """
         unknown = [stem for stem in typed - self.stems if len(stem) >= _MIN_PREFIX_LETTERS]
         return (typed & self.stems).union(*map(self._find_alike, unknown))
@@ -327,7 +327,7 @@ def _score_passages(index: _Index, typed: _Stems) -> Mapping[int, float]:
 
 
 def _rank_passages(index: _Index, question: str) -> list[int]:
-    """Return the rows of the passages that answer a question, the best first, without those with far lower scores."""
+    """Return the rows of the passages that answer a question, the best first, without passages of far lower scores."""
     typed = index.expand_stems(find_stems([question])[0])
     if not typed:
         return []

@@ -126,7 +126,7 @@ class AppView:
         self.ask(**_ask_cell(settings, program, home=home, runs=runs, speed=speed))
 
     def show_state(self) -> None:
-        """Show the state after the last cell in the app; an app that is still starting does so by itself."""
+        """Show the state after the last cell in the app; an app that is starting shows this state by itself."""
         with self._lock:
             is_told = self._is_ready.is_set() and self.is_alive
         if is_told:

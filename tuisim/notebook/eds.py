@@ -92,14 +92,14 @@ def check_logged(index: int, count: int) -> None:
 
 
 def image_pair(frame: pd.DataFrame, index: int = -1) -> list[Image]:
-    """Return the images that were logged at the same time: usually of the left and the right sensor.
+    """Return the images that were logged at the same time: usually one of the left and one of the right sensor.
 
     Args:
         frame: As from `get_image_data_from_datalog`.
         index: Index of the moment, from 0; -1 is the last.
 
     Raises:
-        LogError: there is no such moment.
+        LogError: the frame has no moment with this index.
     """
     moments = frame[["run", "clock"]].drop_duplicates().to_numpy()
     check_logged(index, len(moments))
@@ -116,11 +116,11 @@ def bw_image_data(
     Args:
         frame: As from `get_image_data_from_datalog`.
         index: Row of the frame, from 0; -1 is the last.
-        threshold: The lightest grey, 0 … 255, that counts as dark.
+        threshold: The lightest grey, 0 … 255, that becomes 1.
         crop: Left, top, right and bottom of a part, in pixels; None for the whole image.
 
     Raises:
-        LogError: there is no such row.
+        LogError: the frame has no such row.
     """
     import numpy as np
     import pandas as pd

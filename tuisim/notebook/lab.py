@@ -47,7 +47,7 @@ class _CellPlan:
 class Lab:
     """The simulated robot that the cells of a notebook share.
 
-    Its world is kept from cell to cell, its log until it is cleared.
+    Its world lasts from cell to cell, its log until the log is cleared.
     """
 
     def __init__(self) -> None:

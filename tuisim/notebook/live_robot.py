@@ -164,7 +164,7 @@ class LiveRobot:
     def turn(self, *, on: bool) -> None:
         """Turn the offer of the app on or off.
 
-        Off ends the app; after on, a new app can start if the last one has ended.
+        Turning it off ends the app. After it is turned on, a new app can start if the last one has ended.
         """
         self.is_wanted = on
         if self.view is not None and not (on and self.view.is_alive):

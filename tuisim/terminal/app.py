@@ -103,7 +103,7 @@ class BufferedApp(HookedApp):
         self._input = input_order.InputOrder(self, self._give, self._waits)
 
     async def on_event(self, event: events.Event) -> None:
-        """Handle an event; what the user does is handled in order, each event after all effects of the one before."""
+        """Handle an event; events of the user are handled in order, each after all effects of the event before."""
         if isinstance(event, (events.InputEvent, events.Paste)):
             if not self._ignores(event):
                 await (self._input.take if SUPPORTED and not event.is_forwarded else self._give)(
@@ -118,7 +118,7 @@ class BufferedApp(HookedApp):
             await super().on_event(event)
 
     def _waits(self, event: events.Event) -> bool:
-        """Return whether an event of the user has to wait, because the widget that it is for is not there yet."""
+        """Return whether an event of the user has to wait, because its target widget does not exist yet."""
         return False
 
     def _ignores(self, event: events.Event) -> bool:
@@ -131,7 +131,7 @@ class BufferedApp(HookedApp):
         return self.focused is not None and input_order.takes_letters(self.focused)
 
     def show_update(self, screen: Screen[Any], update: object) -> None:
-        """Send the cells that differ from those on the terminal; if none does, send nothing."""
+        """Send the cells that differ from the cells on the terminal; if none differs, send nothing."""
         codes: str | None = None
         if (
             isinstance(update, CompositorUpdate)
@@ -163,7 +163,7 @@ class BufferedApp(HookedApp):
         return self.picture_mode.graphics is not None or self._left_pixels is not None
 
     def handle_painted(self, size: int) -> None:
-        """Handle that an update of `size` characters was sent to the terminal; here, do nothing."""
+        """Handle that an update of `size` characters was sent to the terminal; this class does nothing."""
 
     @property
     def text_mode(self) -> TextMode:
@@ -227,7 +227,7 @@ class BufferedApp(HookedApp):
             self.call_after_refresh(self.handle_situation_change)
 
     def handle_situation_change(self) -> None:
-        """Handle that other keys may be available now; here, do nothing."""
+        """Handle that other keys may be available now; this class does nothing."""
 
     def redraw_pictures(self) -> None:
         """Draw all pictures again, with pixels or glyphs as `picture_mode` says now."""
@@ -280,7 +280,7 @@ class BufferedApp(HookedApp):
             self.own_driver.write_meta({"type": "tell", "what": what, **details})
 
     def prepare_suspension(self) -> None:
-        """Prepare for a stop of the app, or for another program in its terminal; here, do nothing."""
+        """Prepare for a stop of the app, or for another program in its terminal; this class does nothing."""
 
     def is_harmless(self, error: Exception) -> bool:
         """Return whether an error only comes from the shutdown of the app, and can be ignored.

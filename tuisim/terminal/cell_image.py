@@ -209,7 +209,7 @@ def _write_character(text: str, bold: bool, italic: bool) -> Mask:
 
 
 def draw_cells_svg(grid: CellGrid, title: str) -> str:
-    """Return the picture of rows of cells as the content of an SVG file, in which text stays text."""
+    """Return the content of an SVG file with the picture of rows of cells, in which text stays text."""
     rows, columns = len(grid), len(grid[0]) if grid else 0
     width, height = columns * CELL_PX[0], rows * CELL_PX[1]
     size = f'viewBox="0 0 {width} {height}" width="{width}" height="{height}"'

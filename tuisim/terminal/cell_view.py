@@ -286,7 +286,7 @@ class PixelView(RowsView):
         return cells
 
     def set_signs(self, signs: Mapping[tuple[int, int], int]) -> None:
-        """Show cells in place of those of the image, given by row and column; an image with pixels is not changed."""
+        """Show signs in place of some cells of the image, by row and column; an image with pixels is not changed."""
         rows, cols = self._cells.shape
         changed = {place for place, _ in self._signs.items() ^ signs.items()}
         self._signs = signs

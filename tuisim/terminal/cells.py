@@ -121,7 +121,7 @@ class ColorMode:
 
 
 def reduce_cells(cells: Cells, mode: ColorMode) -> Cells:
-    """Return cells in which each colour is replaced by one that the terminal has."""
+    """Return cells in which each colour is replaced by a colour that the terminal has."""
     if mode.depth == MONO or (mode.depth >= TRUECOLOR and not mode.grey):
         return cells
     colors = np.stack((cells >> 24, cells), axis=-1)[..., None] >> np.array([16, 8, 0]) & 255
@@ -150,7 +150,7 @@ def _find_nearest(pixels: Pixels, depth: int) -> Pixels:
 def reduce_pixels(
     pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[np.intp], mode: ColorMode
 ) -> Pixels:
-    """Return pixels in which each colour is replaced by one that the terminal has.
+    """Return pixels in which each colour is replaced by a colour that the terminal has.
 
     With 16 colours, shades between them are dithered, so that a pale band on white does not vanish.
 
@@ -182,7 +182,7 @@ panel, gets no dots."""
 def _mix_pale_8(
     pixels: Pixels, thresholds: npt.NDArray[np.float64], paleness: npt.NDArray[np.float32]
 ) -> Pixels:
-    """Return pixels in the colours of a terminal with eight: pale ones as black or white, others as the nearest.
+    """Return pixels in the eight colours of a terminal: pale pixels become black or white, others the nearest colour.
 
     Args:
         pixels: Shape (n, 3).

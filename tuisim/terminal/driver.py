@@ -33,7 +33,7 @@ _LOST = SIGNALLED + signal.SIGHUP
 
 
 class ResilientOutput:
-    """The output to a terminal; if the terminal is lost, as after a lost connection, it drops what is written.
+    """The output to a terminal; once the terminal is lost, for example with its connection, all output is dropped.
 
     Textual writes from a thread of its own. That thread would end at the first failed write, and the app, which has to
     write a little more before it can shut down, would wait for it for ever.
@@ -140,7 +140,7 @@ class TerminalDriver(HookedLinuxDriver):
             find_app(self).call_later(find_app(self).exit, return_code=_LOST)
 
     def start_application_mode(self) -> None:
-        """Begin to draw on the terminal, and ask it what it can do."""
+        """Begin to draw on the terminal, and query its abilities."""
         super().start_application_mode()  # type: ignore[no-untyped-call]
         if os.environ.get("TERM", "") not in SILENT:
             self.write(QUESTIONS)

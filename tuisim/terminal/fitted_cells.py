@@ -130,8 +130,8 @@ def _find_typical(
 def _find_best_glyphs(lab: npt.NDArray[np.float32], glyphs: GlyphSet) -> npt.NDArray[np.intp]:
     """Return for each cell the index of the glyph that splits its points into the two most even groups.
 
-    The search is exhaustive: with the points relative to their mean, the sum of those that a glyph covers gives the
-    variance that the split explains.
+    The search is exhaustive: with the points relative to their mean, the sum of the points that a glyph covers gives
+    the variance that the split explains.
     """
     size = lab.shape[1]
     # There is one product for each channel: they are too small for the library to start threads.

@@ -79,7 +79,7 @@ _Row = Sequence[Cell | None]
 
 
 class FrameBuffer:
-    """The content of the terminal's screen, cell by cell, as it was sent; finds what an update changes."""
+    """The content of the terminal's screen, cell by cell, as the app has sent it; finds the cells that an update changes."""
 
     def __init__(self) -> None:
         self._rows: dict[int, list[Cell | None]] = {}
@@ -326,7 +326,7 @@ class _LookRun:
 def _join_looks(first: CellLook, second: CellLook) -> CellLook | None:
     """Return a style in which cells of both styles look right; None if there is none.
 
-    A style without a foreground is that of blanks, which look right in any foreground.
+    A style without a foreground belongs to blanks, which look right in any foreground.
     """
     if first == second:
         return first
@@ -527,7 +527,7 @@ _BY_DOTS = " .':;+*#@"
 
 
 def convert_ascii(text: str) -> str:
-    """Return a text of the same width with ASCII characters in place of all others."""
+    """Return a text of the same width with ASCII characters in place of all other characters."""
     return text if text.isascii() else "".join(map(_convert_character, _ELLIPSIS.sub("...", text)))
 
 

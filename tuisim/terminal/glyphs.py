@@ -141,8 +141,9 @@ def _unpack_bits(patterns: list[int], points: int) -> Covered:
 def build_glyph_set(cells: CellSet) -> GlyphSet:
     """Return the glyphs of a set, with the points that they cover.
 
-    Of a pattern and its inverse, a set of blocks has the one with the upper left point: exchanging the two colours
-    gives the other. Braille has the pattern with fewer dots, which leave most of their cell to the background.
+    A pattern and its inverse show the same with exchanged colours, so that the set has only one of the two: a set of
+    blocks has the pattern with the upper left point, Braille the one with fewer dots, which leave most of their cell to
+    the background.
     """
     if cells is CellSet.SEXTANT:
         patterns = list(range(1, 63, 2))

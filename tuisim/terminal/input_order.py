@@ -67,7 +67,7 @@ class Turn:
 
     @contextmanager
     def step(self, pump: MessagePump) -> Iterator[None]:
-        """In a `with` block, handle a message or callback of the turn; what it causes is added to the turn."""
+        """In a `with` block, handle a message or callback of the turn; messages that it causes join the turn."""
         token = _current.set(self)
         try:
             yield
@@ -84,7 +84,7 @@ class Turn:
 
         Args:
             pump: The message pump.
-            count: How many it has handled; None removes all, because the pump is gone and never handles them.
+            count: How many the pump has handled; None removes all, because the pump is gone and never handles them.
         """
         self.steps += 1
         self._left[pump] -= self._left[pump] if count is None else count
@@ -227,7 +227,7 @@ def _find_module(callback: Callable[..., Any]) -> str:
 
 
 class InputOrder:
-    """Handles the keys and other input of the user in order: the next one after everything that one has caused.
+    """Handles the keys and other input of the user in order: each one after everything that the one before has caused.
 
     Args:
         app: The app.
@@ -257,7 +257,7 @@ class InputOrder:
         return not self._held and self._turn is None
 
     async def take(self, event: events.Event) -> None:
-        """Handle an event after those before it; if they are not all handled yet, store it until then."""
+        """Handle an event after all earlier events; if these are not handled yet, store the event until then."""
         if (
             self._held
             and isinstance(event, events.MouseMove)

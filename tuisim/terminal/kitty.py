@@ -48,7 +48,7 @@ _PLACEHOLDERS = re.compile(f"(?:{PLACEHOLDER}..)+")
 def encode(
     picture: Pixels, image: int, cols: int, rows: int, *, answers_errors: bool = True
 ) -> str:
-    """Return the codes that send a picture to the terminal, which shows it where its placeholders are.
+    """Return the codes that send a picture to the terminal, which shows the picture where its placeholders are.
 
     Args:
         picture: Shape (height, width, 3).

@@ -36,7 +36,7 @@ class Graphics:
 
     @property
     def scale(self) -> int:
-        """The width and height of a point of a picture in pixels of the terminal; more points would take too long."""
+        """The side of a point of a picture in pixels of the terminal; smaller points would take too long to draw."""
         return max(1, -(-self.cell_px[0] // self.most_points))
 
     @property
@@ -192,7 +192,7 @@ class TilePicture:
 
         Args:
             places: Row and column of the screen, and the cell.
-            is_shown: Whether a cell of the screen, by row and column, shows its part of this picture.
+            is_shown: Returns whether a cell of the screen, by row and column, shows its part of this picture.
         """
         by_offset = groupby(
             sorted(places, key=lambda at: (at[0] - at[2].row, at[1] - at[2].col)),
@@ -282,7 +282,7 @@ class TilePicture:
         return "".join(parts) + self._drop_tiles()
 
     def _send(self, tile: tuple[int, int]) -> tuple[str, list[int]]:
-        """Return the codes that send a tile, empty if the terminal has it, and the numbers of images to delete."""
+        """Return the codes that send a tile, and the numbers of images to delete; no codes for a tile that was sent."""
         top, left = tile
         some = Rectangle(
             top, left, min(top + _TILE_ROWS, self.size[0]), min(left + _TILE_COLS, self.size[1])

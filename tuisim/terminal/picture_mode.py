@@ -41,10 +41,10 @@ BLOCKS = frozenset({CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCT
 
 
 class Recoloring(TypingProtocol):
-    """Replaces an app's own colours by others, such as those of a theme."""
+    """Replaces an app's own colours by other colours, such as those of a theme."""
 
     def rgb(self, own: Rgb) -> Rgb:
-        """Return the colour in place of one of the app's own; any other colour is returned as it is."""
+        """Return the colour in place of one of the app's own; any other colour is returned unchanged."""
 
     def choose_text_rgb(self, own: Rgb) -> Rgb:
         """Return the colour for text or lines in place of one of the app's own; it is legible on the background."""
@@ -203,7 +203,7 @@ class TerminalReport:
 
 
 def describe_terminal(fd: int, environment: Mapping[str, str]) -> TerminalReport | None:
-    """Ask a terminal what it can show, and return that; None if the terminal is lost.
+    """Ask a terminal for its abilities, and return a report on them; None if the terminal is lost.
 
     Args:
         fd: The terminal, open for reading and writing.

@@ -89,7 +89,7 @@ def read_cells(environment: Mapping[str, str], *, has_colors: bool = True) -> Ce
     """Return the set of glyphs that the environment decides on; None if the terminal must be asked.
 
     Args:
-        environment: As it was when the process started: Python changes the locale C to UTF-8.
+        environment: The environment with which the process was started: Python changes the locale C to UTF-8.
         has_colors: Whether colours are used: without them only braille and signs show greys.
     """
     terminal = environment.get("TERM", "")
@@ -144,9 +144,9 @@ _ALL_COLORS = "RGB"
 
 
 def is_multiplexer(terminal: str) -> bool:
-    """Return whether a kind of terminal, as in TERM, is GNU screen, or tmux that calls itself so.
+    """Return whether a kind of terminal, as in TERM, is GNU screen, or tmux under the name of GNU screen.
 
-    Such a program takes the code for italics for that of reverse video.
+    GNU screen takes the code for italics for the code for reverse video.
     """
     return terminal == _MULTIPLEXER or terminal.startswith((f"{_MULTIPLEXER}-", f"{_MULTIPLEXER}."))
 
@@ -209,7 +209,7 @@ def _may_be_utf8(environment: Mapping[str, str]) -> bool:
 
 
 def read_first_environment() -> Mapping[str, str]:
-    """Return the environment with which this process was started; if the system does not know it, the present one."""
+    """Return the environment with which this process was started, or the present one if the system does not know it."""
     try:
         entries = Path("/proc/self/environ").read_bytes().split(b"\0")
     except OSError:

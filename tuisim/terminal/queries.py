@@ -60,7 +60,7 @@ class TerminalFacts:
 
     @property
     def program(self) -> str:
-        """The name of the terminal without its version; empty if it does not say."""
+        """The name of the terminal without its version; empty if the terminal has not answered it."""
         match = _PROGRAM.match(self.name)
         return match[0] if match else ""
 
@@ -119,7 +119,7 @@ def parse_facts(text: str) -> TerminalFacts:
 
 
 def read_cell_size_px(fd: int) -> tuple[int, int] | None:
-    """Return width and height of a cell in pixels, as the kernel knows them, also over SSH; None if it does not."""
+    """Return the kernel's width and height of a cell in pixels, also over SSH; None if the kernel does not know them."""
     try:
         rows, cols, width, height = struct.unpack(
             "HHHH", fcntl.ioctl(fd, termios.TIOCGWINSZ, bytes(8))

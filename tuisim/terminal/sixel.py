@@ -68,7 +68,7 @@ def _define_color(number: int, color: tuple[int, ...]) -> str:
 
 
 def _encode_band(numbers: npt.NDArray[np.intp]) -> str:
-    """Return the codes of up to six rows of pixels, one colour after the other.
+    """Return the codes of up to six rows of pixels, one colour after another.
 
     Args:
         numbers: The index of the colour of each pixel, shape (rows, width).

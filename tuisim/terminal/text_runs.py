@@ -18,7 +18,7 @@ Line: TypeAlias = list[Run]
 
 
 def escape_markup(text: str) -> str:
-    """Return the markup that shows a text from a file or the user as it is.
+    """Return the markup that shows a text from a file or the user unchanged.
 
     `textual.markup.escape` leaves some brackets that follow a backslash or stand in quotes.
     """

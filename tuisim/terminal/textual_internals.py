@@ -176,7 +176,7 @@ class HookedApp(App[None]):
         self.show_update(screen, renderable)
 
     def is_harmless(self, error: Exception) -> bool:
-        """Return whether an unhandled error can be ignored; here, none can."""
+        """Return whether an unhandled error can be ignored; in this class, none can."""
         return False
 
     def _handle_exception(self, error: Exception) -> None:
@@ -195,7 +195,7 @@ class HookedApp(App[None]):
 
     @property
     def is_writing(self) -> bool:
-        """Whether Textual writes to the terminal what is drawn now."""
+        """Whether Textual writes to the terminal the updates that are drawn now."""
         if not SUPPORTED:
             return False
         return self._running and not (
@@ -204,7 +204,7 @@ class HookedApp(App[None]):
 
     @property
     def line_filters(self) -> list[LineFilter]:
-        """The filters that are applied in this order to everything that is drawn, also the disabled ones."""
+        """The filters, in the order in which they are applied to everything that is drawn, with the disabled filters."""
         return self._filters if SUPPORTED else []
 
     @line_filters.setter
@@ -217,7 +217,7 @@ class HookedScreen(ModalScreen[Result], Generic[Result]):
     """Textual's modal screen; it can also ignore messages, and read what the screen below draws."""
 
     def should_drop(self, message: Message) -> bool:
-        """Return whether to ignore a message; here, none is ignored."""
+        """Return whether to ignore a message; in this class, none is ignored."""
         return False
 
     async def _on_message(self, message: Message) -> None:
@@ -244,7 +244,7 @@ class Codes(CompositorUpdate):
         self._codes = codes
 
     def render_segments(self, console: Console) -> str:
-        """Return the codes as they are."""
+        """Return the codes unchanged."""
         return self._codes
 
 
@@ -288,7 +288,7 @@ class HookedLinuxDriver(LinuxDriver):
         self.handle_continuation()
 
     def wrap_output(self, wrap: Callable[[TextIO], object]) -> None:
-        """Replace the output of the driver by what `wrap` returns for it."""
+        """Replace the output of the driver by the object that `wrap` returns for it."""
         self._file = wrap(cast(TextIO, self._file))  # type: ignore[assignment]  # write, flush and fileno are enough
 
     @property
@@ -312,11 +312,12 @@ class HookedLinuxDriver(LinuxDriver):
 
 
 class ThoroughCompositor(Compositor):
-    """Textual's compositor, which compares each layout with the last one of which the widgets got messages.
+    """Textual's compositor, changed to compare each layout with the last layout of which the widgets got messages.
 
-    Textual compares it with the map of all widgets, and makes that map again when somebody asks for the size of a
-    widget between two layouts. To a widget that was mounted in between it would never send `Resize` or `Show`, and one
-    that was removed would stay on the screen. Whether somebody asks in between depends on how busy the machine is.
+    Textual compares it with the map of all widgets, and makes that map again when any code asks for the size of a
+    widget between two layouts. It then would never send `Resize` or `Show` to a widget that was mounted in between, and
+    a widget that was removed in between would stay on the screen. Whether code asks in between depends on how busy the
+    machine is.
     """
 
     def __init__(self) -> None:
@@ -400,7 +401,7 @@ def count_tab_columns(area: TextArea) -> int:
 
 
 def find_line(area: TextArea, row: int) -> tuple[int, int]:
-    """Return the line of a wrapped text that a row of the screen shows, and which of its rows that is, from 0.
+    """Return the line of a wrapped text that a row of the screen shows, and the index of the row in that line.
 
     Raises:
         IndexError: there is no such row.

@@ -159,7 +159,7 @@ class Gate:
             path: The request's path; must begin with the token.
             host: Its header `Host`. It must name the host that the server listens on, or this machine, so that no other
                 site can pass this server off as a part of itself.
-            origin: Its header `Origin`: the site whose page sends the request; None if it has none.
+            origin: Its header `Origin`: the site whose page sends the request; None without this header.
             from_a_page: Whether only a page may send the request, so that it must have an origin.
         """
         # The comparison takes constant time, so that nobody can guess the token letter by letter from the time.

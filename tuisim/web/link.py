@@ -58,7 +58,7 @@ class Link:
             await _send(self.socket, self.socket.send_bytes, data)
 
     async def send_str(self, text: str) -> None:
-        """Send a message to the browser; without a browser, keep the message for the next one."""
+        """Send a message to the browser; without a browser, keep the message for the next browser."""
         if self.socket is None or not await _send(self.socket, self.socket.send_str, text):
             self._waiting = [*self._waiting, text][-_MAX_WAITING:]
 

@@ -274,7 +274,7 @@ class Server:
     ) -> Visit | None:
         """Start an app for a visitor and return the visit; return None if the largest number of apps runs already.
 
-        If one of them is ending, wait until it has ended, and then start the new one.
+        If one of these apps is ending, wait until it has ended, and then start the new app.
 
         Args:
             width: Columns of the visitor's terminal.
@@ -388,7 +388,7 @@ async def _handle_page_file(request: web.Request) -> web.StreamResponse:
 
 
 def _read_size(request: web.Request) -> tuple[int, int]:
-    """Return columns and rows of the visitor's terminal from a request; default ones if it has none."""
+    """Return columns and rows of the visitor's terminal from a request, or default values if it has none."""
     try:
         return int(request.query["width"]), int(request.query["height"])
     except (KeyError, ValueError):

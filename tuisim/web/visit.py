@@ -169,7 +169,7 @@ class Visit:
             await self._tell_panels()
 
     async def replace_socket(self, socket: web.WebSocketResponse, width: int, height: int) -> None:
-        """Connect the app to another browser, and close the connection to the previous one with a reason.
+        """Connect the app to another browser, and close the connection to the previous browser with a reason.
 
         Args:
             socket: The connection to the browser.

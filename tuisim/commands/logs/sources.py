@@ -51,7 +51,7 @@ def build_request(arguments: Arguments) -> LogRequest:
 
 
 def build_choices(arguments: Arguments) -> ReadChoices:
-    """Return how to read a log according to the arguments: its time column, its values and so on."""
+    """Return the choices in the arguments for reading a log, such as its time column."""
     names = (field.name for field in fields(ReadChoices))
     words = {name: getattr(arguments, name) for name in names}
     return ReadChoices(**{**words, "value": tuple(arguments.value)})

@@ -127,7 +127,7 @@ def _iterate_reports(arguments: Arguments) -> Iterator[tuple[str, BandReport]]:
 
 
 def _join_columns(columns: Sequence[Column]) -> Column:
-    """Return one column with the values of several, those of one column after those of another."""
+    """Return one column with the values of several columns, one column after the other."""
     if isinstance(columns[0], np.ndarray):
         return np.concatenate(columns)
     return [item for column in columns for item in column]
@@ -170,7 +170,7 @@ def _show_commands(arguments: Arguments, words: str) -> int:
 
     Args:
         arguments: The arguments, which name the runs.
-        words: What to search for in the commands.
+        words: The words to search for in the commands.
 
     Raises:
         ConfigError: a log is a file, or no run is named.
@@ -396,7 +396,7 @@ def diff(arguments: Arguments) -> int:
 def show_rows(
     rows: Sequence[Mapping[str, Any]], arguments: Arguments, formats: Mapping[str, str]
 ) -> None:
-    """Print or write rows that all have the same keys; the other arguments are those of `show_columns`."""
+    """Print or write rows that all have the same keys; `arguments` and `formats` are those of `show_columns`."""
     show_columns(
         {name: [row[name] for row in rows] for name in (rows[0] if rows else ())},
         arguments,

@@ -269,11 +269,11 @@ def judge_assets(why_not: str) -> Finding:
 
 
 def judge_dependencies(requirements: Iterable[tuple[str, str, str]]) -> list[Finding]:
-    """Return findings on the packages that tuisim needs: one for all correct ones, and one for each of the others.
+    """Return findings on the packages that tuisim needs: one for all correct packages, and one for each other package.
 
     Args:
-        requirements: For each its name, the version that is required exactly or an empty text, and the installed
-            version or an empty text.
+        requirements: For each package its name, the version that is required exactly or an empty text, and the
+            installed version or an empty text.
     """
     findings = [_judge_dependency(*finding) for finding in requirements]
     good = ", ".join(
