@@ -136,7 +136,7 @@ class Surroundings:
         return Surroundings.read_module(sys.modules[module]).find_origin(original)
 
     def _find_module(self, name: str) -> tuple[str, str]:
-        """Return the module from which a name is imported, and the name in that module; both empty without an import."""
+        """Return the module from which a name is imported, and the name in that module; both empty if it is not."""
         statement, _ = self.find(name)
         if isinstance(statement, ast.ImportFrom):
             names = {alias.asname or alias.name: alias.name for alias in statement.names}

@@ -79,7 +79,7 @@ _Row = Sequence[Cell | None]
 
 
 class FrameBuffer:
-    """The content of the terminal's screen, cell by cell, as the app has sent it; finds the cells that an update changes."""
+    """The content of the terminal's screen, cell by cell, as it was sent; finds the cells that an update changes."""
 
     def __init__(self) -> None:
         self._rows: dict[int, list[Cell | None]] = {}

@@ -119,7 +119,7 @@ def parse_facts(text: str) -> TerminalFacts:
 
 
 def read_cell_size_px(fd: int) -> tuple[int, int] | None:
-    """Return the kernel's width and height of a cell in pixels, also over SSH; None if the kernel does not know them."""
+    """Return the kernel's width and height of a cell in pixels, also over SSH; None if it does not know them."""
     try:
         rows, cols, width, height = struct.unpack(
             "HHHH", fcntl.ioctl(fd, termios.TIOCGWINSZ, bytes(8))

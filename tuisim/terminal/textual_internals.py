@@ -204,7 +204,7 @@ class HookedApp(App[None]):
 
     @property
     def line_filters(self) -> list[LineFilter]:
-        """The filters, in the order in which they are applied to everything that is drawn, with the disabled filters."""
+        """The filters, in the order in which they are applied to everything that is drawn; also disabled filters."""
         return self._filters if SUPPORTED else []
 
     @line_filters.setter
