@@ -233,19 +233,14 @@ class Controller:
         """
         if time_us is None and self._is_running_evenly(now_us, rate):
             return
-        settings = self.settings
-        acceleration = self._limit(acceleration)
-        start, spliced = self._find_start(now_us, measured)
-        how = rate, acceleration, settings.speed
-        if time_us is None:
-            trajectory = _splice(start, spliced, lambda begin: build_endless_move(begin, *how))
-        else:
-            end_us = now_us + time_us
-            trajectory = _splice(
-                start,
-                spliced,
-                lambda begin: build_timed_move(begin, end_us - begin.start_us, *how),
-            )
+        how = rate, self._limit(acceleration), self.settings.speed
+
+        def build(begin: Segment) -> Trajectory:
+            if time_us is None:
+                return build_endless_move(begin, *how)
+            return build_timed_move(begin, now_us + time_us - begin.start_us, *how)
+
+        trajectory = _splice(*self._find_start(now_us, measured), build)
         # A motion at a speed never makes up for the distance that it has lost, and the next one does not either.
         behind_milli = (
             self._behind_milli
