@@ -20,7 +20,7 @@ _Class = TypeVar("_Class", bound=type)
 
 
 class _Factory:
-    """What a signature shows as default, `<factory>`, for a field that has a `default_factory`."""
+    """The placeholder `<factory>`, which a signature shows as the default of a field with a `default_factory`."""
 
     def __repr__(self) -> str:
         return "<factory>"

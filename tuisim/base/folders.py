@@ -56,7 +56,7 @@ def cache_folder() -> Path:
 def _folder(name: str) -> Path:
     assets = os.environ.get("TUISIM_ASSETS")
     places = [Path(assets)] if assets else [_PACKAGE.parent, _PACKAGE / "_assets"]
-    # All folders must be there, since one folder of such a name may belong to another project.
+    # All needed folders must exist: a single folder of such a name may belong to another project.
     needed = (name,) if assets else _FOLDERS
     for place in places:
         if all((place / each).is_dir() for each in needed):

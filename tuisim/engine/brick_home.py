@@ -25,8 +25,7 @@ def find_beside(parts: Sequence[str], own_folder: str) -> str:
     """Return the file or folder in the program's folder to which a path below the home folder leads.
 
     It is not known where in the home folder the program's folder is. So leading parts of the path are left out, one
-    after
-    another, until the rest exists in the program's folder. The result is empty if nothing exists.
+    after another, until the rest exists in the program's folder. The result is empty if nothing exists.
 
     Args:
         parts: The parts of the path below the home folder.

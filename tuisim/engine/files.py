@@ -130,8 +130,8 @@ def read_file(path: Path, error: type[ConfigError]) -> Any:
     """Read a TOML or JSON file and return its data.
 
     Raises:
-        ConfigError: of the class `error`: the file is missing, not a regular file, too large, not text, empty or
-            not valid TOML or JSON.
+        ConfigError: of the class `error`: the file is missing, not a regular file, too large, not text, empty or not
+            valid TOML or JSON.
     """
     shown_path = str(path)
     suffix = path.suffix.lower()
@@ -444,7 +444,7 @@ def _walk(
         case types.IntType(), int() if not isinstance(data, bool) and abs(data) > MAX_WHOLE:
             raise _mismatch(data, info, at)
         case types.FloatType() | types.IntType() | types.BoolType(), str():
-            # msgspec raises UnicodeEncodeError for half a surrogate pair.
+            # A text is no number. It is refused here, because msgspec fails for texts with half a surrogate pair.
             raise _mismatch(data, info, at)
     yield at.key, (data, info)
 
@@ -626,7 +626,7 @@ def _updated_text(old: str, new: str, kept: Collection[str], whole: bool) -> str
         _update(document, tomlkit.parse(new), kept, whole)
         return tomlkit.dumps(document)
     except (TOMLKitError, RecursionError, IndexError) as error:
-        # IndexError: tables whose parts lie apart in the file.
+        # tomlkit raises IndexError for a table whose parts are at several places in the file.
         raise ConfigError(f"cannot be updated: {error}") from None
 
 

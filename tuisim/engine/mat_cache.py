@@ -130,8 +130,7 @@ class FieldFiles:
             has_floor: Whether the mat lies on a floor, which has the colour of the mat's edges; see
                 `WorldSpec.is_open`.
             is_copied: Whether the files are read into memory instead. A process that outlives programs needs this: the
-                system
-                kills a process that reads a mapped file after a program has cut off its end.
+                system kills a process that reads a mapped file after a program has cut off its end.
 
         Raises:
             BackgroundError: a file is missing, for example because the cache evicted it, or incomplete.
@@ -165,12 +164,12 @@ def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> Fiel
     Args:
         image: Any image that Pillow reads, within the limits of `mat_image`.
         diameters: Disc diameters in pixels, in any order, with or without duplicates.
-        fit: How an image whose size differs from the field's is placed, one of
-            `engine.core.spec.BACKGROUND_FITS`; see `mat_image`.
+        fit: How an image whose size differs from the field's is placed, one of `engine.core.spec.BACKGROUND_FITS`; see
+            `mat_image`.
 
     Raises:
-        BackgroundError: the image cannot be read, a diameter or `fit` is impossible, or the
-            cache folder cannot be written.
+        BackgroundError: the image cannot be read, a diameter or `fit` is impossible, or the cache folder cannot be
+            written.
     """
     import hashlib
 
@@ -293,7 +292,7 @@ def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
 
 
 def _store(path: Path, array: NDArray[Any]) -> None:
-    # Write it to the disk before the note says that it is sound: a power failure could leave zeros in its place.
+    # The file is on the disk before its note says that it is valid: after a power failure, it could contain zeros.
     with replacing(path, owner_only=True, follow_links=False) as stream:
         stream.write(array.data)
     _note(path, zlib.crc32(array.data), path.stat())
@@ -317,7 +316,7 @@ def _trim(folder: Path, keep: set[Path]) -> None:
     cached = sorted(_by_age(folder))
     surplus = max(0, len(cached) - MAX_CACHED_FILES)
     for used, path in [(used, path) for used, path in cached if path not in keep][:surplus]:
-        # Another process may have removed it, or may be about to open it.
+        # Another process may have removed the file, or used it, which changes the time of its note.
         with suppress(FileNotFoundError):
             if _note_of(path).stat().st_mtime == used:
                 path.unlink(missing_ok=True)

@@ -55,7 +55,7 @@ def check_file(path: Path) -> None:
     except OSError as error:
         raise _error(f"cannot be read: {error.strerror or error}", path) from error
     except ValueError as error:
-        # A null character.
+        # The path contains a null character.
         raise _error(f"is not a file name: {error}", path) from error
     if stat.S_ISDIR(status.st_mode):
         raise _error("is a folder, not an image", path)

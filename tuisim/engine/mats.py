@@ -125,8 +125,8 @@ def _read_catalogue(file: Path, _mtime_ns: int, _size: int) -> Mapping[str, Back
 def background(name: str) -> Background:
     """Return a mat by its name in a run specification: one of the catalogue, or a user's own image.
 
-    Names of the catalogue take precedence. A name with a folder or a suffix, or of an existing
-    file, is the path of an image; such a mat is named after its file, without the suffix.
+    Names of the catalogue take precedence. A name with a folder or a suffix, or of an existing file, is the path of an
+    image; such a mat is named after its file, without the suffix.
 
     Raises:
         BackgroundError: the name is unknown, or its image is missing.
@@ -254,8 +254,8 @@ def import_originals(source: Path) -> tuple[list[Taken], list[str]]:
         The imported images, in the order of the catalogue, and the names of other images in the folder.
 
     Raises:
-        BackgroundError: the folder cannot be read or has no such image, an image cannot be read, or the user's
-            folder cannot be written; only in the last case some images may have been copied.
+        BackgroundError: the folder cannot be read or has no such image, an image cannot be read, or the user's folder
+            cannot be written; only in the last case some images may have been copied.
     """
     known = catalogue()
     files = _pictures(source)

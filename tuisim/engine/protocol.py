@@ -217,7 +217,7 @@ class StepLine(Message):
     how: LineStep = LineStep.OVER
 
     def __post_init__(self) -> None:
-        # From JSON it is a text.
+        # A command from JSON has a text here.
         object.__setattr__(self, "how", LineStep(self.how))
 
 
@@ -245,7 +245,7 @@ class SetBreaks(Message):
     """Breakpoints in the syntax of `tuisim.engine.breakpoints`; disabled ones are ignored."""
 
     def __post_init__(self) -> None:
-        # JSON gives a list.
+        # A command from JSON has a list here.
         object.__setattr__(self, "breaks", tuple(self.breaks))
 
 
@@ -310,7 +310,7 @@ class SetButtons(Message):
     """Names from `PRESSABLE`; others raise a ConfigError."""
 
     def __post_init__(self) -> None:
-        # JSON gives a list.
+        # A command from JSON has a list here.
         object.__setattr__(self, "pressed", tuple(self.pressed))
         for name in self.pressed:
             if name not in PRESSABLE:
@@ -464,7 +464,7 @@ class ReplyWanted(Message):
 
 @dataclass(frozen=True, slots=True)
 class Plugged(Message):
-    """A part was plugged in because the program asked for it; values as of `engine.core.plugged.PluggedPart`."""
+    """A part was plugged in because the program asked for it; values as in `engine.core.plugged.PluggedPart`."""
 
     port: str
     part: str

@@ -102,8 +102,8 @@ def build_run_spec(settings: Settings) -> RunSpec:
     """Return the run specification of the settings; mat, robot and profile decide those that are not set.
 
     Raises:
-        BackgroundError, RobotError, ObstacleError, ProfileError: an unknown mat, robot, set of obstacles or
-            profile, or an invalid file.
+        BackgroundError, RobotError, ObstacleError, ProfileError: an unknown mat, robot, set of obstacles or profile, or
+            an invalid file.
     """
     with errors_at("", "-b"):
         mat = find_mat(os.path.expanduser(settings["background"]), settings["mats"])

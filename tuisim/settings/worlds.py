@@ -222,7 +222,7 @@ def _load_base(
     if any(os.path.normpath(path) == os.path.normpath(other) for other in above):
         raise location.wrong(f"{path} is based on itself")
     if not os.path.exists(path):
-        # The error names this file and its key, as the user may not know that it names another file.
+        # The error names this file and the key, because the user may not know that the file is based on another one.
         raise location.wrong(f"there is no such file: {path}")
     return _load_world(path, mats, above)
 

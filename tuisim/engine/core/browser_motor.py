@@ -80,7 +80,7 @@ class BrowserMotor:
         self.end_tick = end_tick
 
     def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
-        """Run the motor to an encoder position; arguments as of `BrickMotor.run_to`."""
+        """Run the motor to an encoder position; arguments as for `BrickMotor.run_to`."""
         self._begin(POSITION, speed_dps)
         self.goal_deg = goal_deg
         self.backwards = backwards
@@ -183,7 +183,7 @@ class BrowserMotor:
         if self._ended and self.speed_dps == self.speed_sp == 0.0:
             return ENDLESS
         if self._ended:
-            # The motor must be beyond its goal and also stay there.
+            # The move stays over only while the motor is beyond its goal, and does not turn back.
             return (
                 ENDLESS
                 if self._is_beyond_goal() and self.speed_dps >= 0 and self.speed_sp >= 0
@@ -242,7 +242,7 @@ class BrowserMotor:
             return [start] * len(turns)
         return list(accumulate(turns, initial=start))[1:]
 
-    # State that other modules read
+    # The motor's state, for other modules
 
     @property
     def _direction(self) -> float:

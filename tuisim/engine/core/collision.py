@@ -216,8 +216,8 @@ class Solids:
     def measure_gaps_mm(self, pose: PoseTuple) -> tuple[float, ...]:
         """Return the gaps in mm between the body and every wall and obstacle, negative where they overlap.
 
-        The left, right, lower and upper wall come first, if there are walls, then the obstacles in their order. A gap
-        changes by no more than the fastest point of the body moves.
+        The left, right, lower and upper wall come first, if there are walls, then the obstacles in their order. When
+        the body moves, no gap changes by more than its fastest point moves.
         """
         return tuple(self._measure_gaps(self._place_body(*pose), self._boxes))
 
@@ -241,7 +241,7 @@ class Solids:
 
     def _compute_clearance(self, pose: PoseTuple, straight: int) -> Clearance:
         body = self._place_body(*pose)
-        # Boxes that are not near are at least this far away.
+        # All other boxes are at least as far away as `any_mm` and `beyond` are at first.
         boxes = self._find_near_boxes(pose)
         any_mm = beyond = NEAR_MM - math.dist(pose[:2], self._near_at) if self._boxes else math.inf
         on_mm = beyond if straight else 0.0
@@ -251,7 +251,7 @@ class Solids:
         cx, cy, _, _, _, _, wide, high = body
         for box in boxes:
             left, lower, right, upper = box
-            # The box's own axes first: cheap to compute, and mostly sufficient.
+            # The gaps along the box's own axes are computed first: that is fast, and mostly sufficient.
             apart = max(left - cx - wide, cx - right - wide, lower - cy - high, cy - upper - high)
             if apart >= any_mm and not straight:
                 continue

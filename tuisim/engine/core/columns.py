@@ -76,10 +76,10 @@ def measure_motion(instant: Instant, run: RunSpec, field: Field) -> tuple[float,
 
 
 def find_column_name(text: str, columns: Iterable[Column]) -> str | None:
-    """Return the name of the column that a text names, perhaps in an earlier spelling; None if there is no such column.
+    """Return the name of the column that a text names; None if there is no such column.
 
     Args:
-        text: Such as `left_red_pc`, or an earlier spelling, `left.red%` or `left sensor red %`.
+        text: A name such as `left_red_pc`, or an earlier spelling of it, `left.red%` or `left sensor red %`.
         columns: The columns to choose from.
     """
     names = {column.name: (column.name, *column.also) for column in columns}

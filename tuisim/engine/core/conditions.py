@@ -161,7 +161,7 @@ class Edge:
 def parse_condition(text: str, name: str = r".+?", value: str = r"\S+") -> ValueCondition | None:
     """Return the condition `NAME OP VALUE` or `NAME changes` in a text; None if the text is not such a condition.
 
-    `name` and `value` are regular expressions of what is allowed.
+    `name` and `value` are regular expressions that the name and the value must match.
     """
     subject, _, last = text.strip().rpartition(" ")
     if last == Operator.CHANGES and subject:

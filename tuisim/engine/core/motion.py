@@ -198,7 +198,7 @@ class Motion:
         """Prepare the walls and obstacles that the robot can meet."""
         self._solids = Solids(spec.world, spec.robot, self._early) if spec.world.solid else None
         if self._solids is not None:
-            # The longest way of a point in a tick: one wheel turns at full speed forwards, the other backwards.
+            # A point of the body moves farthest if one wheel turns forwards at full speed, and the other backwards.
             fastest = max(
                 find_top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors
             )
@@ -272,7 +272,7 @@ class Motion:
         return self.changed
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
-        """Advance the simulation by ticks, and return their number.
+        """Advance the simulation by ticks, and return how many ticks have been run.
 
         Args:
             ticks: Number of ticks.

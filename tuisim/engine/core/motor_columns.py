@@ -84,7 +84,7 @@ class MotorRecorder:
     def change_motors(
         self, motors: tuple[DrivenMotor, ...], sources: Sequence[int | None], ticks: int
     ) -> None:
-        """Write the records of another set of motors from now on; `sources` and `ticks` as of `MotorSink.arrange`."""
+        """Write the records of another set of motors from now on; `sources` and `ticks` as for `MotorSink.arrange`."""
         self._motors, self._size = motors, MOTOR_RECORD.size * len(motors)
         if self._sink is not None:
             self._sink.arrange(sources, ticks)

@@ -44,7 +44,7 @@ class Motor(Protocol):
 
     @property
     def mode(self) -> int:
-        """What the motor does: one of the modes above; it runs in all of them but `STOPPED`."""
+        """The motor's mode, one of the constants above. The motor runs in all modes but `STOPPED`."""
 
     @property
     def speed_dps(self) -> float:
@@ -56,7 +56,7 @@ class Motor(Protocol):
 
     @property
     def end_tick(self) -> float:
-        """The tick at which the motor's timed move ends."""
+        """The tick at which the motor's timed move ends; it means nothing in other modes."""
 
     @property
     def moving_dps(self) -> float: ...

@@ -103,7 +103,7 @@ class PluggedPart:
 
 
 def plug_parts(robot: RobotSpec, parts: Sequence[PluggedPart]) -> RobotSpec:
-    """Return the robot with these parts plugged in one after another; a part replaces what was on its port."""
+    """Return the robot with these parts plugged in one after another; a part replaces an earlier one on its port."""
     for part, following in pairwise([*parts, None]):
         assert part is not None
         if part.role == LEFT:
@@ -148,7 +148,7 @@ def _leave_out(motors: Iterable[MotorSpec], ports: Iterable[str]) -> tuple[Motor
 
 
 def _add_sensor(robot: RobotSpec, port: str, kind: type[SensorSpec]) -> RobotSpec:
-    """Return a robot with a new sensor, at a free place, in place of the part on the port.
+    """Return a robot with a new sensor on a port, at a free position of the body; it replaces the part on the port.
 
     A gyro also replaces the gyro that the robot had.
     """
@@ -172,7 +172,7 @@ def _find_place(sensor: Any) -> tuple[float, float]:
 
 
 def _put_sensors(robot: RobotSpec, sensors: Sequence[SensorSpec]) -> RobotSpec:
-    """Return the robot with these sensors in place of all its own; those of one kind are in the given order."""
+    """Return the robot with these sensors instead of its own; those of one kind are in the given order."""
     fields: dict[str, Any] = {}
     left = [*sensors]
     for mount in sorted(MOUNTS, key=lambda mount: mount.many):

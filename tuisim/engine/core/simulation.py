@@ -94,7 +94,8 @@ class Simulation(Motion):
         """Return the current instant, with values rounded as the telemetry stores them.
 
         Args:
-            with_motors: Whether to include what the drivers know of the motors, and how the program counts them.
+            with_motors: Whether to include the values of the motors' drivers, and how many degrees the program counts
+                for one degree of each motor.
         """
         left = round_to_float32(self._left_dps)
         right = round_to_float32(self._right_dps)
@@ -239,13 +240,13 @@ class Simulation(Motion):
         return bool(is_moving) or any(record[7] or record[8] for record in self.read_records(0))
 
     def has_turned(self, number: int) -> bool:
-        """Return whether a motor that drives no wheel has turned or is about to; `number` is its number among those."""
+        """Return whether a motor that drives no wheel has turned or is about to; `number` counts only such motors."""
         motor = self.others[number]
         return bool(motor.mode or motor.position_deg) or self._reported[number] != (0.0, 0.0)
 
     def update_record(self) -> None:
         """Write the current tick's record again, after a user or program has changed something."""
-        # In one write: readers already see this record, and must not see half of a change.
+        # One call writes the whole record: readers already see it, and must not see half of a change.
         offset = 64 * self._sink.count
         self._buffer[offset : offset + 64] = TICK_RECORD.pack(*self._build_record())
 

@@ -632,7 +632,7 @@ class Parts(Part):
 
 
 def list_values(kind: type) -> Mapping[str, Value]:
-    """Return the values of a spec by name, in their order."""
+    """Return the descriptions of the values that a class of specs has, by the names of the values, in their order."""
     values = _VALUES.get(kind)
     if values is None:
         fields: Mapping[str, Field[Any]] = kind.__dataclass_fields__  # type: ignore[attr-defined]  # a data class

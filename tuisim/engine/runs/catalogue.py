@@ -76,7 +76,7 @@ class RunInfo:
     """Tags, separated by spaces."""
 
     def find_tag(self, prefix: str) -> str:
-        """Return what follows a prefix in the run's tags; empty if no tag begins with it."""
+        """Return the rest of the run's first tag that begins with a prefix; empty if there is none."""
         return next(
             (tag.removeprefix(prefix) for tag in self.tags.split() if tag.startswith(prefix)), ""
         )

@@ -57,7 +57,7 @@ class CommandsWriter(MappedWriter):
         """Number of commands for which the file has space."""
 
     def add(self, time_ns: int, part: int, call: int, values: tuple[float, ...]) -> None:
-        """Append a command to the record; arguments as of `SimulationCommand`."""
+        """Append a command to the record; the arguments are the fields of a `SimulationCommand`."""
         count = self._count
         if count < self._room or self._extend(count):
             offset = HEADER_BYTES + count * COMMAND_RECORD.size

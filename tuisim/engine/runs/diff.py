@@ -243,7 +243,7 @@ def find_first_difference_s(
     """Return the time in s at which the robots were first more than 1 mm or 1 degree apart; None if they never were.
 
     None does not mean that the runs are equal: one may have ended earlier, and only the time of both is compared.
-    Arguments as of `measure_divergence`.
+    Arguments as for `measure_divergence`.
     """
     times, distance, turned = _measure_apart(left, right, tick_hz)
     is_apart = (distance > PARTED_MM) | (abs(turned) > PARTED_DEG)
@@ -255,7 +255,7 @@ def _measure_apart(
 ) -> tuple[_Series, ...]:
     """Return how far two robots are apart: times in s, distances in mm, differences of heading in degrees.
 
-    Arguments as of `measure_divergence`.
+    Arguments as for `measure_divergence`.
     """
     import numpy as np
 

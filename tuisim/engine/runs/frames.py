@@ -257,7 +257,7 @@ def compute_column_values(
     changes = list_scale_changes(run)
     for prefix, scales in compute_scales(records["tick"], spec.robot, changes).items():
         for name in measured.keys() & {f"{prefix}_{field}" for field in _TURN_FIELDS}:
-            # The sum is never -0.0.
+            # Adding 0.0 turns -0.0 into 0.0.
             measured[name] = measured[name] * scales + 0.0
     arrays = {}
     for columns in (MOTION, *(mount.columns for mount in sensors), *motors):
@@ -291,7 +291,7 @@ def compute_scales(
     Args:
         ticks: Numbers of ticks, shape (n,).
         robot: The robot.
-        changes: As of `list_scale_changes`.
+        changes: As for `list_scale_changes`.
     """
     import numpy as np
 

@@ -90,7 +90,7 @@ def arrange_records(
     Args:
         recorded: The records of the old motors.
         before: The number of old motors.
-        sources, ticks: As of `MotorSink.arrange`.
+        sources, ticks: As for `MotorSink.arrange`.
     """
     numbers = array("Q", recorded)
     after = len(sources)

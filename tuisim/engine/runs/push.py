@@ -93,8 +93,7 @@ def _measure_aside_mm(records: NDArray[Any], spec: RunSpec, reach_mm: float) -> 
     """Return how far the robot moved in each tick beyond the motion of its wheels, along x and y, shape (2, n).
 
     It is 0 in ticks in which both wheels rolled in the same direction, or nothing solid was near the robot. It is also
-    0
-    where the robot moved so far that a user must have moved it.
+    0 where the robot moved so far that a user must have moved it.
     """
     import numpy as np
 

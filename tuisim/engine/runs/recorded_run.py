@@ -139,8 +139,7 @@ class Recording:
         """Return the instant of a tick record, with the motors' scales and their drivers' values.
 
         A scale is the number of degrees that the program counts for one of the motor. The drivers' values are left out
-        if their
-        file is damaged.
+        if their file is damaged.
         """
         motors: tuple[MotorValues, ...] = ()
         with suppress(LogError):

@@ -300,7 +300,7 @@ def read_published_length(data: bytes, magic: bytes, file: str) -> int:
 
 
 def read_header(data: bytes, magic: bytes, file: str) -> tuple[int, int]:
-    """Return the size of a record and the length in a recording's header; errors as of `read_published_length`."""
+    """Return the size of a record and the length in a recording's header; errors as for `read_published_length`."""
     if len(data) < HEADER_BYTES:
         raise LogError("too short to be a recording", file=file)
     file_magic, version, record_bytes, length = _HEADER.unpack_from(data)

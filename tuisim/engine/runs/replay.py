@@ -203,7 +203,7 @@ def give_command(sim: Simulation, command: SimulationCommand) -> None:
     time_ns, part, call, values = command
     try:
         obey(sim, time_ns, part, call, *values[: len(CALLS[call].ranges)])
-    except Exception:  # Whatever was raised in the program, here it ends the command, too.
+    except Exception:  # Any error ends the command, as it did in the run.
         return
 
 

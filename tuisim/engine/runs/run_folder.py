@@ -382,7 +382,7 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
 
 
 def _describe_lost(view: TelemetryView | OutputView, end: Ended | None) -> str:
-    """Return a text that says what an undamaged recording lacks although the run has ended; empty if nothing."""
+    """Return a text that says which records of an ended run are missing in a recording; empty if none are missing."""
     if end is None or end.end not in _TOLD:
         return ""
     if view.is_missing:

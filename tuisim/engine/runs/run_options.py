@@ -18,7 +18,7 @@ DEFAULT_TIME_LIMIT_S = 600.0
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """How a run is executed. Apart from limits and answers, nothing here changes what the run records."""
+    """The options with which a run is executed. Only limits and answers change the recording of the run."""
 
     live: bool = False
     """Whether the run is paced by the wall clock, can be paused and accepts user actions; otherwise it is headless."""

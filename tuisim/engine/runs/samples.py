@@ -53,7 +53,10 @@ class Sample:
 
 
 def parse_sample(text: str) -> tuple[str, float, float | None] | None:
-    """Return the name, value and printed time (None without one) of a sample; None if a line is not a sample."""
+    """Return the name, the value and the printed time of a sample; the time is None if the line has none.
+
+    Return None if the line is not a sample.
+    """
     if ":" not in text:
         return None
     match = _SAMPLE.fullmatch(text)

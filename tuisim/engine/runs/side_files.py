@@ -109,7 +109,7 @@ def is_held(folder: Path) -> bool | None:
     Return None if the folder has no lock file, or if this machine cannot find out.
     """
     try:
-        # O_NONBLOCK: a pipe that a program has put in its place would block.
+        # With O_NONBLOCK, a pipe that a program has put in the place of the file does not block.
         descriptor = os.open(folder / LOCK_FILE, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError:
         return None

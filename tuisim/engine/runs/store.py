@@ -151,8 +151,7 @@ class RunStore:
         """Record how a run ended.
 
         The whole `run.json` is written again, from what is known of the run's start, because the program could have
-        changed the
-        file. Only the tags are read from it.
+        changed the file. Only the tags are read from it.
 
         Raises:
             LogError: the run does not exist, or cannot be written.
@@ -523,7 +522,7 @@ def _copy_files(folder: Path, place: Path) -> None:
             continue
         with source, open(place / name, "xb", opener=private) as target:
             status = os.fstat(source.fileno())
-            # A file may seem to be of any size; a copy would fill its holes.
+            # A file with holes may seem to be of any size, and its copy would take that size on the disk.
             if status.st_size <= 512 * status.st_blocks + MAX_BYTES:
                 shutil.copyfileobj(source, target)
 

@@ -128,8 +128,7 @@ class _View(ABC):
     Args:
         folder: The run folder.
         is_checked: Whether data that the simulation cannot have written is treated as damage, and not returned. So it
-            is
-            for a run that is running or falsified. If its file disappears, that is damage, too.
+            is for a run that is running or falsified. If its file disappears, that is damage, too.
 
     Raises:
         LogError: by every method, if this machine cannot read the file.
@@ -304,7 +303,7 @@ class _View(ABC):
             finalize(self, os.close, self._source)
         first = HEADER_BYTES + drops * self._record_bytes
         begin, end = begin - first + HEADER_BYTES, end - first + HEADER_BYTES
-        # A new buffer instead of a resized one: arrays may still refer to the old one.
+        # The buffer is replaced, not resized, because arrays may still refer to the old one.
         larger = _allocate(end if not self._there else 2 * end)
         larger[:HEADER_BYTES] = head
         larger[HEADER_BYTES:begin] = memoryview(self._copy)[first : first + begin - HEADER_BYTES]
@@ -399,8 +398,7 @@ class TelemetryView(_View):
         """Read records that were dropped from memory from the file again, and return them.
 
         Only a program can have changed them in the meantime. Changed records are replaced by the oldest record in
-        memory: the
-        reader learns of the damage later, and must not fail before.
+        memory: the reader learns of the damage later, and must not fail before.
         """
         assert self._source is not None
         size = TICK_RECORD.size
@@ -571,5 +569,5 @@ class OutputView(_View):
 
 
 def open_views(folder: Path, is_checked: bool = False) -> tuple[TelemetryView, OutputView]:
-    """Return the telemetry and the output of a run folder; `is_checked` as of `_View`."""
+    """Return the telemetry and the output of a run folder; `is_checked` as for `_View`."""
     return TelemetryView(folder, is_checked), OutputView(folder, is_checked)

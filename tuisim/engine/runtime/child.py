@@ -148,8 +148,7 @@ class Interrupts:
     Args:
         session: The run.
         soft_codes: Code objects of the runtime in which a handler may raise an exception; in all other code of the
-            runtime
-            it must not.
+            runtime it must not.
     """
 
     def __init__(self, session: Session, soft_codes: frozenset[types.CodeType]) -> None:
@@ -267,8 +266,8 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
     """Run the program that a run folder describes, then end the process.
 
     Args:
-        arguments: The run folder; descriptors of the commands, the events, the lifeline, the lock of the folder
-            and, of an isolated child, the files of `RawOutput`.
+        arguments: The run folder; descriptors of the commands, the events, the lifeline, the lock of the folder and, of
+            an isolated child, the files of `RawOutput`.
         prepared: The child, if it has been prepared already.
     """
     command_fd, event_fd, lifeline_fd, lock_fd, *raw_fds = map(int, arguments[1:])
@@ -319,7 +318,7 @@ class Child:
         self._known_programs = KnownPrograms()
 
     def expect(self, folder: Path, changes: Mapping[str, Any]) -> None:
-        """Prepare for another run, without executing anything of its program; arguments as of `derive_config`."""
+        """Prepare for another run, without executing anything of its program; arguments as for `derive_config`."""
         self._config = config = derive_config(self._config, folder, changes)
         drops_annotations = config.spec.profile.motor_law.library.drops_annotations
         self._runner.code = self._known_programs.code(config.program, drops_annotations)

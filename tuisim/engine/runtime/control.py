@@ -237,7 +237,7 @@ class RunControl:
         # machine.
         return wallclock.monotonic() if self.live else wallclock.process_time()
 
-    # What is done right before ticks
+    # Work right before ticks
 
     @property
     def wanted(self) -> bool:

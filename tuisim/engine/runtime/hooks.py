@@ -64,7 +64,7 @@ class ErrorHooks:
         self._own = sys.excepthook
 
     def report(self, error: BaseException, alone: bool = False) -> ErrorReport:
-        """Return the report of an error, with notes that may help; `alone` as of `report_error`."""
+        """Return the report of an error, with notes that may help; `alone` as for `report_error`."""
         if not alone:
             add_prelude_note(error, self._source())
             add_namesake_note(error, self._session.program_file)

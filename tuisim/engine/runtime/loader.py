@@ -85,7 +85,10 @@ def _check_encoding(text: str, file: str) -> None:
 
 
 def _find_declared_encoding(text: str) -> tuple[int, str] | None:
-    """Return the line in which a file declares its encoding, and the encoding; None without one (PEP 263)."""
+    """Return the number of the line in which a file declares its encoding, and the encoding, as defined by PEP 263.
+
+    Return None if the file declares no encoding.
+    """
     import re
 
     for number, line in enumerate(text.split("\n", 2)[:2], start=1):
@@ -121,7 +124,7 @@ def compile_program(text: str, file: str, drops_annotations: bool = False) -> ty
 def compile_with_hooks(
     source: str | bytes, file: str, drops_annotations: bool = False
 ) -> types.CodeType:
-    """Return the code of a program or of one of its modules, with loop hooks; arguments as of `compile_program`.
+    """Return the code of a program or of one of its modules, with loop hooks; arguments as for `compile_program`.
 
     Raises:
         SyntaxError, ValueError: the source is not Python.

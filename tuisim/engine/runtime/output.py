@@ -51,9 +51,8 @@ class Addresses:
 
     Each object whose address is printed gets the next number of a fixed sequence. Only addresses that Python itself
     writes are changed, after ` at 0x`, and the identifiers of threads. A number that cannot be an address stays
-    unchanged.
-    A number stands for an object as long as the object exists; a later object at the same address gets another number,
-    because it depends on the machine which memory is used again.
+    unchanged. A number stands for an object as long as the object exists; a later object at the same address gets
+    another number, because it depends on the machine which memory is used again.
 
     Args:
         names: Returns the program's global names.

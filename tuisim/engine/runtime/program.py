@@ -440,7 +440,7 @@ class ProgramRunner:
             number = 0
         elif isinstance(code, int):
             number = int.__index__(code)
-            # As Python does for invalid exit statuses.
+            # Python, too, returns -1 for an exit status that is out of range.
             number = number if abs(number) < 1 << 31 else -1
         else:
             self.hooks.write(format_safely(str, code) + "\n")

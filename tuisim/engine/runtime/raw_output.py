@@ -37,7 +37,7 @@ class RawFile:
 
     Args:
         fd: 1 or 2.
-        take: Receives what was written.
+        take: Receives the bytes that were written to the descriptor.
         created: A descriptor of a file that the host has created for it; None creates one.
 
     Raises:
@@ -60,7 +60,7 @@ class RawFile:
         """Begins with 0 unless something has been written; output that begins with a null byte is not noticed."""
 
     def drain(self) -> int:
-        """Pass what was written to the descriptor to `take`, and return its length in bytes."""
+        """Pass the bytes that were written to the descriptor to `take`, and return their number."""
         try:
             length = min(os.lseek(self._fd, 0, os.SEEK_CUR), RAW_BYTES)
             if not length or not os.path.samestat(os.fstat(self._fd), self._identity):
@@ -79,8 +79,8 @@ class RawOutput:
     """A reader of bytes that are written to descriptors 1 and 2 directly, such as by C code.
 
     Args:
-        stdout: Receives what was written to descriptor 1.
-        stderr: Receives what was written to descriptor 2.
+        stdout: Receives the bytes that were written to descriptor 1.
+        stderr: Receives the bytes that were written to descriptor 2.
     """
 
     def __init__(
@@ -106,7 +106,10 @@ class RawOutput:
         self._first_out, self._first_err, *_ = *firsts, _NOTHING, _NOTHING
 
     def drain(self) -> None:
-        """Pass on what was written. The check is quick: output that begins with a null byte is not noticed."""
+        """Pass on all bytes that were written to descriptors 1 and 2.
+
+        Only the first byte is checked, because that is fast: output that begins with a null byte is passed on later.
+        """
         # Written without a loop, which would take longer: this is called at each reading of a sensor.
         if self._first_out[0] or self._first_err[0]:
             self.drain_all()

@@ -170,7 +170,7 @@ class Session:
 
             self._pen = PenMarks(self._field, self.sim.spec)
 
-    # What the shim calls
+    # Methods that the simulated devices call
 
     @property
     def field(self) -> Field:
@@ -234,9 +234,9 @@ class Session:
             self.spend(cost_ns)
 
     def command(self) -> None:
-        """Count a call that takes no time.
+        """Count a call that takes no simulated time.
 
-        Many such calls at one time together take a little, so that no loop of them runs forever.
+        After many such calls at the same time, a little time passes, so that a loop of them cannot run forever.
         """
         if self._commands_at != self.now:
             self._commands_at = self.now
@@ -262,7 +262,7 @@ class Session:
         self._pass(self.now + timeout_ns, True)
 
     def describe_part(self, port: str, part: str, role: str = "") -> PluggedPart:
-        """Return a description of a part that is plugged in now; arguments as of `PluggedPart`."""
+        """Return a description of a part that is plugged in now; arguments as for `PluggedPart`."""
         from tuisim.engine.core.plugged import PluggedPart
 
         return PluggedPart(port, part, self.sim.tick, self.program_line(), role)
@@ -439,7 +439,7 @@ class Session:
         return self.stop_reason
 
     def ask_stop(self, end: End, summary: str, line: int = 0) -> None:
-        """Record that the run has to end at the next call that checks for a stop; arguments as of `StopProgram`."""
+        """Record that the run has to end at the next call that checks for a stop; arguments as for `StopProgram`."""
         if self.stop_reason is None:
             self.stop_reason = StopProgram(end, summary, line)
             self.steering.begin_grace()

@@ -98,7 +98,7 @@ def _cut(text: str) -> str:
 
 
 def _add_text(error: BaseException, file: str, source: str) -> None:
-    """Add the program's line to a syntax error without one.
+    """Add the text of the program's line to a syntax error that lacks it.
 
     Python would look for the line in the file, which need not exist.
     """

@@ -88,7 +88,7 @@ class ForkServer:
     def __init__(self, socket_fd: int, prepared: Child | None = None) -> None:
         self._prepared = prepared
         self._environment = dict(os.environ)
-        # The C module, because the program has to import `socket` itself, with patched functions.
+        # `_socket` is used, because the program must be the first to import `socket`, with patched functions.
         library: Any = import_module("_socket")
         self._socket: Any = library.socket(fileno=socket_fd)
         self._attached_bytes: int = library.CMSG_SPACE(MAX_FILES * 4)
@@ -163,7 +163,7 @@ class ForkServer:
 
     def _become_child(self, request: dict[str, Any], given: list[int], status_fd: int) -> None:
         os.setsid()
-        # Reported only after `setsid`, because the host may kill the child's process group from then on.
+        # The id is reported after `setsid`, because the host may kill the child's process group from then on.
         _report(status_fd, os.getpid())
         signal.set_wakeup_fd(-1)
         wallclock.set_signal(signal.SIGCHLD, int(signal.SIG_DFL))

@@ -125,8 +125,8 @@ def font_size(name: str) -> tuple[int, int] | None:
     """Return width and height in pixels of a font's characters, by the font's name.
 
     Args:
-        name: Character set, face and one or two numbers, such as `Lat15-TerminusBold24x12`,
-            `Lat15-TomThumb4x6` or `Lat15-VGA16`: characters are never wider than high.
+        name: Character set, face and one or two numbers, such as `Lat15-TerminusBold24x12`, `Lat15-TomThumb4x6` or
+            `Lat15-VGA16`: characters are never wider than high.
 
     Returns:
         None if the name is not a font, or the size does not fit the screen.

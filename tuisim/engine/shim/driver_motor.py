@@ -76,7 +76,7 @@ class DriverTacho(SignedTacho):
         return motor
 
     def registers(self) -> MotorRegisters:
-        """Return what the program has written to the motor, and its speed."""
+        """Return the values that the program has written to the motor's attributes, and the motor's speed."""
         speed, position, time_ms = (
             self._set_point(name) for name in ("speed_sp", "position_sp", "time_sp")
         )

@@ -38,7 +38,8 @@ class FinishingFinder:
 
     Args:
         finishers: Functions by module name.
-        is_own: Whether a file belongs to the program: such a module may have any name.
+        is_own: Returns whether a file belongs to the program. No function is called on such a module, whatever its
+            name.
         around: Contexts in which to import, by module name.
     """
 

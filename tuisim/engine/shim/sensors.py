@@ -103,7 +103,7 @@ class LegoSensor:
             "bin_data_format": lambda: self.modes[self.mode].form,
             "bin_data": self._binary,
         }
-        # These attributes take their time when they are read: only the first value of a measurement takes any.
+        # The readers of these attributes let time pass themselves: only the first value of a measurement takes time.
         costs = {"bin_data": 0}
         for n in range(8):
             readers[f"value{n}"] = partial(self._value, n)

@@ -58,9 +58,9 @@ class DeviceSession(Protocol):
         """Let the simulated time of a call pass, unless calls are free of charge."""
 
     def command(self) -> None:
-        """Count a call that takes no time.
+        """Count a call that takes no simulated time.
 
-        Many such calls at one time together take a little, so that no loop of them runs forever.
+        After many such calls at the same time, a little time passes, so that a loop of them cannot run forever.
         """
 
     def wait_for_motor(self, timeout_ns: int, again: bool = False) -> None:
@@ -85,7 +85,7 @@ class DeviceSession(Protocol):
         """Report to the process that started the run which parts have been plugged in."""
 
     def describe_part(self, port: str, part: str, role: str = "") -> PluggedPart:
-        """Return a description of a part that is plugged in now; arguments as of `PluggedPart`."""
+        """Return a description of a part that is plugged in now; arguments as for `PluggedPart`."""
 
     def is_tried(self, error: type[Exception]) -> bool:
         """Return whether the program would catch an error raised now, so that it only tests which devices there are."""

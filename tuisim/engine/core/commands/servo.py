@@ -77,8 +77,7 @@ def run_control(motor: ServoMotor, time_ns: int, values: Values) -> None:
         motor: The motor.
         time_ns: When the program gives the command.
         values: Speed in counts per second, acceleration, duration in microseconds (NaN: endless), and an `Ending`. If
-            the
-            `Ending` is NaN, only the controller changes; otherwise the motor begins to follow the controller.
+            the `Ending` is NaN, only the controller changes; otherwise the motor begins to follow the controller.
     """
     rate, acceleration, time_us, ending = values
     motor.control.run(
@@ -95,8 +94,7 @@ def move(motor: ServoMotor, time_ns: int, values: Values) -> None:
         motor: The motor.
         time_ns: When the program gives the command.
         values: Target in counts, speed and acceleration in counts per second (squared), and whether the target is
-            relative
-            to the present position (1 or 0).
+            relative to the present position (1 or 0).
     """
     *numbers, relative = values
     motor.control.move_to_position(
@@ -128,7 +126,7 @@ def limit_duty(motor: ServoMotor, _time_ns: int, values: Values) -> None:
 
 
 def set_control(motor: ServoMotor, _time_ns: int, values: Values) -> None:
-    """Change a setting of a motor's controller; values as of `_change_setting`."""
+    """Change a setting of a motor's controller; values as for `_change_setting`."""
     _change_setting(motor.control, values)
 
 

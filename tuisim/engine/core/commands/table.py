@@ -122,7 +122,7 @@ _SET_POINTS = (_SPEED, _INT, (-100.0, 100.0), _INT, _RAMP_MS, _RAMP_MS, (0.0, 2.
 
 
 class Target(Enum):
-    """What a command acts on: the robot, a motor or a drive base."""
+    """The kind of thing on which a command acts: the robot, a motor or a drive base."""
 
     ROBOT = auto()
     MOTOR = auto()
@@ -132,7 +132,7 @@ class Target(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CallSpec:
-    """What a command does, on which motors it is allowed, and which values it takes."""
+    """The description of a command: the function that executes it, its allowed values and its allowed motors."""
 
     apply: Callable[[Any, int, Values], None]
     """Executes the command; takes the part that it is for, the time in ns and the values."""
@@ -223,7 +223,7 @@ def list_parts(sim: Simulation, target: Target) -> Sequence[Any] | DriveBases:
 
 
 def obey(sim: Simulation, time_ns: int, part: int, call: Call, *values: float) -> None:
-    """Apply a command of a program to a simulation; arguments as of `SimulationCommand`.
+    """Apply a command of a program to a simulation; the arguments are the fields of a `SimulationCommand`.
 
     Programs change a simulation only through this function, so that all their commands can be recorded.
 

@@ -65,7 +65,7 @@ STATES = tuple(
 
 
 class SetPoints(NamedTuple):
-    """The attributes of a motor that a program has set when it gives a command, in the motor's own direction."""
+    """The values of a motor's attributes at the time of a command, with the sign of the motor's own direction."""
 
     speed_dps: int = 0
     position: int = 0

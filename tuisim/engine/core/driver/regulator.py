@@ -24,7 +24,7 @@ COUNTED_DEG = 2
 
 
 class StopAction(StrEnum):
-    """What a motor does at the end of a command."""
+    """The action with which a motor stops at the end of a command."""
 
     COAST = "coast"
     BRAKE = "brake"
@@ -303,7 +303,7 @@ class MotorDriver:
                 duty = next_duty
                 goal_dps = next_duty * circuit.dps_per_percent
                 end_dps = goal_dps - friction_dps
-            # Both are whole numbers, so the sum is exact: the same as `step_ns * TICKS_PER_NS`.
+            # Both terms are whole numbers, so the sum is exact: the same as `step_ns * TICKS_PER_NS`.
             begin += STEP_TICKS
             step_ns += STEP_NS
         axle.angle_deg = angle_deg

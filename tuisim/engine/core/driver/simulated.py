@@ -75,18 +75,18 @@ def _find_hub_plant(kind: str) -> PlantSpec:
 
 
 def build_motor(spec: RunSpec, kind: str, *, free: bool) -> SimulatedMotor:
-    """Return a motor with a driver, in its initial state; arguments as of `choose_plant`."""
+    """Return a motor with a driver, in its initial state; arguments as for `choose_plant`."""
     plant = choose_plant(spec, kind, free=free)
     return SimulatedMotor(spec.profile.tick_hz, kind, plant, spec.robot.battery_v)
 
 
 def build_axle(spec: RunSpec, kind: str, *, free: bool) -> Axle:
-    """Return the axle of a motor that is not controlled by the EV3 driver; arguments as of `choose_plant`."""
+    """Return the axle of a motor that is not controlled by the EV3 driver; arguments as for `choose_plant`."""
     return Axle(choose_plant(spec, kind, free=free), spec.robot.battery_v)
 
 
 def change_load(axle: Axle, spec: RunSpec, kind: str, *, free: bool) -> None:
-    """Change the load of an axle to that of a motor with or without a wheel; arguments as of `choose_plant`."""
+    """Change the load of an axle to that of a motor with or without a wheel; arguments as for `choose_plant`."""
     axle.change_load(choose_plant(spec, kind, free=free), spec.robot.battery_v)
 
 
@@ -280,7 +280,10 @@ class SimulatedMotor(DriverMotor):
         self.read_counts(self.counter.count)
 
     def wake(self, time_ns: int) -> None:
-        """Run the motor until `time_ns`, and from then on in single steps: a command or an obstacle changes it."""
+        """Run the motor until `time_ns`, and make it run in single steps from then on.
+
+        It is called when a command or an obstacle changes the motor.
+        """
         if self._cruise_dps:
             self._leave_cruise()
         DriverMotor.wake(self, time_ns)

@@ -99,7 +99,9 @@ def list_column_names(run: RunSpec) -> tuple[str, ...]:
 
 
 def find_named_column(text: str, run: RunSpec) -> str:
-    """Return the name of the column that a text names, perhaps in an earlier spelling; see `find_column_name`.
+    """Return the name of the column that a text such as `left_red_pc` names; see `find_column_name`.
+
+    Earlier spellings of names are accepted, too.
 
     Raises:
         ConfigError: the run has no such column.

@@ -110,7 +110,7 @@ def remote(
 
 
 def compute_remote_bits(time_s: float, world: WorldSpec, by_hand: Collection[str] = ()) -> int:
-    """Return the buttons of the remote control that are pressed on channel 1, as bits; arguments as of `remote`."""
+    """Return the buttons of the remote control that are pressed on channel 1, as bits; arguments as for `remote`."""
     pressed = _find_pressed(1, time_s, world, by_hand)
     return _REM_A_NONE + sum(_REM_A_BUTTONS.get(button, 0) for button in pressed)
 

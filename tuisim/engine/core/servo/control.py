@@ -32,7 +32,7 @@ from tuisim.engine.core.servo.trajectory import (
 
 
 class Ending(IntEnum):
-    """What a motor does after a move; the values are those of `pybricks.parameters.Stop`."""
+    """The action of a motor after a move; the values are those of `pybricks.parameters.Stop`."""
 
     COAST = 0
     BRAKE = 1
@@ -275,7 +275,7 @@ class Controller:
         ):
             return False
         even = self.trajectory.even
-        # Only after whole milliseconds would a new trajectory begin at the same position, without rounding.
+        # A new trajectory begins at a rounded position, except after whole milliseconds.
         passed_us = now_us - even.start_us
         return (
             self.trajectory.endless

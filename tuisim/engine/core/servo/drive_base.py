@@ -156,7 +156,7 @@ class DriveBase:
         self._behind_us = -1
         self._millis = (0, 0)
 
-    # What the program sees
+    # The state of the drive base that a program can read
 
     @property
     def active(self) -> bool:
@@ -314,7 +314,7 @@ class DriveBase:
         self._take(Ending.HOLD)
 
     def stop(self, now_us: int, duty: int | None) -> None:
-        """Stop controlling the motors, and run them with a constant power; `duty` is as of `ServoMotor.run_freely`."""
+        """Stop controlling the motors, and run them with a constant power; `duty` is as for `ServoMotor.run_freely`."""
         for motor in self.motors:
             motor.run_freely(now_us, duty)
         self.distance.release()
@@ -349,7 +349,7 @@ class DriveBase:
         for motor in self.motors:
             motor.follow(self, ending)
 
-    # What its motors call, because it is their guide
+    # The methods of a `Guide`, which the motors call
 
     @property
     def trajectory(self) -> Trajectory | None:

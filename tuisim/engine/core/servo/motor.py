@@ -40,7 +40,10 @@ HALVES_PER_DEG = 2 * MILLI * COUNTS_PER_DEG
 
 
 class Guide(Protocol):
-    """What a motor follows: a controller or a drive base. Times are in µs, positions in half thousandths of a count."""
+    """The object that a motor follows: a controller or a drive base.
+
+    Times are in µs, positions in half thousandths of a count.
+    """
 
     @property
     def end_us(self) -> int | None:
@@ -133,7 +136,7 @@ class ServoMotor:
         self._tick = self._quiet = 0
         self._limit_speed()
 
-    # What the program sees
+    # The state of the motor that a program can read
 
     @property
     def guide(self) -> Guide | None:
@@ -260,8 +263,8 @@ class ServoMotor:
     def set_position(self, now_us: int, milli: int) -> None:
         """Set the value that the motor reports for its present position, in thousandths of a count.
 
-        A motion under way ends there. The motor then holds the position; under later firmware it does what it would
-        have done at the end of the motion.
+        The present motion ends. The motor then holds the position; under later firmware it holds, brakes or coasts, as
+        it would have done at the end of the motion.
         """
         shift = milli - self.find_milli(now_us)
         self._past.clear()
@@ -273,7 +276,7 @@ class ServoMotor:
             windowed = self.control.settings.speed_window_ms
             self.follow(ending=self._ending if windowed else Ending.HOLD)
 
-    # What the simulation needs
+    # The methods of a `Motor`, which the simulation calls
 
     @property
     def goal_deg(self) -> float:

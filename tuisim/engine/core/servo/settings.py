@@ -184,8 +184,9 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
     """Return the settings of a new motor.
 
     Args:
+        law: The firmware that moves the motor.
         kind: One of `MOTOR_KINDS`.
-        gear_ratio: Turns of the motor per turn of what it drives.
+        gear_ratio: Turns of the motor for one turn of the part that it drives.
     """
     firmware = FIRMWARES[law]
     motor = firmware.motors[kind]

@@ -61,7 +61,7 @@ def measure_waited_s(pid: int) -> float:
     total_ns = 0
     with suppress(OSError):
         for thread in os.listdir(f"/proc/{pid}/task"):
-            # Nanoseconds on a processor, and in the queue: Documentation/scheduler/sched-stats.rst of Linux.
+            # Linux gives the ns on a processor and in the queue: see its Documentation/scheduler/sched-stats.rst.
             with suppress(OSError, ValueError, IndexError):
                 total_ns += int(
                     Path(f"/proc/{pid}/task/{thread}/schedstat").read_bytes().split()[1]

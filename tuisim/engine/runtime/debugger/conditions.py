@@ -156,11 +156,11 @@ class Watcher:
                         self._after_tick[break_point.text] = check
 
     def match_tick(self) -> tuple[str, str] | None:
-        """Return a breakpoint that matches after this tick, as its text and the matching value; None without one."""
+        """Return a breakpoint that matches after this tick, as its text and matching value; None if there is none."""
         return _find_first((text, check()) for text, check in self._after_tick.items())
 
     def match_row(self, row: str, stream: Stream) -> tuple[str, str] | None:
-        """Return a breakpoint that matches a printed row, as its text and the matching value; None without one."""
+        """Return a breakpoint that matches a printed row, as its text and the matching value; None if none matches."""
         if stream not in SAMPLE_STREAMS:
             return None
         return _find_first((text, check(row)) for text, check in self._on_row.items())

@@ -84,7 +84,14 @@ def _find_end_ns(
 def _describe_call(
     session: Session, frame: types.FrameType, outer: list[types.FrameType], until: str
 ) -> str:
-    """Return a text that says what a call of the runtime or the library waits for; empty if it does not wait."""
+    """Return a text that says what a call of the runtime or of the library waits for; empty if the call does not wait.
+
+    Args:
+        session: The run.
+        frame: The call.
+        outer: The callers of the frame, innermost first.
+        until: The end of the text, which says when the wait ends.
+    """
     match wait_of(frame.f_code):
         case None:
             return ""
@@ -333,7 +340,7 @@ class Inspector:
         self, place: _Place, watches: tuple[str, ...], go_on: Callable[[], bool]
     ) -> tuple[dict[str, Any], str]:
         frame = place.frame
-        # The locals of a frame of this thread are read in the copy: read here, they would be kept alive.
+        # Local variables of this thread are read in the copy: `f_locals` would keep the values alive in this process.
         local = None if frame is None or place.task is self._scheduler.current else frame.f_locals
 
         def read_values(seconds: float, expressions: tuple[str, ...]) -> dict[str, Any] | None:

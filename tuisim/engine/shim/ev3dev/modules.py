@@ -204,7 +204,7 @@ def patch_lego_module(
 
     color_sensor.reflected_light_intensity_pc = property(red_percent)
     color_sensor.full_reflected_light_intensity = property(mean_percent)
-    # The library's constructor reads the initial angle.
+    # The library's constructor reads the initial angle; this read must not take simulated time.
     lego.GyroSensor.__init__ = free_of_charge(session, lego.GyroSensor.__init__)
 
 

@@ -73,13 +73,16 @@ def _resources() -> types.ModuleType:
 def finish_core(
     session: DeviceSession, module: types.ModuleType, plugs: Plugs, hint: Callable[[str], str]
 ) -> None:
-    """Patch `ev3dev.core` after its import: the screen's font, duty cycles, and errors about missing devices.
+    """Patch `ev3dev.core` after its import.
+
+    Then it draws with the brick's font, runs motors by their duty cycle, and its errors about missing devices have
+    hints.
 
     Args:
         session: The run.
         module: The module.
         plugs: Plugs in missing devices.
-        hint: Returns what to add to the error about a missing device of a class.
+        hint: Returns a hint for the error about a missing device of a class.
     """
     core: Any = module
     draw_with_the_bricks_font(core.Screen)

@@ -43,7 +43,7 @@ class OpenFiles:
         Args:
             path: As the program names it.
             entry: What is at the path.
-            flags: As of `os.open`.
+            flags: As for `os.open`.
 
         Raises:
             OSError: the entry is a folder, or its permissions or the flags forbid opening it.
@@ -99,7 +99,7 @@ class DeviceIO(_real_file):
     Args:
         files: The opened files.
         opened: This file.
-        mode: As of `open`.
+        mode: As for `open`.
         name: The path or descriptor with which it was opened.
         closefd: Whether closing this object closes the descriptor.
     """
@@ -174,8 +174,7 @@ def _in_turn(kind: Any) -> Any:
     """Return a subclass of a buffered file class whose methods only one thread of the program can run at a time.
 
     The class's own lock would block the process for ever: the thread that has the lock may wait for simulated time, and
-    no
-    time passes while another thread blocks.
+    no time passes while another thread blocks.
     """
 
     def method(name: str) -> Any:

@@ -457,8 +457,7 @@ def _branching(real: type, choose: Callable[..., Any]) -> type:
     """Return a class that replaces a class of Python; programs can derive from it, and test for it with `isinstance`.
 
     A call of the class returns the result of `choose`. If that is None, or the arguments are wrong, it returns an
-    object of
-    the real class.
+    object of the real class.
     """
 
     class Branching(type):

@@ -135,7 +135,10 @@ class Brick:
         obey(self.session.sim, self.session.now, part, call, *numbers)
 
     def command(self) -> int:
-        """Count a command, which takes no time, and return the simulated time in microseconds."""
+        """Count a command, which takes no simulated time; see `DeviceSession.command`.
+
+        Return the simulated time in microseconds.
+        """
         self.session.command()
         return self.session.now // 1000
 
@@ -159,7 +162,7 @@ class Brick:
         """Block until a wait is over, and return its result; while a task runs, return an object to await.
 
         Args:
-            waiting, stop: As of `Awaited`.
+            waiting, stop: As for `Awaited`.
         """
         awaited: Any = Awaited(waiting, stop)
         return awaited if self.in_task else self.block(waiting)

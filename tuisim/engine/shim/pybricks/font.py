@@ -88,6 +88,6 @@ Font.DEFAULT = Font()
 
 
 def drawable(text: str) -> str:
-    """Return a text as one line in which characters that no font here has are replaced."""
+    """Return a text as one line of Latin 1; characters that cannot be drawn become question marks or blanks."""
     latin = text.encode("latin-1", "replace").decode("latin-1")
     return "".join(letter if letter.isprintable() else BLANK for letter in latin)

@@ -230,11 +230,11 @@ class DriveBase(Connected):
         return None
 
     def _check_setting(self, value: int, at: int) -> int:
-        """Return a setting, limited to what the motors can do.
+        """Return a speed or an acceleration in the program's units, at most the highest that the motors allow.
 
         Args:
-            value: In units of the program.
-            at: The number of the setting: speed and acceleration of the distance, then of the heading.
+            value: In the program's units.
+            at: 0 for the speed and 1 for the acceleration of straight moves, 2 and 3 for those of turns.
         """
         settings = (self._base.distance if at < 2 else self._base.heading).settings
         return min(value, settings.units(settings.acceleration if at % 2 else settings.speed))

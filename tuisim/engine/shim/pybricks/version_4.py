@@ -75,7 +75,7 @@ class Motor(motor.Motor):
             self.control.pid(*kind.compute_gains(tolerance)[:2])
 
     def _command(self) -> None:
-        """Count a command.
+        """Count a command to the motor, see `Brick.command`.
 
         If a drive base moves or holds the motor, stop the drive base, so that both its motors coast.
         """
@@ -438,7 +438,7 @@ class multitask:  # noqa: N801 - as the library names it
                         del tasks[number]
                         if self._race:
                             return tuple(results)
-                # What one task has begun may end the wait of another.
+                # A command of one task may end the wait of another, so time passes only when no wait has changed.
                 if tasks and until_us == earlier_us:
                     yield min(until_us)
                 earlier_us = until_us

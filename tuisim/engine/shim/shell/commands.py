@@ -241,7 +241,7 @@ class Running:
         self.wait()
 
 
-# Programs: what each does with its arguments
+# The programs of the shell, as functions of their arguments
 
 
 def _set_font(shell: Shell, words: list[str], _streams: Streams) -> Outcome:

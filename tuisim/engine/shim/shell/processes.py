@@ -131,7 +131,7 @@ class Process:
         """Return a function that receives output, and the pipe from which the program reads the output, if any.
 
         Args:
-            target: As of `stdout` in `subprocess.Popen`.
+            target: As for `stdout` in `subprocess.Popen`.
             own: Receives the output if the target is None.
         """
         if target != self.system.module.PIPE:
@@ -291,7 +291,7 @@ def _sink(target: Any, own: Sink) -> Sink:
     """Return a function that writes to the target of an output stream.
 
     Args:
-        target: As of `stdout` in `subprocess.Popen`, but no pipe.
+        target: As for `stdout` in `subprocess.Popen`, but no pipe.
         own: The function that is returned if the target is None.
     """
     if target is None:

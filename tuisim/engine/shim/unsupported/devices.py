@@ -131,7 +131,7 @@ def of_driver(name: str) -> Hardware | None:
 
 
 def refusal(where: str, kind: Hardware, name: str = "") -> NotSimulated:
-    """Return the error for the use of hardware that is not simulated; arguments as of `_told`."""
+    """Return the error for the use of hardware that is not simulated; arguments as for `_told`."""
     return NotSimulated(*_told(where, kind, name))
 
 
