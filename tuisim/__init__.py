@@ -45,7 +45,7 @@ _HOMES = {
 }
 
 
-if not TYPE_CHECKING:  # For mypy, a misspelt name would be anything.
+if not TYPE_CHECKING:  # With `__getattr__`, mypy would accept a misspelt name.
 
     def __getattr__(name: str) -> Any:
         if name not in _HOMES:

@@ -28,7 +28,7 @@ def _leave(code: int) -> NoReturn:
     vars(threading)["_shutdown"]()
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
-        # Its reader may be gone, which the command has told.
+        # The reader of the stream may be gone; the command has reported that already.
         with suppress(OSError, ValueError):
             stream.flush()
     os._exit(code)

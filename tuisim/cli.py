@@ -234,7 +234,7 @@ def run_command(words: Sequence[str]) -> int:
     Args:
         words: The command line without the program's own name.
     """
-    # A shell may close them; the output is then discarded.
+    # A shell may close stdout or stderr; the output is then discarded.
     sys.stdout = sys.stdout or Path(os.devnull).open("w")  # noqa: SIM115 - open until the process ends
     sys.stderr = sys.stderr or Path(os.devnull).open("w")  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):

@@ -212,7 +212,7 @@ def align_series(log: Log, series: Sequence[Series], way: str) -> list[FloatArra
     }
     if not start_by_run:
         raise LogError(f"no run reaches {way}", FORM)
-    # A run without the event is aligned like the earliest one.
+    # A run without the event is aligned at the earliest time at which another run has it.
     return [
         variable.time_s - start_by_run.get(variable.run, min(start_by_run.values()))
         for variable in series

@@ -141,7 +141,7 @@ def leave(code: int) -> int:
             for stream in (sys.stdout, sys.stderr):
                 with suppress(OSError, ValueError):
                     stream.flush()
-            # A normal exit would wait for what the threads hold, such as a lock of a library.
+            # A normal exit would wait for the threads, which may hold a lock of a library.
             os._exit(code)
         time.sleep(_LOOK_S)
     return code

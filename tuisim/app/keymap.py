@@ -99,7 +99,7 @@ def _check_clashes(
             other = owners.setdefault(key, name)
             if other == name:
                 continue
-            # The error names an entry of the user's, because without one no two actions share a key.
+            # The error names a key that the user has chosen: of the usual keys, no two are the same.
             blamed, has = (name, other) if name in config.keys else (other, name)
             title = actions[has].title
             raise location.at(blamed).wrong(

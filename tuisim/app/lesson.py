@@ -125,8 +125,8 @@ class LessonController:
         self._save(session)
         self._panel_area.request(self._choose_panels(session.lesson))
         if self._panel_area.world:
-            # The world gets the focus: after typing in the program before, the arrow keys would still move in it, and
-            # not the robot.
+            # The world gets the focus: if the student has typed in the former program, the arrow keys would otherwise
+            # move its cursor, not the robot.
             self._panel_area.world.focus()
         self._begin_step(session)
         runs = self._run_controller
@@ -146,7 +146,7 @@ class LessonController:
         if self._panel_area.size.height >= _ROOMY_ROWS:
             beside.remove("instrumentation")
         elif not any(step.check == ShowCheck("chart") for step in lesson.steps):
-            # A chart that was opened in another lesson would be in the place of the output that this one speaks of.
+            # A chart that another lesson has opened would take the place of the output, which this lesson needs.
             usual = dict.fromkeys(("output", "chart"))
         panels = dict.fromkeys((*lesson.settings.get("panels_on", ()), "code", "lesson"), True)
         return {**dict.fromkeys(beside, False), **usual, **panels}
@@ -156,8 +156,8 @@ class LessonController:
         session.begin_step(recording.run_id if recording else "")
         match session.step.check if session.step is not None else None:
             case ShowCheck(panel=panel):
-                # It is the student's task to open this panel. In a low terminal the text needs the rows of those that
-                # earlier steps asked for.
+                # The student has to open this panel. In a low terminal, the text needs the rows of panels that were
+                # opened for earlier steps.
                 is_low = self._panel_area.size.height < _ROOMY_ROWS
                 former = session.lesson.steps[: session.at] if is_low else ()
                 asked = [step.check.panel for step in former if isinstance(step.check, ShowCheck)]

@@ -138,7 +138,7 @@ class Notices:
                 if waiting_notice.severity == "error"
             )
         self._waiting.append(notice)
-        # What caused the notice may still move the panels: wait for the next refresh.
+        # The action that has caused the notice may still move the panels: wait for the next refresh.
         self._app.call_after_refresh(self._take_turn)
 
     def list_messages(self) -> list[str]:

@@ -272,7 +272,7 @@ class RunController:
         if record is None or recording is None:
             return self._still, 0, self.next_run.spec.robot.pen.down
         noise = recording.find_noise(record) if self._is_of_run else self.next_run.spec.world.noise
-        # Before a run, the pen is where the next run will have it.
+        # Before a run, the pen is up or down as at the start of the next run.
         down = record.is_pen_down if self._is_of_run else self.next_run.spec.robot.pen.down
         exact = dict(known for known in (self.paused_line, self.chosen_line) if known)
         instant = recording.instant(record, self.spec, noise)

@@ -306,7 +306,8 @@ def _iterate_results(client: Any, watch: ClusterWatch, tasks: Iterator[Task]) ->
         except TuisimError:
             raise
         except Exception as error:  # A dying worker, or wrong packages on it, can cause any error.
-            # If the scheduler is lost, it has cancelled the pending tasks: then this raises that as the reason.
+            # If the scheduler is lost, it has cancelled the pending tasks: `explain` then raises the loss as the
+            # reason.
             watch.explain()
             why = str(error).partition("\n")[0]
             raise HostError(

@@ -104,7 +104,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
 
 def describe_last_state(facts: dict[str, Any]) -> str:
     """Return the status line of a run, given the result of `describe`."""
-    # The error itself is told by its traceback.
+    # The traceback tells the error itself: this line only says where it was.
     line = f" in line {facts['error_line']}" if facts["error_line"] else ""
     what = (
         f"{facts['state']}{line}"

@@ -298,7 +298,7 @@ def guess_columns(table: pa.Table) -> Layout:
         # In telemetry, which has no column of values, the pose is not hidden.
         hidden = _NO_VALUES if value in numeric else ("line", "row")
         values = [n for n in numeric if n not in hidden] or numeric
-        # With a single numeric column, there is no choice.
+        # With a single numeric column, there is no other choice, so the guess is sure.
         sure = bool(named) or (len(numeric) < 2 and not time)
     return _set_time_unit(Layout(time, 1.0, False, variable, tuple(values), run, sure), table)
 

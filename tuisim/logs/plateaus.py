@@ -398,7 +398,7 @@ def _add_ends(values: FloatArray, plateaus: PlateauArray, min_step: float) -> Pl
 def _extend_pieces(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
     """Return pieces extended by samples of the same level beyond a stray at their ends."""
     near = FAR * sigma / 2.0
-    # Read from the end of the log, the ends of pieces are starts.
+    # In the reversed log, the ends of pieces are starts.
     mirrored = len(values) - pieces[::-1, ::-1]
     stops = (
         len(values)

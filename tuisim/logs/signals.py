@@ -176,7 +176,7 @@ def sample_signal(
         return np.full(len(moments_s), np.nan)
     if between == Between.LINEAR:
         return np.interp(moments_s, time_s, values, left=np.nan)
-    # If several samples have the same time, the last one counts. The margin allows for rounding of the times.
+    # If several samples have the same time, the last one is taken. The margin allows for rounding of the times.
     indices = np.searchsorted(time_s, moments_s + 1e-9, side="right") - 1
     sampled = values[np.maximum(indices, 0)].astype(np.float64)
     sampled[indices < 0] = np.nan

@@ -49,7 +49,7 @@ class Notes:
             text = (singular, plural)
             self._counts[text] = self._counts.get(text, 0) + len(rows)
             named = self._rows.setdefault(text, [])
-            # One row more than are named is kept, which shows that there are others.
+            # One row more than is named is stored: it shows that there are more rows.
             named += rows[: ROWS_NAMED + 1 - len(named)]
 
     def say_rows(self, text: str, rows: Sequence[int]) -> None:

@@ -27,7 +27,7 @@ def get_dataframe_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
     from tuisim.engine.runs.frames import build_samples_frame
     from tuisim.notebook.eds import use_seconds
 
-    # A notebook usually plots the frame next.
+    # A notebook usually plots the frame next: its time axis then has labels in seconds.
     use_seconds()
     return build_samples_frame(log)
 

@@ -64,7 +64,7 @@ def _run_task(task: Task, folder: Path) -> Result:
         try:
             ended = _run_to_end(handle, task.real_time_limit_s)
             run = handle.stored()
-            # The run has ended, so each of these is read only once.
+            # The run has ended: read its telemetry and output now, and never again.
             for view in (run.telemetry, run.output):
                 view.read_new()
                 view.holds = True

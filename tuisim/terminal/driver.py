@@ -156,7 +156,7 @@ class TerminalDriver(HookedLinuxDriver):
     @contextmanager
     def lend(self) -> Iterator[None]:
         """In a `with` block, leave the terminal to the shell or to another program, and take it back at the end."""
-        # If this process is stopped and continued meanwhile, it must not take the terminal away from them.
+        # If this process is stopped and continued meanwhile, it must not take the terminal back too early.
         self._is_lent = True
         self.suspend_application_mode()
         handler = signal.signal(signal.SIGTSTP, signal.SIG_DFL)

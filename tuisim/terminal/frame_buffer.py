@@ -109,7 +109,7 @@ class FrameBuffer:
         pen = _Pen()
         if isinstance(update, LayoutUpdate):
             if update.region.size != self._size:
-                # Rows drawn for the former size, after the terminal got this one, are wrapped or cut there.
+                # Rows of the former size that the terminal got after its size had changed are wrapped or cut on it.
                 self.forget()
                 self._size = update.region.size
             pieces = _split_layout(update)

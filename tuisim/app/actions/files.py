@@ -267,7 +267,7 @@ def _ask_new_program(context: ActionContext) -> None:
         (name for name, mat in known.items() if mat.find_spec_name() == plan.spec.world.background),
         "",
     )
-    # The list has no mats from the user's own files: offer the current one, too.
+    # The list has no mats from the user's own files: if the current mat is one, offer it, too.
     own = {} if current else {plan.spec.world.background: Path(plan.spec.world.background).name}
     laid = current or plan.spec.world.background
     if laid == Settings()["background"] and _LOGGING_MAT in known:

@@ -93,7 +93,7 @@ def _can_draw_pixels(now: Situation) -> str:
 
 
 def _can_nudge(now: Situation) -> str:
-    # A program that waits may ask the user to place the robot.
+    # Only a running program prevents this: one that waits may have asked the user to place the robot.
     if now.looks_back or now.state not in (RunPhase.STARTING, RunPhase.RUNNING):
         return ""
     return "{pause} pauses the program, then keys move the robot; the mouse does at any time"
@@ -107,7 +107,7 @@ def _build_nudge(key: str, words: str, forward: tuple[float, float]) -> LabActio
 
 
 def _build_turn(letter: str, arrow: str, words: str, turn_deg: float) -> LabAction:
-    # Some terminals send ctrl and an arrow as the arrow alone.
+    # Some terminals send ctrl and an arrow as the arrow alone, so a letter turns the robot, too.
     do = partial(robot.move_slightly, right_mm=0.0, up_mm=0.0, turn_deg=turn_deg)
     return Action(
         f"nudge-ctrl-{arrow}",
@@ -412,7 +412,7 @@ _WORDS: Mapping[str, str] = {
 }
 """Further words by which the command palette finds actions, by id."""
 
-# The order is that of the footer, which shows as many actions as fit, and `help` and `quit` always.
+# The footer shows the actions in this order, as many as fit; it always shows `help` and `quit`.
 ACTIONS: Mapping[str, LabAction] = {
     action.id: replace(action, words=_WORDS.get(action.id, ""))
     for action in (
@@ -719,7 +719,7 @@ def list_footer_actions(
         word = "" if playing else "play"
     elif now.state == RunPhase.PAUSED:
         word = "go on"
-    # In the footer of a paused program, the steps need the room of `run`.
+    # In the footer of a paused program, the steps need the room of `run`, which is left out.
     steps = [name for name in names if name != "run" or now.state != RunPhase.PAUSED or now.in_past]
     return [
         replace(table[name], footer=word) if word and name == "pause" else table[name]

@@ -98,7 +98,8 @@ class PreviewDialog(Dialog[ReadChoices]):
     @on(Select.Changed)
     def _change(self, event: Select.Changed) -> None:
         name = event.select.id or ""
-        # The message may be late, and new options select their first one for a moment: read the present value.
+        # The message may be late, and a list that gets new options selects the first one for a moment: read the present
+        # value.
         chosen: Any = event.select.value
         if chosen == getattr(self._choices, name):
             return

@@ -122,7 +122,7 @@ class BranchQuestion(Dialog[str]):
             ("restart", "r", "Run from the start"),
             ("leave", "n", "Stay"),
         ]
-        # Whoever has edited the program most often wants to see it from its start.
+        # A user who has edited the program usually wants to run it from its start: that answer comes first.
         answers[:2] = answers[1::-1] if self._is_edited else answers[:2]
         yield from _compose_answers(
             answer for answer in answers if self._restart or answer[0] != "restart"
@@ -295,7 +295,7 @@ class LinePrompt(Dialog[bool]):
             self.say(str(error), wrong=True)
             # The message takes the place of the forms, so that the dialog covers no more than before.
             self.query("#forms").remove()
-            # The next key replaces the line, an arrow key corrects it.
+            # With the text selected, the next letter replaces the line; an arrow key keeps it to be corrected.
             event.input.action_select_all()
             return
         self.dismiss(True)

@@ -88,7 +88,7 @@ class SettingsScreen(Dialog[None]):
 
     def on_mount(self) -> None:
         listed = self.query_one(OptionList)
-        # The first line is a heading.
+        # The first line is a heading, which cannot be chosen.
         listed.highlighted = 1
         listed.focus()
         for error in load_config().problems[:1]:
@@ -179,7 +179,7 @@ class SettingsScreen(Dialog[None]):
             self._show_change(setting)
 
     def _report_error(self, error: TuisimError) -> None:
-        # The path of the file stands above the list.
+        # The path of the file stands above the list, so the message need not repeat it.
         self.say(str(error).removeprefix(f"{load_config().path}: "), wrong=True)
 
     def _show_change(self, setting: Setting) -> None:

@@ -117,7 +117,7 @@ class Welcome(Dialog[Begin | Recent]):
 
 
 def _build_option(number: int, name: str, title: str) -> Option:
-    # Nine lines and the keys below them are all in sight at 80x24.
+    # With one line for each entry, nine entries and the keys below them fit into 80x24.
     return Option(
         name_and_title(f"{number} {name}", title, _NAME_CELLS, wraps=False), id=str(number)
     )

@@ -130,7 +130,7 @@ class Document:
             try:
                 text, form = read_text(Path(program.path))
             except ConfigError:
-                # The file is new, or missing or invalid by now: show what was read of it.
+                # The file is new, or missing or invalid by now: show the text that was read from it before.
                 text = ""
                 form = TextFormat()
             if self._parse_text(text) == program.text:

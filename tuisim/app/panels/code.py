@@ -239,7 +239,7 @@ class Code(Vertical):
             self._area.light(0)
             self._area.set_error(0)
             self._area.placeholder = "" if name else self._nothing_open
-            # A text saved to another file is edited further: its cursor and its history stay.
+            # A text that was only saved to another file keeps its cursor and its history.
             if text != self._shown:
                 self._area.load_program(text)
                 self._area.scroll_to(y=0, animate=False, force=True)

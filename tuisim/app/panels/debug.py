@@ -63,7 +63,7 @@ class Debug(LinesPanel, can_focus=True):
     def show(self, snapshot: Snapshot) -> None:
         """Show whether the program runs, and the time in view; `show_pause` shows where it is paused."""
         now = snapshot.instant.tick, snapshot.time_s
-        # While it runs, it has no current line, and nothing can belong to another instant.
+        # While the program runs, the panel shows no line and no variables, so a new instant changes nothing.
         if snapshot.state != self._state or (now != self._now and self._content.paused):
             self._state = snapshot.state
             self._now = now

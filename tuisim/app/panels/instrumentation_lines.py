@@ -133,7 +133,7 @@ def build_sensor_lines(
     unit = seen.unit if seen.read is LightRead.REFLECTED else " %"
     words = seen.word, "red" if seen.word == "mean" else "mean"
     other = f"{color.red_percent if seen.word == 'mean' else color.mean_percent:5.1f}"
-    # 100 without a decimal leaves a space after the word before it.
+    # `100.0` loses its decimal, so that a space is left between it and the word before it.
     short_value, short_other = (
         f"{text[:3]:>5}" if text == "100.0" else f"{text:>5}" for text in (value, other)
     )

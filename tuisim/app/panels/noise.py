@@ -92,7 +92,7 @@ class Noise(EntryPanel):
     def _choose(self) -> None:
         light, motor = (self.query_one(f"#{kind}", Slider).value for kind in _KINDS)
         if self._past:
-            # The past stays as it is, whether or not a branch follows.
+            # The recorded noise does not change: show it again, whether or not a branch follows.
             self._shown = None
         self.post_message(self.Changed(NoiseSpec(light, motor)))
 

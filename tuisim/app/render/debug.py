@@ -95,7 +95,7 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
         return _build_hint(view.state, width)
     lines = _known(view, view.paused, view.inspected, width)
     if view.is_elsewhere and view.now:
-        # The known data belongs to another instant: it is dimmed until that of the present one has arrived.
+        # The known data belongs to another instant: it is dimmed until the data of the present instant has arrived.
         tick, time_s = view.now
         head: Line = [(cut(f"{time_s:.2f} s · tick {tick} …", width), _HEAD)]
         return [head, *([(text, _PALE) for text, _ in line] for line in lines[1:])]

@@ -184,7 +184,7 @@ def _find_lines(mean: _Numbers, ground: _Numbers, way: _Numbers) -> _Flags:
         way: The difference from `ground` to the line's colour, divided by the square of its length, of the same shape.
     """
     is_line = np.zeros(mean.shape[:2], bool)
-    # Nothing of a line is off the mat.
+    # Off the mat, there is no part of a line.
     padded = np.pad(mean, _PAD, constant_values=np.nan)
     for down, right in ((1, 0), (0, 1)):
         last, before, share, after, next_after = (
@@ -193,7 +193,7 @@ def _find_lines(mean: _Numbers, ground: _Numbers, way: _Numbers) -> _Flags:
         )
         is_best = (share > before) & (share >= after)
         covers = share + np.maximum(before, after) >= _MIN_SHARE
-        # Of a line between two rows of pixels, both are covered; at the end of an edge, all on one side.
+        # A line between two rows of pixels covers both rows; at the end of an edge, all pixels on one side are covered.
         beside = np.maximum(np.minimum(last, before), np.minimum(after, next_after))
         is_line |= is_best & covers & (share - beside >= _MIN_SHARE / 2)
     return is_line

@@ -328,7 +328,8 @@ class LessonStep:
         }
         match self.check:
             case QuestionCheck(choices=choices, at_x_mm=place, seen=seen, run=run):
-                # The check of a lesson does not try what must happen before an answer, so the question's keys decide.
+                # The check of a lesson tries only answers, not what a student must do before one, so the question's
+                # keys decide.
                 tried = {
                     Way.LITERAL: self.wrong or choices,
                     Way.PLACE: place,

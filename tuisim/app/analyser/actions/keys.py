@@ -66,7 +66,7 @@ def _leave(screen: LogScreen) -> None:
     screen.dismiss()
 
 
-# The order is that of the footer, which shows as many actions as fit.
+# The footer shows the actions in this order, as many as fit.
 ACTIONS: Mapping[str, LogAction] = {
     action.id: action
     for action in (
