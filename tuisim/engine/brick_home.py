@@ -9,9 +9,9 @@ HOME = "/home/robot"
 
 
 def parts_in_home(path: str, own_folder: str) -> list[str] | None:
-    """Return the parts of a path below the brick's home folder; None for any other path.
+    """Return the parts of a path below the brick's home folder, `/home/robot`; None for any other path.
 
-    It is None for every path if the program itself is in a folder of that name.
+    If the program itself is in a folder `/home/robot` of this computer, the result is always None.
     """
     if not path.startswith(HOME):
         return None

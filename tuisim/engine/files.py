@@ -43,7 +43,7 @@ FILE_SUFFIXES = (".toml", ".json")
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """Where a value is in a file, for errors about it."""
+    """The location of a value in a file, for errors about the value."""
 
     file: str
     error: type[ConfigError] = ConfigError
@@ -61,7 +61,7 @@ class Location:
         return replace(self, key=f"{self.key}{joint}{key}", error=error or self.error)
 
     def wrong(self, message: str, hint: str = "") -> ConfigError:
-        """Return an error about the value at this location, to be raised."""
+        """Return an error about the value at this location; the caller raises it."""
         return self.error(message, hint, file=self.file, key=self.key)
 
 
@@ -279,7 +279,7 @@ def table(
 
 
 def required(data: Mapping[str, object], key: str, at: Location) -> object:
-    """Return a value of a table.
+    """Return the value of a key in a table.
 
     Raises:
         ConfigError: the key is missing.

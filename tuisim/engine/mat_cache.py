@@ -103,7 +103,7 @@ class FieldFiles:
 
     @classmethod
     def from_plain(cls, data: Mapping[str, Any]) -> FieldFiles:
-        """Rebuild from the result of `to_plain`.
+        """Return the files that `to_plain` has turned into data.
 
         Raises:
             KeyError, TypeError, ValueError: `data` was not written by `to_plain`.

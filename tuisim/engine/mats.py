@@ -65,7 +65,7 @@ class Background:
 
 @dataclass(frozen=True, slots=True)
 class _MatEntry:
-    """A mat in the catalogue; its name is the key."""
+    """The entry of a mat in the catalogue's file. The key of the entry is the mat's name."""
 
     title: str
     start: Pose
@@ -97,7 +97,7 @@ def _background(name: str, data: object, file: Path) -> Background:
 
 
 def catalogue() -> Mapping[str, Background]:
-    """Return every mat of the catalogue by name, in its order.
+    """Return the mats of the catalogue by name, in the order of the catalogue.
 
     Raises:
         ConfigError: there is no folder of mats.

@@ -55,10 +55,10 @@ def _from_table(data: object, at: Location) -> tuple[Obstacle, ...]:
 
 
 def obstacles_from_sides(data: object, at: Location) -> tuple[Obstacle, ...]:
-    """Return the obstacles in a list of [x, y, width, height].
+    """Return the obstacles in a list of [x, y, width, height], in mm.
 
     Raises:
-        ConfigError: as `obstacles_from_list`.
+        ConfigError: as for `obstacles_from_list`.
     """
     if not isinstance(data, list):
         raise at.wrong(f"must be a list of [x, y, width, height], got {quote(data)}")

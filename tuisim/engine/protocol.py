@@ -40,7 +40,7 @@ class FrameState:
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A name and its value."""
+    """A variable of a paused program: its name and its value."""
 
     name: str
     kind: str
@@ -168,7 +168,7 @@ UNKNOWN_ORDINAL = -2
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """Base of all messages."""
+    """Base class of all messages between the host and the child."""
 
     kind: ClassVar[str]
     """The name of its class in small letters, such as `set_pose`; for user actions also the name in stored runs."""
@@ -372,12 +372,12 @@ class UserAction:
             raise TypeError(f"not a user action: {self.command!r}")
 
     def to_plain(self) -> dict[str, Any]:
-        """Return the form that is stored with a run."""
+        """Return the action as data for JSON, as it is stored with a run."""
         return {"tick": self.tick, "kind": self.command.kind, **asdict(self.command)}
 
     @classmethod
     def from_plain(cls, row: Mapping[str, Any]) -> UserAction:
-        """Rebuild an action from the output of `to_plain`.
+        """Return the action that `to_plain` has turned into data.
 
         Raises:
             KeyError, TypeError, ValueError, ConfigError: the data is not a user action.

@@ -218,9 +218,10 @@ class Command(click.Command):
         }
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse the words of the command as Click does.
+        """Parse the words of the command as Click does, and return the words that are left.
 
-        Also accept `-x=5`, and refuse an option's name as another's value.
+        A short option may have its value after `=`, such as `-x=5`. The name of an option is refused as the value of
+        another.
         """
         ctx.meta[_WORDS] = tuple(args)
         ours = args
@@ -347,7 +348,7 @@ class Group(click.Group):
             formatter.write_dl(list(self.listing.items()))
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse the words after the group's name.
+        """Parse the words after the group's name; return the words that are left, as Click does.
 
         The name of a subcommand may come after its options; the default subcommand need not be named.
         """
@@ -395,7 +396,7 @@ class Group(click.Group):
         raise ConfigError(f"no such command {args[0]!r}", hint, key=self.name or "")
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the named subcommand.
+        """Run the named subcommand, and return its result.
 
         Raises:
             ConfigError: no subcommand is named.

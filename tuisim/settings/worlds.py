@@ -111,7 +111,7 @@ def is_world_name(word: str) -> bool:
 
 
 def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
-    """Read a world file. Paths in it are relative to its folder.
+    """Return the contents of a world file. Paths in it are relative to its folder.
 
     Args:
         path: The file.

@@ -191,7 +191,7 @@ class BrickMotor:
         )
 
     def glide(self, ticks: int) -> Glide:
-        """Advance the motor by several ticks in which only the speed ramp changes it; see `Motor.glide`."""
+        """Advance the motor by several ticks in which only the speed ramp changes it; return how it moves."""
         if self.mode == STOPPED:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
         sign = self.sign
@@ -202,7 +202,7 @@ class BrickMotor:
         return Glide(turns, counts[1:])
 
     def glide_noisily(self, ticks: int, noise_dps: Sequence[float]) -> Glide:
-        """Advance the motor as `glide` does, with noise added to its speed.
+        """Advance the motor by several ticks as `glide` does, with noise added to its speed; return how it moves.
 
         Moves to a position cannot be advanced in this way: noise changes the tick in which they end.
 

@@ -210,7 +210,7 @@ class BrowserMotor:
         return EvenGlide(0.0 if self.mode == STOPPED else turned * self.roll_sign + 0.0, counts)
 
     def glide(self, ticks: int) -> Glide:
-        """Advance the motor by several ticks in which only its speed register changes; see `Motor.glide`."""
+        """Advance the motor by several ticks in which only its speed register changes; return how it moves."""
         speeds = self._advance_registers(ticks)
         tick_s = -self._tick_s if self._command == POSITION and self.backwards else self._tick_s
         turns = [speed * tick_s for speed in speeds]

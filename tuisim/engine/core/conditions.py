@@ -107,8 +107,8 @@ class ValueCondition:
     def test(self) -> Callable[[Any, Any], Any]:
         """Return a function that tests the condition.
 
-        The function takes a value, or an array of them, and the value before it, NaN for the first. It returns whether
-        the condition is true, for an array an array.
+        The function takes a value and the value before it, NaN for the first. It returns whether the condition is true.
+        The values may also be arrays; then the result is an array.
 
         Raises:
             ValueError: the value to compare with is not a number.
@@ -176,8 +176,8 @@ def parse_condition(text: str, name: str = r".+?", value: str = r"\S+") -> Value
 def parse_run_condition(text: str) -> ValueCondition | None:
     """Return the condition on a run in a text; None if the text is not such a condition.
 
-    The text is a condition on a column as for `parse_condition`, but without the operator `~`, or one of `sample NAME`,
-    `sample NAME OP VALUE`, `sample NAME changes` and `print matches REGEX`.
+    A condition on a column is as for `parse_condition`, but without the operator `~`. Other conditions are `sample
+    NAME`, `sample NAME OP VALUE`, `sample NAME changes` and `print matches REGEX`.
     """
     word, _, rest = text.strip().partition(" ")
     rest = rest.strip()

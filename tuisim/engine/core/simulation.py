@@ -269,7 +269,10 @@ class FurtherMotors(Simulation):
     __slots__ = ()
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
-        """Run ticks as `Motion.advance` does, but one by one while a motor that drives no wheel runs."""
+        """Advance the simulation by ticks as `Motion.advance` does, and return how many ticks have been run.
+
+        While a motor that drives no wheel runs, the ticks are run one by one.
+        """
         done = 0
         self._report_turns()
         while done < ticks and not all(motor.resting for motor in self.others):
@@ -282,7 +285,7 @@ class FurtherMotors(Simulation):
         return done + super().advance(ticks - done, until_change) if done < ticks else done
 
     def notice_change(self) -> bool:
-        """Report the turns of the motors that drive no wheel, and do the same as `Motion.notice_change`."""
+        """Report the turns of the motors that drive no wheel, then do and return the same as `Motion.notice_change`."""
         self._report_turns()
         return super().notice_change()
 

@@ -181,7 +181,7 @@ class MotorSpec(Spec):
 
 @spec
 class SensorSpec(Spec):
-    """The name and the port that every sensor of a robot has."""
+    """Base class of the specs of sensors, each of which has a name and a port."""
 
     name: str = _build_sensor_name("sensor")
     """Prefix of its telemetry columns, such as `left`."""

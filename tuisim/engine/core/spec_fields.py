@@ -227,5 +227,5 @@ class Spec:
     ),
 )
 def spec(cls: type[_Spec]) -> type[_Spec]:
-    """Turn a class into a spec: a subclass of `Spec` whose fields describe values."""
+    """Turn a class into a spec, and return it: a subclass of `Spec` whose fields describe values."""
     return dataclass(init=False, repr=False, eq=False, slots=True)(cls)

@@ -107,7 +107,7 @@ class Value(ABC):
 
     @property
     def choices(self) -> tuple[Any, ...]:
-        """All allowed values if they are few, such as those of a list to choose from; empty otherwise."""
+        """All allowed values if there are only a few; empty otherwise."""
         return ()
 
     def check(self, value: Any) -> None:

@@ -154,17 +154,17 @@ def replay(
     last_tick: int,
     limit_s: float = inf,
 ) -> ReplayedTicks:
-    """Simulate a run again from its spec, the recorded commands of its program, and the user's actions.
+    """Return the records of a run that is simulated again from its spec, its program's commands and its user actions.
 
     Args:
         spec: The run, as it began.
         commands: The program's commands in their order, with all values of their records.
         actions: The user's actions, in the order of the ticks.
         last_tick: The last tick to simulate.
-        limit_s: Seconds of processor time that it may take.
+        limit_s: Seconds of processor time that the simulation may take.
 
     Raises:
-        LogError: no program can have given these commands, or they take longer than they may.
+        LogError: no program can have given these commands, or the simulation takes too long.
     """
     ticks = MemoryRecording()
     motors = _Motors(spec.robot)

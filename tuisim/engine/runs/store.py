@@ -91,14 +91,14 @@ class RunStore:
         options: Mapping[str, Any] | None = None,
         live: bool = False,
     ) -> NewRun:
-        """Create the folder of a run that is about to start, with its `run.json`, and list it.
+        """Create the folder of a run that is about to start, with its `run.json`, list the run, and return it.
 
         Args:
             program: The program.
             spec: The specification of the run.
             field: The files of the prepared mat as JSON data; None if there are none.
             options: The run options as JSON data.
-            live: Whether it is paced by the wall clock.
+            live: Whether the run is paced by the wall clock.
 
         Raises:
             LogError: the home folder cannot be written.

@@ -430,7 +430,7 @@ class Child:
         self._output.drain = self._runner.raw.drain
 
     def _record_commands(self) -> None:
-        """Record the commands that the prelude has given, and from now on those of the program."""
+        """Record the commands that were given when the predefined names were made, and later those of the program."""
         self._commands = CommandsWriter(self._config.folder)
         for command in self._early_commands:
             self._commands.add(*command)

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 class SessionFlag(IntFlag):
-    """The bits of `Session.flags`. Each bit says that, when time passes, it is not enough to run ticks."""
+    """The bits of `Session.flags`. Each bit makes the session do more than run ticks when time passes."""
 
     LIVE = 1
     """The control is called before ticks."""

@@ -136,7 +136,12 @@ def compile_with_hooks(
 
 
 def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:
-    """Yield for each statement of a prelude the name of the part that it creates, if any, and its code.
+    """Yield the code of each statement of a prelude, a text that runs before a program and defines names for it.
+
+    Each code comes after the name that the statement assigns to, or after an empty text.
+
+    Args:
+        name: The name of the prelude.
 
     Raises:
         KeyError: no prelude has this name.

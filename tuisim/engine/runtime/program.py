@@ -225,7 +225,10 @@ class ProgramRunner:
         self._loop_hook = loop_hook
 
     def prepare(self, prelude: str) -> None:
-        """Prepare for any program: replace streams and functions, and run the prelude, which makes predefined names."""
+        """Prepare for any program: replace streams and functions, and run a prelude, which makes the predefined names.
+
+        `prelude` is its name.
+        """
         vars(builtins)[LOOP_HOOK] = self._loop_hook
         self._patch()
         vars(self._module)["__builtins__"] = builtins

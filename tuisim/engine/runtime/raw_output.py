@@ -130,7 +130,10 @@ class RawOutput:
         self.drain_all()
 
     def write(self, fd: int, data: Any) -> int:
-        """Write to a descriptor, and pass on the output immediately; replaces `os.write`."""
+        """Write to a descriptor, pass on the output immediately, and return the number of bytes.
+
+        It replaces `os.write`.
+        """
         count = self._write(fd, data)
         drained = self.drain_all()
         size = memoryview(data).nbytes

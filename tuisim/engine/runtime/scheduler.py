@@ -333,7 +333,7 @@ class Scheduler:
     # Threads
 
     def spawn(self, function: Callable[[], Any], daemon: bool) -> ScheduledThread:
-        """Start a thread; it runs when the current one waits.
+        """Start a thread, and return it; it runs when the current one waits.
 
         Raises:
             RuntimeError: too many threads, for the limit or for the machine.

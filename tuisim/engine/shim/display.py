@@ -63,7 +63,7 @@ class DisplayBuffer(mmap.mmap):
     """
 
     def __new__(cls, _session: DeviceSession, _screen: Screen) -> DisplayBuffer:
-        """Allocate the display's memory without a file, instead of mapping one."""
+        """Return the display's memory, which is allocated without a file instead of mapped."""
         return super().__new__(cls, NO_FILE, LINE_BYTES * DISPLAY_HEIGHT)
 
     def __init__(self, session: DeviceSession, screen: Screen) -> None:
@@ -79,7 +79,7 @@ class DisplayBuffer(mmap.mmap):
         self._update()
 
     def write(self, data: Any) -> int:
-        """Write bytes at the present position of the memory, and display them."""
+        """Write bytes at the present position of the memory, display them, and return their number."""
         size = super().write(data)
         self._update()
         return size

@@ -104,7 +104,7 @@ def install(
         files: Remembers the device files that the program opens.
         more_finishers: Functions for other modules, by name.
         replace: Replaces a function of a module.
-        is_own: Whether a file belongs to the program.
+        is_own: Returns whether a file belongs to the program.
     """
     built = build_brick(session)
     plugs = Plugs(built)

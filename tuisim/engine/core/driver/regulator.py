@@ -358,5 +358,5 @@ class MotorDriver:
             self.end_move(time_ns, action)
 
     def end_move(self, time_ns: int, action: StopAction) -> None:
-        """End a move to a position with a stop action; to hold means to hold the target."""
+        """End a move to a position with a stop action; the action `hold` holds the target of the move."""
         self.halt(time_ns, action, held=self.target)

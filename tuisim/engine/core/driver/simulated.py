@@ -316,7 +316,7 @@ class SimulatedMotor(DriverMotor):
         return int((self._cruise_end_ns - 1) // self._tick_ns) - tick if self._cruise_dps else 0
 
     def glide(self, ticks: int) -> Glide:
-        """Advance the motor by several ticks at rest or at constant speed; see `Motor.glide`."""
+        """Advance the motor by several ticks at rest or at constant speed; return how it moves."""
         even = self.glide_evenly(ticks)
         counts_deg = [*even.counts_deg]
         self.position_deg = counts_deg[-1]

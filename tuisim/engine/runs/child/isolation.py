@@ -241,7 +241,7 @@ def spawn_isolated(
     writable: Sequence[Path],
     readable: Sequence[Path],
 ) -> IsolatedChild:
-    """Start a child that can change only some folders, and read little else. Blocks until it has started.
+    """Start a child that can change only some folders, and read little else; return it. Blocks until it has started.
 
     Args:
         command: Its command.

@@ -52,7 +52,7 @@ class ForkedChild:
 
     Args:
         pid: Its process id.
-        status_fd: From which its exit status can be read after its end.
+        status_fd: The descriptor from which its exit status can be read after its end.
     """
 
     def __init__(self, pid: int, status_fd: int) -> None:
@@ -146,18 +146,19 @@ class ForkClient:
         run: Mapping[str, Any],
         serves: bool = False,
     ) -> ForkedChild:
-        """Fork a child. Blocks until the server is ready, and until the child leads its process group.
+        """Fork a child, and return it. Blocks until the server is ready and the child leads its process group.
 
         Args:
             folder: The run folder.
-            working_directory: Its initial working directory.
-            environment: Its environment variables.
-            files: Descriptors: its error output; its commands, events, lifeline and lock, or the socket of a template.
+            working_directory: The child's initial working directory.
+            environment: The child's environment variables.
+            files: Descriptors for the child: first its error output. A template then gets a socket; any other child
+                gets its commands, its events, its lifeline and its lock.
             run: The contents of the `run.json` in the folder.
-            serves: Whether it becomes a template.
+            serves: Whether the child becomes a template.
 
         Raises:
-            OSError: it cannot be forked, or the server has ended, or does not answer.
+            OSError: the child cannot be forked, or the server has ended, or does not answer.
         """
         request = {
             "folder": folder,

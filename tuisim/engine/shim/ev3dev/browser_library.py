@@ -76,7 +76,7 @@ def _wait(session: DeviceSession, library: str) -> Callable[..., bool]:
 
     @waits_for(Wait.MOTOR)
     def wait(self: Any, cond: Callable[[str], bool], timeout: float | None = None) -> bool:
-        """Poll until `cond(self.state)` is true or the timeout in milliseconds is over."""
+        """Poll until `cond(self.state)` is true or the timeout in milliseconds is over; return whether it is true."""
         deadline_s = now_s() + (timeout or 0) / 1000
         # The result of the library's own conditions changes only when a motor ends a move.
         only_state = timeout is None and getattr(cond, "__module__", "") == library

@@ -128,7 +128,7 @@ class DeviceIO(_real_file):
         return self._opened.at
 
     def truncate(self, size: int | None = None, /) -> int:
-        """Do nothing: the files of devices have no length."""
+        """Return the requested size, by default the present position; do nothing else: device files have no length."""
         self._checkClosed()
         return self._opened.at if size is None else size
 

@@ -110,7 +110,7 @@ class Brick:
         """Let the time of a reading pass, record the reading, and return the simulated time in microseconds.
 
         Args:
-            mode, ports: What is recorded of the reading, as in `engine.runs.readings.READING_CODES`.
+            mode, ports: The mode and the ports of the recorded reading, as in `engine.runs.readings.READING_CODES`.
         """
         session = self.session
         if not session.free:

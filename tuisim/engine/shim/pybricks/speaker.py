@@ -82,7 +82,8 @@ class TonePlayer(Connected):
     def beep(self, frequency: float = 500, duration: float = 100) -> Any:
         """Play a tone of a frequency in Hz for a duration in ms, and wait for its end.
 
-        With a negative duration, the call does not wait, and the tone lasts until the next beep.
+        While a task runs, return an object to await instead. With a negative duration, the call does not wait, and the
+        tone lasts until the next beep.
         """
         frequency_hz = max(0, whole(frequency))
         length_ms = whole(duration)
@@ -93,14 +94,14 @@ class TonePlayer(Connected):
         return wait(0)
 
     def play_notes(self, notes: Iterable[str], tempo: float = 120) -> Any:
-        """Play notes, and wait for their end.
+        """Play notes, and wait for their end; while a task runs, return an object to await.
 
         Args:
             notes: Such as `['C4/4', 'R/8', 'E5/2_']`; see `note_of`.
             tempo: Quarter notes per minute.
 
         Raises:
-            ValueError: the tempo is not above 0, or a note is wrong; those before it were played.
+            ValueError: the tempo is not above 0, or a note is wrong. The notes before the wrong one are played.
         """
         if whole(tempo) <= 0:
             raise invalid_argument()

@@ -28,7 +28,7 @@ def wait(time: float) -> None:
 
 
 def wait_until(end_us: int) -> Waiting[None]:
-    """Wait until a time in microseconds, even if a motor ends a move before."""
+    """Yield `end_us` until it is the simulated time in microseconds, even if a motor ends a move before."""
     if Connected.brick.command() == end_us:
         yield end_us
     while Connected.brick.now_us < end_us:

@@ -143,7 +143,7 @@ class Process:
         return outlet.take, pipe
 
     def __class_getitem__(cls, item: Any) -> types.GenericAlias:
-        """Support annotations such as `Popen[bytes]`, as the real class does."""
+        """Return the type of an annotation such as `Popen[bytes]`, as the real class does."""
         return types.GenericAlias(cls, item)
 
     def __repr__(self) -> str:
