@@ -104,6 +104,22 @@ async def test_steps_from_the_first_line() -> None:
 
 
 @pytest.mark.slow
+async def test_a_stepped_print_is_seen_where_the_output_gives_way_to_the_variables() -> None:
+    async with open_lab(COUNTS, size=(80, 24)) as (pilot, app):
+        await press(pilot, app, "n", 1, 2, 3, 4, 5, 6, 3)
+        debug = app.panel_area.debug
+        assert debug is not None
+        assert not app.panel_area.is_shown("output")
+        await until(pilot, lambda: debug.border_subtitle == "printed Total: 0")
+        await press(pilot, app, "n", 4, 5, 6, 3)
+        await until(pilot, lambda: debug.border_subtitle == "printed Total: 1")
+        await press(pilot, app, "N", 6, 5)
+        await until(pilot, lambda: debug.border_subtitle == "printed Total: 0")
+        await pilot.press("O")
+        await until(pilot, lambda: not debug.border_subtitle)
+
+
+@pytest.mark.slow
 async def test_every_press_counts_though_a_step_is_on_its_way() -> None:
     async with open_lab(COUNTS) as (pilot, app):
         await pilot.press(*"nnnnn")

@@ -21,7 +21,7 @@ class Panels:
     """The panels of an app, with a chart that notes what it gets."""
 
     def __init__(self) -> None:
-        self.output = self.world = None
+        self.output = self.world = self.debug = None
         self.chart = self
         self.on_screen = False
         self.got: list[tuple[str, list[float], bool]] = []

@@ -215,6 +215,7 @@ class PanelFeed:
         self._shows_past = False
         self._traced: object = None
         self._printed: object = None
+        self._newest: object = None
 
     def run_changed(self) -> None:
         """Begin to pass on another run, or none if none is in view."""
@@ -297,10 +298,24 @@ class PanelFeed:
                 if xs:
                     world.extend_trace(xs, ys, self._feed.recording.spec.robot.pen)
             self._send_telemetry(self._feed)
+            self._show_newest_line(self._feed.recording, self._runs.timeline.at)
         is_past = self._runs.timeline.at is not None
         if is_past or self._shows_past:
             self._shows_past = is_past
             self._show_past(self._runs.timeline.recording, self._runs.timeline.at)
+
+    def _show_newest_line(self, recording: Recording, tick: int | None) -> None:
+        """Show the newest line of the output in the debug panel if the output panel is hidden."""
+        debug = self._panel_area.debug
+        if debug is None or not debug.display:
+            return
+        is_hidden = not self._panel_area.is_shown("output")
+        rows = recording.rows
+        count = len(rows) if tick is None else rows.until(tick)
+        if (key := (rows, count, debug, is_hidden)) != self._newest:
+            self._newest = key
+            newest, _ = rows.list_texts(tick, 1) if is_hidden else ([], 0)
+            debug.show_printed(newest[0].format_line() if newest else "")
 
     def _show_past(self, recording: Recording | None, tick: int | None) -> None:
         if world := self._panel_area.world:

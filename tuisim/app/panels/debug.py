@@ -10,17 +10,20 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 
 from tuisim.app.panels import PANELS
+from tuisim.app.panels.output import replace_controls
 from tuisim.app.panels.titles import build_title
 from tuisim.app.render.debug import DebugView, debug_lines
 from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
 from tuisim.base.data_class import dataclass
 from tuisim.terminal.cell_view import LinesPanel
-from tuisim.terminal.text_runs import Line
+from tuisim.terminal.text_runs import Line, cut, escape_markup
 
 if TYPE_CHECKING:
     from tuisim.engine.protocol import Paused
 
 _INFO = PANELS["debug"]
+_FRAME = 4
+"""Columns at both ends of a border that words in it leave free."""
 
 
 class Debug(LinesPanel, can_focus=True):
@@ -53,12 +56,26 @@ class Debug(LinesPanel, can_focus=True):
         self._now: tuple[int, float] | None = None
         self._top = 0
         self._lines: list[Line] = []
+        self._printed = ""
 
     def on_focus(self) -> None:
-        self.border_subtitle = "←→ call · enter thread"
+        self._label_border()
 
     def on_blur(self) -> None:
-        self.border_subtitle = ""
+        self._label_border()
+
+    def show_printed(self, line: str) -> None:
+        """Show a line that the program has printed in the border; empty for none."""
+        self._printed = replace_controls(line)
+        self._label_border()
+
+    def _label_border(self) -> None:
+        words = f"printed {self._printed}" if self._printed else ""
+        self.border_subtitle = (
+            "←→ call · enter thread"
+            if self.has_focus
+            else escape_markup(cut(words, max(self.size.width - _FRAME, 1)))
+        )
 
     def show(self, snapshot: Snapshot) -> None:
         """Show whether the program runs, and the time in view; `show_pause` shows where it is paused."""
