@@ -56,6 +56,22 @@ def test_few_bands_are_all_in_sight_with_their_statistics_in_a_small_terminal() 
     assert shown[1].split() == ["2", "86.27", "pale", "grey", "0.10", "0.19", "10", "10", "0.00"]
 
 
+def test_with_two_traces_a_narrow_pane_of_bands_has_their_levels_names_and_widths() -> None:
+    table = stepped(80, 10).append_column("x_mm", pa.array(np.arange(80.0)))
+    table = table.append_column("y_mm", pa.array(np.zeros(80)))
+    table = table.append_column("Right", table.column("Colour"))
+    model = model_of(Log("test", table, guess_columns(table)))
+    for trace in model.traces:
+        trace.on = trace.name in ("Colour", "Right")
+    model.find_bands(model.list_unsearched())
+
+    head, *rows = text_of(model, "bands", 46, 9).splitlines()
+
+    assert head.split() == ["variable", "#", "level", "name", "from", "s", "mm", "…"]
+    assert rows[1].split() == ["Colour", "2", "86.27", "pale", "grey", "0.10", "10"]
+    assert head.index("mm") + 2 == len(rows[1].rstrip())
+
+
 @pytest.mark.parametrize(
     "size, heads",
     [

@@ -73,6 +73,8 @@ class Pane:
     """Whether its last column is prose, which wraps instead of being cut."""
     block: int = 0
     """Index of the first of the last columns, if these are shown all or not at all; else 0."""
+    spare: Cells = ()
+    """Headings of the columns that are left out first if not all fit, in this order."""
 
 
 def _format_figure(value: float, digits: str = ".4g") -> str:
@@ -208,6 +210,7 @@ PANES: Mapping[str, Pane] = {
         ("variable", "#", "level", "true level", "name", "from s", "to s", "n", "mm", "std"),
         AnalysisModel.describe_bands,
         "No bands: no variable shown stays at a level",
+        spare=("std", "n", "to s", "from s"),
     ),
     "statistics": Pane(
         "Statistics",
@@ -290,11 +293,11 @@ def pane_lines(name: str, model: AnalysisModel, chosen: int, width: int, height:
     first = find_first_row(chosen, len(rows), room)
     measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
     used, widths, gap = _choose_columns(pane, measured, width)
-    head = _build_row(
-        [pane.heads[index] for index in used], [widths[index] for index in used], gap, HEAD
-    )
+    head = _build_head([pane.heads[index] for index in used], used, measured, widths, gap)
     over = [
-        index for index in range(used[-1] + 1, len(widths)) if any(row[index] for row in measured)
+        index
+        for index in range(1, len(widths))
+        if index not in used and any(row[index] for row in measured)
     ]
     more = (
         _build_continuation(
@@ -395,7 +398,7 @@ def _choose_columns(
     """Return the indices of the columns to show, the widths of all columns, and the gap between two columns.
 
     If not all columns fit, a first column with the same text in all rows is left out; if that is not enough, the gap
-    becomes smaller.
+    becomes smaller, and then the spare columns are left out.
     """
     widths = [max(map(len, column)) for column in zip(pane.heads, *rows, strict=True)]
     filled = [index for index in range(len(widths)) if any(row[index] for row in rows)]
@@ -403,6 +406,11 @@ def _choose_columns(
     for columns, gap in ((filled, _GAP), (rest, _GAP), (rest, 1)):
         if sum(widths[index] + gap for index in columns) - gap <= width:
             return columns, widths, gap
+    for spare in range(1, len(pane.spare) + 1):
+        columns = [index for index in rest if pane.heads[index] not in pane.spare[:spare]]
+        # The ellipsis behind the headings needs its place.
+        if sum(widths[index] + 1 for index in columns) < width:
+            return columns, widths, 1
     fitting = _fit_columns(filled, widths, width)
     whole = fitting[: fitting.index(pane.block)] if pane.block in fitting[1:] else fitting
     return whole, widths, _GAP
@@ -435,6 +443,23 @@ def _fit_columns(columns: Sequence[int], widths: Sequence[int], width: int) -> l
         left -= widths[index] + _GAP
         seen.append(index)
     return seen
+
+
+def _build_head(
+    heads: Sequence[str], used: Sequence[int], rows: Sequence[Cells], widths: Sequence[int], gap: int
+) -> Line:
+    """Return the headings as a line, those of numbers at the right, where their digits are."""
+    return [
+        (
+            (" " * gap).join(
+                head.rjust(widths[index])
+                if any(row[index][:1].isdigit() for row in rows)
+                else head.ljust(widths[index])
+                for head, index in zip(heads, used, strict=True)
+            ),
+            HEAD,
+        )
+    ]
 
 
 def _build_row(texts: Sequence[str], widths: Sequence[int], gap: int, style: Style) -> Line:
@@ -511,7 +536,10 @@ class PaneView(LinesPanel):
                 self.border_subtitle = describe_place(
                     self.name_shown, model, self.chosen, width, height
                 )
-            self._text.set_lines(pane_lines(self.name_shown, model, self.chosen, width, height))
+            lines = pane_lines(self.name_shown, model, self.chosen, width, height)
+            if lines[0][0][0].endswith("…") and self.region.width < self.screen.size.width:
+                self.border_subtitle = f"w: all columns  {self.border_subtitle}".rstrip()
+            self._text.set_lines(lines)
             self.styles.max_height = max(_count_rows(self.name_shown, model, width), _MIN_ROWS) + 2
 
     def _compute(self, model: AnalysisModel, pane: str) -> None:
