@@ -112,6 +112,24 @@ async def test_the_arrow_stays_on_the_line_of_the_reason() -> None:
         await until(pilot, lambda: app.run_controller.chosen_line is None)
 
 
+@pytest.mark.slow
+async def test_the_variables_of_the_line_that_raised_are_shown_at_the_end_of_the_run() -> None:
+    mean = "def mean(a, b):\n    return a / b\n\nmean(7, 0)\n"
+    async with open_lab(mean, speed=0.0, size=SIZE) as (pilot, app):
+        await run_from_start(pilot, app, mean)
+        await pilot.press("G")
+        await ask(pilot, app, "ZeroDivisionError")
+        await until(pilot, lambda: app.debugger.view is not None)
+        view = app.debugger.view
+        assert view is not None
+        assert [(each.name, each.value) for each in view.inspected.variables] == [
+            ("a", "7"),
+            ("b", "0"),
+        ]
+        assert not app.run_controller.in_past
+        assert not app.debugger.is_away
+
+
 async def test_after_a_run_that_went_wrong_the_footer_names_it() -> None:
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
         assert "! wrong?" not in screen_text(app)

@@ -62,3 +62,8 @@ def test_numbers_of_many_decimals_get_four_digits(text: str, expected: str) -> N
 def test_a_run_ends_at_no_later_time_than_the_clock_shows() -> None:
     assert end_words(Ended(End.FINISHED, 4860, 48_607_000_000), "")[1] == "— finished at 48.60 s"
     assert end_words(Ended(End.FINISHED, 29, 290_000_000), "")[1] == "— finished at 0.29 s"
+
+
+def test_the_end_of_the_output_names_the_line_that_raised() -> None:
+    ended = Ended(End.RAISED, 30, 300_000_000, summary="NameError: no (line 3)", error_line=3)
+    assert end_words(ended, "")[1] == "— line 3 at 0.30 s"

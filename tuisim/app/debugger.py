@@ -67,6 +67,8 @@ class DebugController:
         self.replay = ReplayDebugger(self._handle_arrival, self._report_missing, self._handle_now)
         self._wanted: Position | None = None
         """The position that was last requested from the debugger of re-runs; None for none."""
+        self._seeks_raise = False
+        """Whether the debugger of re-runs is on its way to the line that raised, at the end of the run."""
         self._is_stepping = False
         """Whether a step of the live run has been sent and has not ended yet."""
         self._steps: deque[Message | int] = deque()
@@ -206,6 +208,7 @@ class DebugController:
         self._frame = 0
         self._thread = ""
         self._wanted = None
+        self._seeks_raise = False
         self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
         self._forget_steps()
         if (
@@ -366,6 +369,15 @@ class DebugController:
         self._run_controller.chosen_line = (tick, line) if line else None
         self.position = self._wanted = None
 
+    def show_raised(self, line: int) -> None:
+        """Run the program again up to the line with which it ended by an error, to show the variables there."""
+        recording = self._run_controller.timeline.recording
+        if recording is not None and line and self._has_past_variables():
+            self._seeks_raise = True
+            tick = self._run_controller.timeline.newest
+            self.replay.go_to_line(recording, tick, line, self.inspect_request)
+            self.show()
+
     def go_to_now(self) -> None:
         """Return to the newest instant, even from an earlier line of the newest tick."""
         self.position = None
@@ -402,6 +414,12 @@ class DebugController:
     def _handle_arrival(self, paused: Paused, inspected: Inspected) -> None:
         timeline = self._run_controller.timeline
         here = Position(paused.tick, paused.ordinal)
+        if self._seeks_raise:
+            self._seeks_raise = False
+            if timeline.at is None:
+                self._set_paused(PauseView(self._set_tick_time(paused), inspected, False))
+                self._take_step()
+            return
         if self._wanted is None:
             if not self._is_past(here):
                 self._handle_now()

@@ -280,7 +280,10 @@ def end_words(ended: Ended, stood: str) -> tuple[str, str]:
         words = f"{end_label(ended.end)}: {ended.summary}"
     # The output already shows the traceback, so the last line need not repeat the error.
     known = ended.end in (End.FINISHED, End.RAISED) and not caught
-    last = f"— {end_label(ended.end) if known else words} at {format_end(ended.time_ns / 1e9)} s"
+    end = end_label(ended.end) if known else words
+    if ended.end is End.RAISED and ended.error_line:
+        end = f"line {ended.error_line}"
+    last = f"— {end} at {format_end(ended.time_ns / 1e9)} s"
     return ", ".join(filter(None, (words, stood))), ", ".join(filter(None, (last, stood)))
 
 

@@ -106,8 +106,18 @@ async def test_carets_are_left_out_where_they_would_point_elsewhere() -> None:
         ]
 
 
-async def test_carets_whose_line_is_out_of_view_are_left_out() -> None:
+async def test_carets_do_not_hide_the_line_of_an_error_in_a_low_panel() -> None:
     async with Frame(Log()).run_test(size=(30, 4)) as pilot:
+        log = pilot.app.query_one(Log)
+        texts = ['  File "a.py", line 3, in mean', "    return a / b", "           ~~^~~", "Error: 0"]
+        log.add([row(text, Stream.STDERR) for text in texts])
+        await pilot.pause()
+        assert "~" not in "".join(lines(pilot.app))
+        assert "    return a / b" in lines(pilot.app)
+
+
+async def test_carets_whose_line_is_out_of_view_are_left_out() -> None:
+    async with Frame(Log()).run_test(size=(30, 8)) as pilot:
         log = pilot.app.query_one(Log)
         log.add(
             [row(text, Stream.STDERR) for text in ("    x = y", "        ^", "SyntaxError: no", "")]
@@ -115,7 +125,7 @@ async def test_carets_whose_line_is_out_of_view_are_left_out() -> None:
         await pilot.pause()
         height = log.size.height
         assert lines(pilot.app)[0] == "    x = y"
-        log.add([row("— error", Stream.NOTE)] * (5 - height))
+        log.add([row("— error", Stream.NOTE)] * (height - 3))
         await pilot.pause()
         assert [line.strip() for line in lines(pilot.app)][:2] == ["", "SyntaxError: no"]
 

@@ -240,6 +240,8 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
     tick = round(reason.time_s * context.runs.timeline.tick_hz)
     context.debugger.choose_line(tick, reason.line)
     go_to_tick(context, tick)
+    if reason.kind is ReasonKind.RAISED and not context.runs.in_run:
+        context.debugger.show_raised(reason.line)
     so_far = "So far: " if context.runs.in_run else ""
     context.app.answer(f"{so_far}{tour.words}")
 

@@ -153,6 +153,8 @@ _STYLES = {
 
 _BREAKS = " /\\", "(,._"
 """The characters after which a line may break, the best ones first."""
+_LOW_ROWS = 5
+"""In a panel of at most as many rows, those of a traceback that only point stand back for those that tell."""
 _CARETS = re.compile(r" +[~^]+")
 """A line of a traceback that points at a part of the line above."""
 
@@ -279,7 +281,8 @@ class Log(Widget, can_focus=True):
         for row in rows:
             lines = split_row(row, width)
             points = row.stream is Stream.STDERR and _CARETS.fullmatch(row.text)
-            if not points or (not self._has_broken and len(lines) == 1):
+            has_room = len(lines) == 1 and self.size.height > _LOW_ROWS
+            if not points or (has_room and not self._has_broken):
                 self._lines.extend((line, row.stream) for line in lines)
             self._has_broken = len(lines) > 1
         too_many = len(self._lines) - KEPT_LINES
