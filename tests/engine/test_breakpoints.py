@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.app.debugger import break_lines
 from tuisim.base.errors import ConfigError
 from tuisim.engine.breakpoints import (
     Breakpoint,
@@ -12,6 +11,7 @@ from tuisim.engine.breakpoints import (
     LineBreak,
     StallBreak,
     TimeBreak,
+    break_lines,
     parse_break,
     parse_breakpoints,
 )

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tuisim.app.kept_breaks import StoredBreaks, follow_edit, keep, load_kept
+from tuisim.app.kept_breaks import StoredBreaks, choose_sign, follow_edit, keep, load_kept
 from tuisim.app.snapshot import PauseView
 from tuisim.base.errors import TuisimError, counted
 from tuisim.base.source import find_code_line, source_lines
 from tuisim.engine import protocol
-from tuisim.engine.breakpoints import Breakpoint, LineBreak, parse_break
+from tuisim.engine.breakpoints import Breakpoint, break_lines, parse_break
 from tuisim.engine.core.profile import compute_due_ns
 from tuisim.engine.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
 from tuisim.engine.runs.replay_debugger import Position, ReplayDebugger
@@ -143,7 +143,7 @@ class DebugController:
     def mark(self) -> None:
         """Mark the breakpoints in the code panel."""
         if code := self._panel_area.code:
-            marks = {line: _mark(entry) for line, entry in break_lines(self.breaks).items()}
+            marks = {line: choose_sign(entry) for line, entry in break_lines(self.breaks).items()}
             code.set_marks(marks, self._count_words)
 
     @property
@@ -374,8 +374,7 @@ class DebugController:
         recording = self._run_controller.timeline.recording
         if recording is not None and line and self._has_past_variables():
             self._seeks_raise = True
-            tick = self._run_controller.timeline.newest
-            self.replay.go_to_line(recording, tick, line, self.inspect_request)
+            self.replay.go_to_line(recording, recording.newest, line, self.inspect_request)
             self.show()
 
     def go_to_now(self) -> None:
@@ -580,19 +579,3 @@ class DebugController:
     def close(self) -> None:
         """Stop the process that runs programs again for past variables."""
         self.replay.close()
-
-
-def _mark(one: Breakpoint) -> str:
-    if one.disabled:
-        return "○"
-    return "◆" if isinstance(one.rule, LineBreak) and one.rule.condition else "●"
-
-
-def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
-    """Return the breakpoints that are on lines, by line; if a line has several, an enabled one is preferred."""
-    by_line: dict[int, Breakpoint] = {}
-    for point in sorted(breaks, key=lambda point: not point.disabled):
-        line = point.find_line()
-        if line:
-            by_line[line] = point
-    return by_line

@@ -10,7 +10,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.regular_file import read_regular
 from tuisim.base.source import source_lines
-from tuisim.engine.breakpoints import Breakpoint, parse_break
+from tuisim.engine.breakpoints import Breakpoint, LineBreak, parse_break
 from tuisim.engine.files import MAX_FILE_BYTES
 
 FOLDER = "breaks"
@@ -58,6 +58,13 @@ def keep(program: str, stored: StoredBreaks) -> None:
         raise ConfigError(
             f"breakpoints cannot be saved: {error.strerror or error}", file=str(file)
         ) from None
+
+
+def choose_sign(entry: Breakpoint) -> str:
+    """Return the sign of a breakpoint beside its line: whether it is disabled, or has a condition."""
+    if entry.disabled:
+        return "○"
+    return "◆" if isinstance(entry.rule, LineBreak) and entry.rule.condition else "●"
 
 
 def follow_edit(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:

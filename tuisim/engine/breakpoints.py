@@ -260,3 +260,13 @@ def _common_text(rule: BreakRule) -> str:
             return f"time {time_s:.12g}"
         case StallBreak():
             return "stall"
+
+
+def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
+    """Return the breakpoints that are on lines, by line; if a line has several, an enabled one is preferred."""
+    by_line: dict[int, Breakpoint] = {}
+    for point in sorted(breaks, key=lambda point: not point.disabled):
+        line = point.find_line()
+        if line:
+            by_line[line] = point
+    return by_line

@@ -109,7 +109,12 @@ async def test_carets_are_left_out_where_they_would_point_elsewhere() -> None:
 async def test_carets_do_not_hide_the_line_of_an_error_in_a_low_panel() -> None:
     async with Frame(Log()).run_test(size=(30, 4)) as pilot:
         log = pilot.app.query_one(Log)
-        texts = ['  File "a.py", line 3, in mean', "    return a / b", "           ~~^~~", "Error: 0"]
+        texts = [
+            '  File "a.py", line 3, in mean',
+            "    return a / b",
+            "           ~~^~~",
+            "Error: 0",
+        ]
         log.add([row(text, Stream.STDERR) for text in texts])
         await pilot.pause()
         assert "~" not in "".join(lines(pilot.app))

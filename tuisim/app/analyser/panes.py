@@ -12,17 +12,23 @@ from math import isfinite, nan
 from textwrap import wrap
 from typing import TYPE_CHECKING, Generic, TypeVar, overload
 
-from rich.style import Style
 from textual.worker import get_current_worker
 
 from tuisim.analysis.events import CommandRow, Event
 from tuisim.analysis.model import AnalysisModel
 from tuisim.app import background
+from tuisim.app.analyser.pane_rows import (
+    GAP,
+    Cells,
+    build_head,
+    build_row,
+    build_rows,
+    fit_columns,
+)
 from tuisim.app.analyser.table_pane import (
     DIM,
     HEAD,
     HERE,
-    MAX_CELL,
     PLAIN,
     build_table_lines,
     count_rows,
@@ -41,10 +47,6 @@ from tuisim.terminal.text_runs import Line, cut, find_first_row
 if TYPE_CHECKING:
     import pandas as pd
 
-Cells = tuple[str, ...]
-
-_GAP = 2
-"""Columns between those of a table."""
 _MAX_BELOW = 20
 """Maximum number of lines below the rows that count for the height of a pane."""
 _MEASURED = 1000
@@ -293,7 +295,7 @@ def pane_lines(name: str, model: AnalysisModel, chosen: int, width: int, height:
     first = find_first_row(chosen, len(rows), room)
     measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
     used, widths, gap = _choose_columns(pane, measured, width)
-    head = _build_head([pane.heads[index] for index in used], used, measured, widths, gap)
+    head = build_head([pane.heads[index] for index in used], used, measured, widths, gap)
     over = [
         index
         for index in range(1, len(widths))
@@ -315,9 +317,9 @@ def pane_lines(name: str, model: AnalysisModel, chosen: int, width: int, height:
         texts = [row[index] for index in used]
         wide = [widths[index] for index in used]
         row_lines = (
-            _build_rows(texts, wide, gap, style, width)
+            build_rows(texts, wide, gap, style, width)
             if pane.wraps
-            else [_build_row(texts, wide, gap, style)]
+            else [build_row(texts, wide, gap, style)]
         )
         if number == chosen:
             start = len(lines)
@@ -343,11 +345,11 @@ def _build_continuation(
     """
     columns_below = [0, *columns]
     wide = [widths[index] for index in columns_below]
-    if height < 1 + len(rows) or sum(wide) + _GAP * (len(wide) - 1) > width:
+    if height < 1 + len(rows) or sum(wide) + GAP * (len(wide) - 1) > width:
         return []
     return [
-        _build_row(
-            [row[index] for index in columns_below], wide, _GAP, HEAD if row is heads else PLAIN
+        build_row(
+            [row[index] for index in columns_below], wide, GAP, HEAD if row is heads else PLAIN
         )
         for row in (heads, *rows)
     ]
@@ -403,7 +405,7 @@ def _choose_columns(
     widths = [max(map(len, column)) for column in zip(pane.heads, *rows, strict=True)]
     filled = [index for index in range(len(widths)) if any(row[index] for row in rows)]
     rest = filled[1:] if len({row[0] for row in rows}) == 1 else filled
-    for columns, gap in ((filled, _GAP), (rest, _GAP), (rest, 1)):
+    for columns, gap in ((filled, GAP), (rest, GAP), (rest, 1)):
         if sum(widths[index] + gap for index in columns) - gap <= width:
             return columns, widths, gap
     for spare in range(1, len(pane.spare) + 1):
@@ -411,63 +413,9 @@ def _choose_columns(
         # The ellipsis behind the headings needs its place.
         if sum(widths[index] + 1 for index in columns) < width:
             return columns, widths, 1
-    fitting = _fit_columns(filled, widths, width)
+    fitting = fit_columns(filled, widths, width)
     whole = fitting[: fitting.index(pane.block)] if pane.block in fitting[1:] else fitting
-    return whole, widths, _GAP
-
-
-def _build_rows(
-    texts: Sequence[str], widths: Sequence[int], gap: int, style: Style, width: int
-) -> list[Line]:
-    """Return a row of a pane as one line, or as many lines as its last text needs."""
-    margin = sum(widths[:-1]) + gap * (len(widths) - 1)
-    if margin + len(texts[-1]) <= width:
-        return [_build_row(texts, widths, gap, style)]
-    first, *rest = wrap(texts[-1], max(width - margin, 10)) or [""]
-    return [
-        _build_row([*texts[:-1], first], widths, gap, style),
-        *([(" " * margin + text, style)] for text in rest),
-    ]
-
-
-def _fit_columns(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
-    """Return the columns that fit into a width, at least the first one.
-
-    The last of them may be a column with wide texts that fits only in part: its texts are cut.
-    """
-    left = width
-    seen: list[int] = []
-    for index in columns:
-        if seen and widths[index] > left and (widths[index] <= MAX_CELL or left < MAX_CELL // 2):
-            break
-        left -= widths[index] + _GAP
-        seen.append(index)
-    return seen
-
-
-def _build_head(
-    heads: Sequence[str], used: Sequence[int], rows: Sequence[Cells], widths: Sequence[int], gap: int
-) -> Line:
-    """Return the headings as a line, those of numbers at the right, where their digits are."""
-    return [
-        (
-            (" " * gap).join(
-                head.rjust(widths[index])
-                if any(row[index][:1].isdigit() for row in rows)
-                else head.ljust(widths[index])
-                for head, index in zip(heads, used, strict=True)
-            ),
-            HEAD,
-        )
-    ]
-
-
-def _build_row(texts: Sequence[str], widths: Sequence[int], gap: int, style: Style) -> Line:
-    parts = (
-        text.rjust(width) if text[:1].isdigit() or text[:1] == "-" else text.ljust(width)
-        for text, width in zip(texts, widths, strict=True)
-    )
-    return [((" " * gap).join(parts), style)]
+    return whole, widths, GAP
 
 
 def _wrap_texts(texts: Sequence[str], width: int, max_lines: int) -> list[str]:
