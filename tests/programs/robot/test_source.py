@@ -7,6 +7,7 @@ from pathlib import Path
 
 from tuisim.base.source import Program
 from tuisim.programs.program_settings import read_source_facts
+from tuisim.programs.robot.source import read_modules
 
 
 def test_modules_of_its_own_are_read_wherever_they_lie(tmp_path: Path) -> None:
@@ -24,3 +25,8 @@ def test_modules_of_its_own_are_read_wherever_they_lie(tmp_path: Path) -> None:
     assert facts.library is not None and facts.robot is not None
     assert [part.what for part in facts.robot.parts if part.changes] == ["medium motor on outA"]
     assert str(facts.robot.parts[-1].where) == "parts/deep/arm.py, line 4"
+
+
+def test_a_module_whose_path_is_too_long_for_the_disk_is_none_of_the_program() -> None:
+    for name in ("a" * 300, ".".join(["a" * 200] * 20), ".".join("a" * 3000)):
+        assert [*read_modules(Program("main.py", f"import {name}\n"))] == [""], name

@@ -50,6 +50,8 @@ OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
 """Computing with numbers in a syntax tree."""
 MAX_MODULES = 100
 MAX_MODULE_BYTES = 1 << 20
+MAX_NAME_CHARACTERS = 4096
+"""A longer name of a module is ignored: no path can be as long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +104,8 @@ def read_modules(program: Program) -> dict[str, Module]:
     while waiting and len(modules) < MAX_MODULES:
         module = waiting.pop()
         for name in _list_imported(module):
-            if name in modules or name.split(".")[0] in LIBRARIES:
+            # A module is only in a package of the program, which comes before it.
+            if name in modules or name in LIBRARIES or name.rpartition(".")[0] not in modules:
                 continue
             if (read := search.module(name)) is not None:
                 modules[name] = read
@@ -165,7 +168,8 @@ class _Search:
             self.extend(tree, str(path))
             return Module(name, os.path.relpath(path, self._own), tree, is_package)
         # A folder without __init__.py is a package, too.
-        return Module(name, name, ast.Module([], []), is_package=True) if place.is_dir() else None
+        is_folder = os.path.isdir(place)
+        return Module(name, name, ast.Module([], []), is_package=True) if is_folder else None
 
 
 def _list_imported(module: Module) -> Iterator[str]:
@@ -177,14 +181,18 @@ def _list_imported(module: Module) -> Iterator[str]:
                     yield from _list_packages(alias.name)
             case ast.ImportFrom(module=name, level=level, names=names):
                 base = module.absolute(name, level)
-                if base:
-                    yield from _list_packages(base)
+                if len(base) > MAX_NAME_CHARACTERS:
+                    continue
+                yield from _list_packages(base)
                 yield from (f"{base}.{alias.name}" if base else alias.name for alias in names)
 
 
 def _list_packages(name: str) -> Iterator[str]:
-    """Yield the names of the packages in which a module is, the outermost first, and then its own name."""
-    parts = name.split(".")
+    """Yield the names of the packages in which a module is, the outermost first, and then its own name.
+
+    An empty name, or one that is too long, yields nothing.
+    """
+    parts = name.split(".") if 0 < len(name) <= MAX_NAME_CHARACTERS else []
     yield from (".".join(parts[:end]) for end in range(1, len(parts) + 1))
 
 
