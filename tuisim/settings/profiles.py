@@ -25,11 +25,11 @@ _MS = "_ms"
 
 
 def load_profile(word: str, key: str = "") -> ProfileSpec:
-    """Return the profile of a name, or that in a TOML file.
+    """Return the profile that a word names: one of tuisim's profiles, or the profile in a TOML file.
 
     Args:
-        word: The name, or the path of the file.
-        key: The option that gives the name, for errors.
+        word: The name of the profile, or the path of the file.
+        key: The option that gives the word, for errors.
 
     Raises:
         ProfileError: the name is unknown, or the file is wrong.

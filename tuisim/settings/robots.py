@@ -150,11 +150,11 @@ _HEAD = (
 
 
 def load_robot(word: str, key: str = "") -> RobotSpec:
-    """Return the robot of a name, or that in a TOML or JSON file.
+    """Return the robot that a word names: one of tuisim's robots, or the robot in a TOML or JSON file.
 
     Args:
-        word: The name, or the path of the file.
-        key: The option that gives the name, for errors.
+        word: The name of the robot, or the path of the file.
+        key: The option that gives the word, for errors.
 
     Raises:
         RobotError: the name is unknown, or the file is wrong.

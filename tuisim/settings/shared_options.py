@@ -46,7 +46,7 @@ def build_shared_options(
     Args:
         magic: Whether they are for a magic line, not for the command line.
         hidden: Groups that are accepted but not listed in the help.
-        names: Returns the names that completion offers for a path.
+        names: Returns the names that completion offers for an option, given the path of its setting.
     """
     return [
         _build_parameter(option, magic=magic, hidden=option.group in hidden, names=names)

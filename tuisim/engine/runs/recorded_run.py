@@ -110,7 +110,7 @@ class Recording:
         last = self.telemetry.last()
         # The record counts the actions modulo 65536, and may be slightly ahead of their file.
         if last is not None and 0 < (last.actions - len(self.known_actions)) & 0xFFFF < 0x8000:
-            # Damage is ignored here: it ends a running run, and is in the note of a stored one.
+            # Damage of the file is ignored: a running run ends because of it, and a stored run reports it in its note.
             with suppress(LogError):
                 self.known_actions = read_actions(self.folder)[0]
         return self.known_actions

@@ -74,7 +74,10 @@ class HomeFolder:
         replace(module, name, call)
 
     def _find_file(self, path: Any) -> Any:
-        """Return the real path of a file; for a missing file of the home folder, a path in the program's folder."""
+        """Return the path on this computer for a path in the brick's home folder; return any other path unchanged.
+
+        If the file is missing, the result is a path in the program's folder.
+        """
         if not (text := _parse_home_path(path)):
             return path
         own_folder = self._own_folder()
@@ -88,7 +91,10 @@ class HomeFolder:
         return os.path.join(own_folder, parts[-1])
 
     def _find_folder(self, path: Any) -> Any:
-        """Return the real path of a folder; for a missing folder of the home folder, the program's folder."""
+        """Return the folder on this computer for a path in the brick's home folder; return any other path unchanged.
+
+        If the folder is missing, the result is the program's folder.
+        """
         return place_folder(text, self._own_folder()) if (text := _parse_home_path(path)) else path
 
 

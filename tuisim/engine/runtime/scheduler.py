@@ -407,7 +407,10 @@ class SimulatedLock:
 
     @waits_for(Wait.LOCK)
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Acquire the lock, if requested after waiting in simulated time; return whether it was acquired."""
+        """Acquire the lock, and return whether that succeeded.
+
+        If the lock is not free and `blocking` is True, wait for it in simulated time, at most for `timeout` seconds.
+        """
         if timeout != -1:
             # A real lock, which is free, checks the arguments, and raises the proper error if they are invalid.
             wallclock.allocate_lock().acquire(blocking, timeout)

@@ -78,7 +78,7 @@ class Tacho(ABC):
 
     @abstractmethod
     def registers(self) -> MotorRegisters:
-        """Return the motor's attributes that the program has written, and its speed."""
+        """Return the values that the program has written to the motor's attributes, and the motor's speed."""
 
     def _tell(self, call: Call, *values: float) -> None:
         """Give a command with its values to the simulated motor, at the present time."""
@@ -222,7 +222,7 @@ class TachoMotor(SignedTacho):
         return self._device(readers, {}, {**numbers, "position": self._set_position})
 
     def registers(self) -> MotorRegisters:
-        """Return the motor's attributes that the program has written, and its speed."""
+        """Return the values that the program has written to the motor's attributes, and the motor's speed."""
         speed, position, time_ms = (
             self._numbers[name] for name in ("speed_sp", "position_sp", "time_sp")
         )
@@ -422,7 +422,7 @@ class BrowserTacho(Tacho):
         return self._device(readers, {"time_sp": self._set_time}, numbers)
 
     def registers(self) -> MotorRegisters:
-        """Return the motor's attributes that the program has written, and its speed."""
+        """Return the values that the program has written to the motor's attributes, and the motor's speed."""
         motor = self._motor
         return MotorRegisters(
             self._last_command,

@@ -115,7 +115,7 @@ class MotorDriver:
     # Commands
 
     def run_regulated(self, speed_dps: int) -> None:
-        """Run the motor at a speed that the speed control keeps, from its next step on."""
+        """Run the motor at a speed that the speed control keeps, from the next step of the control on."""
         self.speed_control.setpoint = speed_dps
         self._start(self.speed_control)
 

@@ -393,7 +393,10 @@ class DriveBase:
         return min(ends, default=None)
 
     def note_lag(self, now_us: int, passed_us: int, _milli: int, _rate: int) -> None:
-        """React to motors that lag behind their trajectory; a second call for the same time does nothing."""
+        """React to motors that lag behind their trajectory, as `Controller.note_lag` does for distance and heading.
+
+        A second call for the same time, by the other motor, does nothing.
+        """
         if now_us == self._behind_us:
             return
         self._behind_us, self._at_us = now_us, -1

@@ -255,7 +255,9 @@ def _select_varying(run: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class WarmProcess(ForkClient):
-    """A process that has imported the runtime, so that children forked from it start sooner; it ends with this process.
+    """A process that has imported the runtime, so that children forked from it start sooner.
+
+    It ends with the process that has started it.
 
     Args:
         command: Command of a child without its arguments.

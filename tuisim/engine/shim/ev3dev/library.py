@@ -23,7 +23,10 @@ from tuisim.engine.shim.waits import Wait, waits_for
 
 
 class Patience:
-    """Whether the library only waits for motors to stop while it calls `poll`; the call itself does not tell."""
+    """A counter that says whether the library, while it calls `poll`, only waits for motors to stop.
+
+    The call of `poll` itself does not say it.
+    """
 
     def __init__(self) -> None:
         self.until_motors_stop = 0
