@@ -231,7 +231,7 @@ def _draw_movie(run: StoredRun, pins: Sequence[Pin]) -> Picture | None:
     try:
         movie = make_small_movie(ClipRun(run))
     except LogError:
-        # The page shows the reason in place of the picture of the path.
+        # The page tells the reason already, in place of the picture of the run's path.
         return None
     if movie is None:
         return None

@@ -242,10 +242,10 @@ def read_notes(place: Path) -> tuple[Note, ...]:
 
 
 def write_notes(place: Path, notes: Sequence[Note]) -> None:
-    """Replace all notes in a file by others.
+    """Write notes to a file, in place of the notes that it has.
 
     Raises:
-        LogError: they cannot be written; the file is unchanged.
+        LogError: the file cannot be written; it is unchanged.
     """
     try:
         make_private_folder(place.parent)

@@ -110,7 +110,7 @@ class DebugController:
             self.set_breaks(breaks)
 
     def set_breaks(self, breaks: tuple[Breakpoint, ...]) -> None:
-        """Replace the breakpoints by others, also in the live run, and store them."""
+        """Set new breakpoints in place of the present ones, also in the live run, and store them."""
         self.breaks = breaks
         self._send_breakpoints()
         self._keep()
@@ -128,7 +128,7 @@ class DebugController:
         self._run_controller.send(protocol.SetBreaks(tuple(texts)))
 
     def set_watches(self, watches: tuple[str, ...]) -> None:
-        """Replace the watched expressions by others, and store them."""
+        """Set new watched expressions in place of the present ones, and store them."""
         self.watches = watches
         self._keep()
         self._inspect_again()

@@ -218,7 +218,7 @@ class PanelFeed:
         self._newest: object = None
 
     def run_changed(self) -> None:
-        """Begin to pass on another run, or none if none is in view."""
+        """Begin to pass on the output of the run that is now in view; pass on nothing if no run is in view."""
         recording = self._runs.timeline.recording
         self._feed = Feed(recording) if recording else None
         self._uncharted.clear()

@@ -172,7 +172,7 @@ class PlotView(LinesView):
         self._draw_again()
 
     def render_line(self, y: int) -> Strip:
-        """Return row `y` of the widget."""
+        """Return row `y` of the plot."""
         strip = super().render_line(y)
         if self._tiles is None or y not in self._spans or isinstance(strip, PlotStrip):
             return strip

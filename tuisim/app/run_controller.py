@@ -54,7 +54,7 @@ class Pending:
     _pen_down: bool | None = None
 
     def note(self, record: TickRecord, action: protocol.Message) -> None:
-        """Add an action that was sent while `record` was the newest one."""
+        """Remember an action that was sent to the run while `record` was its newest record."""
         if self._after != _build_key(record):
             self.forget()
             self._after = _build_key(record)

@@ -179,7 +179,7 @@ class Snapshot:
         return is_end and bool(self.instant.left_speed_dps or self.instant.right_speed_dps)
 
     def has_stopped_since(self, before: Snapshot | None) -> bool:
-        """Return whether the run is paused or over, and was in another state in an earlier snapshot."""
+        """Return whether the run is paused or over, and had another state in the snapshot `before`; False for None."""
         return before is not None and self.state in AT_REST and before.state is not self.state
 
     @property

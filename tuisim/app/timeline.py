@@ -75,7 +75,7 @@ class Timeline:
 
     @property
     def tick(self) -> int:
-        """The tick in view; at the newest instant, the newest one."""
+        """The tick of the instant in view; the newest tick if the newest instant is in view."""
         return self.newest if self.at is None else self.at
 
     @property
@@ -127,7 +127,7 @@ class Timeline:
         self.at = None if tick is None or tick >= self.newest or self.newest <= 0 else max(0, tick)
 
     def step(self, ticks: int) -> None:
-        """Go forward by a number of ticks; a negative number goes back."""
+        """Go forward in the run by a number of ticks; a negative number goes back."""
         self.go(self.tick + ticks)
 
     def play(self, wall_s: float) -> None:

@@ -56,7 +56,7 @@ class SampleValues:
     seed: int = 0
 
     def values(self, name: str, whole: bool) -> tuple[int | float, ...]:
-        """Return the values in the order in which they are drawn.
+        """Return the random values of a parameter, in the order in which they are drawn.
 
         Args:
             name: The parameter: two parameters with the same seed get different values.

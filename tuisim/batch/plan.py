@@ -40,7 +40,7 @@ class Subject:
 
     @property
     def label(self) -> str:
-        """The program's name in the table."""
+        """The name of the program in the batch's table."""
         return self.name or self.program.name
 
 
@@ -107,7 +107,7 @@ class Plan:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of the parameters."""
+        """The names of the parameters of the batch."""
         return self.grid.names
 
     def check_expressions(self, expressions: Mapping[str, str]) -> None:

@@ -61,7 +61,7 @@ class PartialTable:
     def rows(self) -> dict[int, Row]:
         """Return the rows of an interrupted batch by the index of their task; empty if there is no file.
 
-        It is also empty if the file has other metrics, since the finished runs cannot be measured again.
+        The result is also empty if the file has other metrics, since the finished runs cannot be measured again.
 
         Raises:
             ConfigError: the file is of another batch, or cannot be read.
@@ -87,7 +87,7 @@ class PartialTable:
         """Create the file with some finished rows, and return this object; close it with `close` or `remove`.
 
         Raises:
-            ExportError: it cannot be written.
+            ExportError: the file cannot be written.
         """
         try:
             with replacing(self._path, durable=False) as handle:
@@ -98,10 +98,10 @@ class PartialTable:
         return self
 
     def add(self, row: Row) -> None:
-        """Append a row to the file.
+        """Append a row of the batch to the file.
 
         Raises:
-            ExportError: it cannot be written.
+            ExportError: the row cannot be written.
         """
         assert self._file is not None
         try:
@@ -119,10 +119,10 @@ class PartialTable:
             self._file = None
 
     def remove(self) -> None:
-        """Close and remove the file.
+        """Close and remove the file of finished rows.
 
         Raises:
-            ExportError: it cannot be removed.
+            ExportError: the file cannot be removed.
         """
         self.close()
         try:

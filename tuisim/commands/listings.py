@@ -302,7 +302,7 @@ def programs(as_json: bool) -> int:
 
 @command(argument("words", "[NAME|FILE]…", lambda: PROFILES, nargs=-1), AS_JSON)
 def profiles(words: Sequence[str], as_json: bool) -> int:
-    """List the profiles; of those that are named, the time of each call, the motors, and the source of each number."""
+    """List the profiles; for profiles given by name, also print the time of each call, the motors and all sources."""
     from tuisim.settings.profiles import load_profile
 
     chosen = [load_profile(word) for word in words] or PROFILES.values()

@@ -86,7 +86,7 @@ class BandReport:
 
     @property
     def count(self) -> int:
-        """The number of bands."""
+        """The number of bands of the variable."""
         return len(self.columns["number"])
 
     @cached_property

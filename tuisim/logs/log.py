@@ -149,12 +149,12 @@ class Log:
 
     @property
     def rows(self) -> int:
-        """The number of rows of the table."""
+        """The number of rows of the log's table."""
         return int(self.table.num_rows)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the series in order of first appearance.
+        """The names of the log's series, in order of first appearance.
 
         With several runs, each name is followed by ` #` and the run's number.
         """

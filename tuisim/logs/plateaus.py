@@ -105,7 +105,7 @@ class Plateau(NamedTuple):
 
     @property
     def samples(self) -> int:
-        """The number of samples."""
+        """The number of samples in the plateau."""
         return self.stop - self.start
 
 
@@ -116,7 +116,7 @@ Search = Callable[[FloatArray], list[Plateau]]
 def measure_noise(values: FloatArray) -> float:
     """Return the standard deviation of the noise in finite values, shape (n,), from the differences of neighbours.
 
-    The result is 0 for clean steps.
+    The result is 0 if the values change only by steps.
     """
     if len(values) < 3:
         return 0.0

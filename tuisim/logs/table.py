@@ -99,7 +99,7 @@ class Rows:
 
     @property
     def chosen(self) -> str:
-        """The name of the selected column."""
+        """The name of the column that is selected in the table."""
         return self.columns[self.column]
 
     def row(self, place: int) -> int:
@@ -119,7 +119,7 @@ class Rows:
         return min(int(np.searchsorted(self.view.order, row)), len(self.view.order) - 1)
 
     def text(self, row: int, column: str) -> str:
-        """Return a cell as text."""
+        """Return the text of a cell of the table."""
         return format_cell(self._log.table.column(column)[row])
 
     def shown(self, first: int = 0, last: int | None = None) -> LogTable:

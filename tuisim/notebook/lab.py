@@ -352,9 +352,9 @@ class Lab:
         return Listener(responder, self._in_texts, None if handler is None else call_handler)
 
     def _build_captions(self, words: Arguments, plan: _CellPlan) -> dict[str, dict[str, Any]]:
-        """Return the displays below the picture of a cell by name.
+        """Return what a cell displays below its picture, as bundles by name.
 
-        Without a picture, there is only the app, if the cell requests it.
+        If the cell draws no picture, only the app can be there, and only if the cell asks for it.
         """
         app_words = words.app if words.app is not None and not words.app.off else None
         if words.app is not None:

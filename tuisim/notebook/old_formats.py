@@ -306,7 +306,7 @@ class RobotState:
         """By the old simulator's names; see `build_robot_state`."""
 
     def update(self) -> None:
-        """Read the state again."""
+        """Read the state of the robot again."""
         self.state = self._read()
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, Any]:

@@ -83,7 +83,7 @@ class _Block(NamedTuple):
 
     @property
     def numbered(self) -> dict[int, str]:
-        """The lines by their number."""
+        """The lines of the definition, by their number in the file."""
         return dict(enumerate(self.lines, self.first))
 
 

@@ -172,7 +172,7 @@ class UnknownName:
 
     @property
     def message(self) -> str:
-        """The fault and the hint, as text."""
+        """A sentence on the unknown name or the faulty line, with the names that may have been meant."""
         wrong = self.fault or (
             f"`{self.owner}` has no `{self.name}`"
             if self.owner

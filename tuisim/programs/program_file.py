@@ -51,7 +51,7 @@ class WrongMat(NamedTuple):
 
     @property
     def words(self) -> str:
-        """The fault, with the mat that may be meant, in one line."""
+        """What is wrong with the mat, and which mat may have been meant, in one line."""
         guess, question, _ = self.error.hint.partition("?")
         return f"{self.error.message.partition(': ')[2]}{f', {guess}?' if question else ''}"
 
@@ -102,7 +102,7 @@ def drop_wrong_mat(source: ProgramSource, folder: str | None) -> ProgramSource:
 
 @dataclass(frozen=True, slots=True)
 class Mistake:
-    """Why a program cannot run."""
+    """The reason why a program cannot run, with its line."""
 
     line: int
     """From 1; 0 if unknown."""

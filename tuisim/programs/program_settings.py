@@ -347,7 +347,7 @@ def _find_refused(facts: SourceFacts, profile: str | ProfileSpec) -> tuple[Refus
 
 
 def _find_shown(facts: SourceFacts, free: Collection[str]) -> tuple[str, ...] | None:
-    """Return the value of `Decided.shown_ports`."""
+    """Return the ports that the text of the program shows, see `Decided.shown_ports`; None if a robot was chosen."""
     return facts.shown_ports if "robot" in free else None
 
 

@@ -265,7 +265,7 @@ class PixelView(RowsView):
         self._raw = picture
 
     def render_line(self, y: int) -> Strip:
-        """Return row `y` of the widget."""
+        """Return row `y` of the picture."""
         if y >= len(self._strips):
             return self._draw_blank()
         strip = self._strips[y]
@@ -338,7 +338,7 @@ class LinesView(RowsView):
         self.refresh()
 
     def render_line(self, y: int) -> Strip:
-        """Return row `y` of the widget."""
+        """Return row `y` of the lines."""
         if y >= len(self._text_strips):
             return self.draw_strip([])
         strip = self._text_strips[y]

@@ -87,8 +87,8 @@ class TerminalFacts:
         """Return the facts with a further answer of the terminal, given as a match of its pattern."""
         groups = match.groupdict()
         if groups["name"] is not None:
-            # A name means that all questions are asked again, perhaps by another page: one for kitty's protocol that is
-            # still open counts as not asked.
+            # A name means that all questions are asked again, perhaps by another page: if the question for kitty's
+            # protocol is not answered yet, it counts as not asked.
             return replace(self.without_refusal, name=groups["name"], attributes=frozenset())
         if groups["kitty"] is not None:
             # The answer may come late, as attributes are asked for when the size changes; an error counts for good.

@@ -232,7 +232,7 @@ def redraw(context: ActionContext) -> None:
 
 
 def save_screen(context: ActionContext) -> None:
-    """Save a screenshot of the app as files."""
+    """Save a screenshot of the app in files of the working directory."""
     context.app.action_save_screen()
 
 

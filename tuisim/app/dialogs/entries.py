@@ -26,7 +26,7 @@ Entry = TypeVar("Entry")
 
 
 class _List(FieldDialog[Result]):
-    """A dialog with a list of entries, and a field to add one."""
+    """A dialog with a list of entries, and a field in which the user adds an entry."""
 
     _entries: Sized
 

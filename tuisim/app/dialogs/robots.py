@@ -153,14 +153,14 @@ class RobotParts(LinesPanel):
         self._lines: list[Line] = []
 
     def show(self, lines: list[Line]) -> None:
-        """Show the lines of another robot, one for each part."""
+        """Show the lines of a robot in the list, one for each part."""
         self._lines = lines
         self.styles.height = self.rows
         self._redraw()
 
     @property
     def rows(self) -> int:
-        """The height that the list needs, in rows; at least 1."""
+        """The height in rows that the list of parts needs; at least 1."""
         return max(len(self._lines), 1)
 
     def _redraw(self) -> None:

@@ -225,7 +225,7 @@ class CodeArea(TextArea):
     # Marks
 
     def set_breaks(self, breaks: Mapping[int, str]) -> None:
-        """Show the markers of breakpoints, given by line from 1."""
+        """Show the markers of the breakpoints, given as texts by line number, from 1."""
         if breaks != self._breaks:
             self._breaks = dict(breaks)
             self.refresh()

@@ -147,7 +147,7 @@ class CandidateList(Widget):
 
     @property
     def is_open(self) -> bool:
-        """Whether the list is shown."""
+        """Whether the list of names is on the screen."""
         return bool(self._shown)
 
     def open(
@@ -250,11 +250,11 @@ class CandidateList(Widget):
             self.post_message(self.Chosen(name))
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        """Choose the next name."""
+        """Choose the next name in the list."""
         event.stop()
         self.take_key("down")
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        """Choose the previous name."""
+        """Choose the previous name in the list."""
         event.stop()
         self.take_key("up")

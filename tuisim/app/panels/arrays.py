@@ -122,7 +122,7 @@ class Arrays(Widget, can_focus=True):
         return "" if self._discs else "Preparing the mat"
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show an instant of the run."""
+        """Show the sensors at an instant of the run."""
         shown = self._snapshot
         self._snapshot = snapshot
         if shown is None or shown.spec.robot is not snapshot.spec.robot:

@@ -85,7 +85,7 @@ class Brick(LinesPanel, can_focus=True):
         self._let_go(*self._tapped)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show an instant of the run; at most a few updates per second."""
+        """Show the brick at an instant of the run; the panel updates only a few times per second."""
         former = self._hub
         self._snapshot = snapshot
         if self._hub != former:

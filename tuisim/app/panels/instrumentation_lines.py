@@ -39,12 +39,12 @@ def format_label(text: str, column: int = COLUMN) -> Run:
 
 
 def format_value(text: str) -> Run:
-    """Return a value in the style of values."""
+    """Return the text of a value, with the style that values have in the panel."""
     return text, VALUE
 
 
 def format_unit(text: str) -> Run:
-    """Return a unit, or other words between values, in the style of units."""
+    """Return a unit, or other words between values, with the style that units have in the panel."""
     return text, UNIT
 
 

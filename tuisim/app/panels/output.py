@@ -252,7 +252,7 @@ class Log(Widget, can_focus=True):
         return "\n".join(replace_controls(row.format_line()) for row in self._rows)
 
     def clear(self) -> None:
-        """Remove all lines."""
+        """Remove all lines from the list."""
         self._rows.clear()
         self._lines.clear()
         self._count = 0

@@ -204,7 +204,7 @@ class World(Widget, can_focus=True):
         return describe_world(self._snapshot, self._mat, rows) if self._snapshot else None
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show an instant of the run."""
+        """Show the world at an instant of the run."""
         mat = Path(snapshot.spec.world.background).name
         if mat != self._mat:
             self._mat = mat

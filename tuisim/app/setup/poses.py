@@ -115,7 +115,7 @@ def _parse_poses(data: object) -> dict[str, Pose]:
 
 
 def save_pose(name: str, pose: Pose) -> None:
-    """Save a pose under a name; one with the same name is replaced.
+    """Save a pose under a name; a saved pose with the same name is replaced.
 
     Raises:
         ConfigError: the name is invalid, the file is invalid or cannot be written, or there are too many poses.

@@ -12,35 +12,35 @@ from tuisim.programs.robot.scopes import Function, Scope
 
 @dataclass(frozen=True, slots=True)
 class LibraryModule:
-    """A value: a module of one of the libraries for a brick."""
+    """An expression's value that is a module of one of the libraries for a brick."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class LibraryClass:
-    """A value: a class of a library for a brick."""
+    """An expression's value that is a class of a library for a brick."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class SourceModule:
-    """A value: a module of the program."""
+    """An expression's value that is a module of the program."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class OwnClass:
-    """A value: a class of the program."""
+    """An expression's value that is a class of the program."""
 
     scope: Scope
 
 
 @dataclass(frozen=True, slots=True)
 class OwnFunction:
-    """A value: a function of the program."""
+    """An expression's value that is a function of the program."""
 
     node: Function
     scope: Scope
@@ -51,7 +51,7 @@ class OwnFunction:
 
 @dataclass(frozen=True, slots=True)
 class Instance:
-    """A value: an object that a call of a class creates."""
+    """An expression's value that is an object, created by a call of a class."""
 
     of: OwnClass | LibraryClass
     call: ast.Call | None = None
@@ -62,14 +62,14 @@ class Instance:
 
 @dataclass(frozen=True, slots=True)
 class Parent:
-    """A value: the result of `super()` in a method of a class."""
+    """An expression's value that is the result of `super()` in a method of a class."""
 
     of: Scope
 
 
 @dataclass(frozen=True, slots=True)
 class SourceCollection:
-    """A value: a list, tuple, set or dict with its items in the program's text."""
+    """An expression's value that is a list, tuple, set or dict, with its items in the program's text."""
 
     node: ast.List | ast.Tuple | ast.Set | ast.Dict
     scope: Scope

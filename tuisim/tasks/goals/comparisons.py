@@ -42,7 +42,7 @@ class WhenCondition(Condition):
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
-        """The texts of the comparisons, parsed."""
+        """The comparisons of this condition, parsed from their texts."""
         return tuple(_parse_comparison(text, "") for text in self.comparisons)
 
 
@@ -98,7 +98,7 @@ class KeepCondition(Condition):
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
-        """The texts of the comparisons, parsed."""
+        """The comparisons of this condition, parsed from their texts."""
         return tuple(_parse_comparison(text, "") for text in self.comparisons)
 
 
@@ -160,5 +160,5 @@ class StructureCondition(Condition):
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
-        """The texts of the comparisons, parsed."""
+        """The comparisons of this condition, parsed from their texts."""
         return tuple(condition for text in self.comparisons if (condition := parse_condition(text)))

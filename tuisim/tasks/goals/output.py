@@ -277,9 +277,9 @@ def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan)
 
 
 def _report_printed(moment: EvidencePoint, line: int, once: bool, evidence: Evidence) -> Finding:
-    """Return that all lines were printed.
+    """Return the finding that a program has printed all lines of a goal.
 
-    With `once`, only the end of the run decides this, as a line may be repeated.
+    With `once`, the result counts only at the end of the run, as the program may print a line again.
     """
     return (
         Finding(evidence.last, line=line, happened=moment) if once else Finding(moment, line=line)

@@ -35,7 +35,7 @@ _MODES: Mapping[Reading, tuple[str, ...]] = {
     Reading.COLOR: MODES_BY_KIND["color"],
     Reading.ULTRASONIC: MODES_BY_KIND["ultrasonic"],
     Reading.GYRO: MODES_BY_KIND["gyro"],
-    # Commands that wait for a motor read its state.
+    # The mode `state` is left out, as it is also read by commands that wait for a motor.
     Reading.MOTOR: ("position", "speed"),
 }
 _ABOVE = 0.5

@@ -193,7 +193,7 @@ class TouchNothingCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class PassCondition(Condition):
-    """The robot passes each of some places."""
+    """The robot passes each of several places."""
 
     SHORT: ClassVar[str] = "places_mm"
 

@@ -138,7 +138,7 @@ class WatchCheck:
 
     @property
     def words(self) -> str:
-        """What the student has to do, in words."""
+        """What the student has to do for the check, in words."""
         return f"watch {self.expression}"
 
 
@@ -162,7 +162,7 @@ class BreakCheck:
 
     @property
     def words(self) -> str:
-        """What the student has to do, in words."""
+        """What the student has to do for the check, in words."""
         return "let a run stop at the breakpoint"
 
 
@@ -183,7 +183,7 @@ class ExportCheck:
 
     @property
     def words(self) -> str:
-        """What the student has to do, in words."""
+        """What the student has to do for the check, in words."""
         return f"export to a {self.suffix} file"
 
 
@@ -208,7 +208,7 @@ class NoteCheck:
 
     @property
     def words(self) -> str:
-        """What the student has to do, in words."""
+        """What the student has to do for the check, in words."""
         return "write your note"
 
 
@@ -235,7 +235,7 @@ class VisitCheck:
 
     @property
     def words(self) -> str:
-        """What the student has to do, in words."""
+        """What the student has to do for the check, in words."""
         return f"go to an instant between {self.from_s:g} and {self.to_s:g} s"
 
 

@@ -102,7 +102,7 @@ def _describe_frequency(row: SheetRow) -> list[str]:
 
 
 def _describe_hidden(cells: Sequence[tuple[Goal, Cell]]) -> list[str]:
-    """Return the lines of the feedback on hidden goals, which only give the sum of their points."""
+    """Return the lines of the feedback with the sum of the hidden goals' points; empty without hidden goals."""
     max_points = math.fsum(max(column.points, 0.0) for column, _ in cells)
     points = math.fsum(cell.points for _, cell in cells)
     return (

@@ -245,7 +245,7 @@ def build_row(
 def _build_empty_row(
     student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome]
 ) -> SheetRow:
-    """Return the row of a student without runs that count: its points are NaN, or 0 if the hand-in is at fault."""
+    """Return the row of a student of whom no run counts: its points are NaN, or 0 if the hand-in is at fault."""
     failed = next(
         (
             outcome

@@ -10,7 +10,7 @@ from tuisim.engine.runs.readings import MODES_BY_KIND
 
 
 class Subject(Enum):
-    """What a program can wait for: a kind of sensor, button, connection or data."""
+    """A source of data that a program can wait for: a kind of sensor, the buttons, a connection or its data."""
 
     BUTTONS = auto()
     TOUCH = auto()
