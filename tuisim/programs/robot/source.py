@@ -172,19 +172,22 @@ class _Search:
         return Module(name, name, ast.Module([], []), is_package=True) if is_folder else None
 
 
-def _list_imported(module: Module) -> Iterator[str]:
-    """Yield the names in the imports of a module that can be modules, packages before the modules in them."""
+@lru_cache(16)
+def _list_imported(module: Module) -> list[str]:
+    """Return the names in the imports of a module that can be modules, packages before the modules in them."""
+    imported: list[str] = []
     for node in ast.walk(module.tree):
         match node:
             case ast.Import(names=names):
                 for alias in names:
-                    yield from _list_packages(alias.name)
+                    imported += _list_packages(alias.name)
             case ast.ImportFrom(module=name, level=level, names=names):
                 base = module.absolute(name, level)
                 if len(base) > MAX_NAME_CHARACTERS:
                     continue
-                yield from _list_packages(base)
-                yield from (f"{base}.{alias.name}" if base else alias.name for alias in names)
+                imported += _list_packages(base)
+                imported += (f"{base}.{alias.name}" if base else alias.name for alias in names)
+    return imported
 
 
 def _list_packages(name: str) -> Iterator[str]:
