@@ -50,8 +50,8 @@ OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
 """Computing with numbers in a syntax tree."""
 MAX_MODULES = 100
 MAX_MODULE_BYTES = 1 << 20
-MAX_NAME_CHARACTERS = 4096
-"""A longer name of a module is ignored: no path can be as long."""
+MAX_NAME_CHARACTERS = 500
+"""A longer name of a module is ignored: it has too many packages to list them all."""
 
 
 @dataclass(frozen=True, slots=True)
