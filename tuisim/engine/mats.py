@@ -115,7 +115,7 @@ def catalogue() -> Mapping[str, Background]:
 
 @lru_cache(maxsize=1)
 def _read_catalogue(file: Path, _mtime_ns: int, _size: int) -> Mapping[str, Background]:
-    # Choosing a mat needs the catalogue several times; an edited file has another time or size.
+    # The result is cached, because it is needed several times; an edited file has another time or size.
     entries = table(read_file(file, BackgroundError), Location(str(file), BackgroundError))
     return MappingProxyType(
         {name: _background(name, entry, file) for name, entry in entries.items()}

@@ -45,7 +45,7 @@ def place_robot(choice: RobotChoice, mat: Background) -> RobotSpec:
 def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) -> Pose:
     """Return the start pose. Its coordinates and heading are those of the settings, where they are set, else the mat's.
 
-    Within solid walls, the mat's position is moved so that the robot can turn there.
+    Within solid walls, the mat's start is moved so far that the robot can turn there.
 
     Args:
         settings: The settings.

@@ -241,7 +241,7 @@ class Solids:
 
     def _compute_clearance(self, pose: PoseTuple, straight: int) -> Clearance:
         body = self._place_body(*pose)
-        # All other boxes are at least as far away as `any_mm` and `beyond` are at first.
+        # Boxes that are not in this list are at least `beyond` away from the body.
         boxes = self._find_near_boxes(pose)
         any_mm = beyond = NEAR_MM - math.dist(pose[:2], self._near_at) if self._boxes else math.inf
         on_mm = beyond if straight else 0.0

@@ -241,7 +241,7 @@ class Controller:
             return build_timed_move(begin, now_us + time_us - begin.start_us, *how)
 
         trajectory = _splice(*self._find_start(now_us, measured), build)
-        # A motion at a speed never makes up for the distance that it has lost, and the next one does not either.
+        # A motion at a speed never makes up for lost distance, and neither does the motion that follows it.
         behind_milli = (
             self._behind_milli
             if self.timed and self.trajectory is not None and not self._slips

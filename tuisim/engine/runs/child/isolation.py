@@ -348,9 +348,10 @@ def is_readable(descriptor: int, timeout_s: float | None) -> bool:
     return bool(events)
 
 
-# An isolated program must not avoid its other limits either. Refused are: a namespace of its own, where it could
-# mount memory; memory that belongs to no address space and no open file, such as that in a socket or a pipe; calls
-# that the kernel makes for it through io_uring; and the user's keys.
+# An isolated program must not avoid its other limits either. So the filter refuses system calls that create a
+# namespace, in which the program could mount memory. It refuses memory that belongs to no address space and no open
+# file, such as that in a socket or a pipe. And it refuses io_uring, which calls the kernel past the filter, and the
+# user's keys.
 
 _LOAD = 0x20
 _EQUAL = 0x15
