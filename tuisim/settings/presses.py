@@ -20,7 +20,7 @@ _SECONDS = Number(0.0, MAX_PRESS_S)
 
 @dataclass(frozen=True, slots=True)
 class Press:
-    """A press of one button or touch sensor by hand, from a time to another in simulated seconds."""
+    """A press of one button or touch sensor by hand, from one time to another, in simulated seconds."""
 
     name: str
     """One of `PRESSABLE`."""

@@ -129,7 +129,10 @@ def name_motors(robot: RobotSpec) -> tuple[str, ...]:
 
 
 def build_motor_columns(name: str) -> tuple[Column, ...]:
-    """Return the columns of a motor: the measured ones, then one for each state, 1 while the motor has it."""
+    """Return the columns of a motor: the measured ones, then a column for each state.
+
+    The column of a state is 1 while the motor is in this state, else 0.
+    """
     measured = (Column(f"{name}_{field}", is_traced=field != "state") for field, _ in MOTOR_FIELDS)
     states = (
         Column(f"{name}_{state}", partial(_apply_bit, bit)) for state, bit in STATE_BITS.items()

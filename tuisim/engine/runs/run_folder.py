@@ -162,7 +162,7 @@ class StoredRun:
 
 
 def format_end(time_s: float) -> str:
-    """Return the time in s at which a run ended as text, rounded down, because no later tick was reached."""
+    """Return as text the time in s at which a run ended, rounded down, because no later tick was reached."""
     return f"{int(time_s * 100 + 1e-6) / 100:.2f}"
 
 

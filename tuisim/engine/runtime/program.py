@@ -468,7 +468,7 @@ class ProgramRunner:
 
     @waits_for(Wait.INPUT)
     def _read_input(self, prompt: object = "") -> str:
-        """Return the next answer of the run's options, or else the user's; replaces `input`.
+        """Return the next answer that the run's options give; without one, ask the user. It replaces `input`.
 
         Raises:
             EOFError: there is no answer.

@@ -150,7 +150,10 @@ class FileWaits:
             selector_class.select = self._build_select(selector_class.select)
 
     def _build_selector_class(self, name: str) -> Any:
-        """Return the class of the object with which a selector polls. It never waits: the selector itself does."""
+        """Return the class of the objects with which a selector polls.
+
+        Such an object never waits, because the selector itself waits in simulated time.
+        """
         real: Any = self._classes[name]
         return staticmethod(lambda: _AtOnce(self, real())) if name in ("poll", "epoll") else real
 
