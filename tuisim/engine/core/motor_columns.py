@@ -131,7 +131,7 @@ def name_motors(robot: RobotSpec) -> tuple[str, ...]:
 def build_motor_columns(name: str) -> tuple[Column, ...]:
     """Return the columns of a motor: the measured ones, then a column for each state.
 
-    The column of a state is 1 while the motor is in this state, else 0.
+    The column of a state is 1 while the motor is in this state, else 0; it is NaN where nothing is recorded.
     """
     measured = (Column(f"{name}_{field}", is_traced=field != "state") for field, _ in MOTOR_FIELDS)
     states = (
