@@ -243,7 +243,7 @@ class AnalysisModel:
         self.row = min(max(row, 0), max(self.log.rows - 1, 0))
 
     def select(self, step: int) -> None:
-        """Select the variable that is a number of variables after the selected one; after the last comes the first."""
+        """Move the selection down by a number of variables; after the last variable comes the first."""
         names = [trace.name for trace in self.traces]
         if names:
             self.selected = names[(names.index(self.selected) + step) % len(names)]
@@ -469,7 +469,7 @@ class AnalysisModel:
         return text, bare
 
     def derive(self, text: str) -> None:
-        """Compute the derived variable of a definition, and add it to the log. Blocks.
+        """Compute the derived variable of a definition, and add it to the log; block until this is done.
 
         Raises:
             LogError: as for `compute_definition`.

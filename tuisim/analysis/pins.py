@@ -113,7 +113,7 @@ def encode_data(kind: str, content: bytes) -> str:
 def clamp_to_picture(view: Viewport, x_mm: float, y_mm: float) -> tuple[float, float, str]:
     """Return where a place is marked on a picture: column and row in pixels, and in words how far off the mat it is.
 
-    A place that the picture does not show is marked at its edge; for others there are no words.
+    A place that the picture does not show is marked at its edge; for other places the words are empty.
     """
     at_px = view.to_px(x_mm, y_mm)
     sizes_px = view.width_px, view.height_px

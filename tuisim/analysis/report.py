@@ -169,7 +169,8 @@ def _find_bands(opened: OpenedLog, names: Sequence[str], search: Search) -> Anal
 def _choose_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
     """Return the log to report on, and a sentence about it.
 
-    If the program has printed no samples, this is the telemetry of the run; else the sentence is empty.
+    If the program has printed no samples, the log is the telemetry of the run, and the sentence says so; otherwise the
+    sentence is empty.
     """
     if opened.log.rows:
         return opened, ""

@@ -98,7 +98,7 @@ class RobotDescription(Description):
 
 
 def plain(value: Any) -> Any:
-    """Return a value in the form of files: a path as a text, a NumPy number as a Python number."""
+    """Return a value in the form in which files have it: a path as a text, a NumPy number as a Python number."""
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     return value.item() if getattr(value, "size", None) == 1 else value

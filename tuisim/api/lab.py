@@ -135,7 +135,7 @@ class Lab:
         return self._run.max_speed_dps
 
     def reset(self, seed: int | None = None) -> dict[str, float]:
-        """Return to the start and return the columns there; with a seed, noise and drift are those of this seed."""
+        """Move the robot to its start, and return the columns there; with a seed, noise and drift are of this seed."""
         if seed is not None:
             self._spec = replace(self._spec, seed=plain(seed))
         self._run = SteppedRun(self._spec, self._field, is_recorded=bool(self._goals))
@@ -152,7 +152,7 @@ class Lab:
         commands: Iterable[SimulationCommand] = (),
         **unknown: Never,
     ) -> dict[str, float]:
-        """Move the robot on by one tick or longer, and return the columns at the end. Does not block.
+        """Move the robot on by one tick or longer, and return the columns at the end. This does not block.
 
         Args:
             left, right: The speed for each wheel's motor in degrees per second, positive forwards, at most

@@ -48,7 +48,7 @@ class Measures:
 
     @property
     def identity(self) -> list[str]:
-        """Texts that identify the metrics, by their functions' code, and the columns: equal for equal values."""
+        """A hash of the code of each metric, and the names of the columns: equal if all values will be equal."""
         metrics = (f"{name} {describe(metric)}" for name, metric in self._metrics.items())
         return [*(sha256(text.encode()).hexdigest() for text in metrics), *self._columns]
 
@@ -101,7 +101,7 @@ class Measures:
 
 
 def compute_cell(name: str, metric: Metric, run: Run, index: int) -> Any:
-    """Return the value of a metric as a cell.
+    """Return the value of a metric of a run, as a cell of the table.
 
     The result is None if the metric raises an exception and the program has raised one, too.
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class Run:
     """A finished run: how it ended, what it recorded, and its picture.
 
-    A notebook shows it as its picture, how it ended, and its samples.
+    A notebook shows the run's picture, its end and its samples.
     """
 
     stored: StoredRun
@@ -163,7 +163,7 @@ def runs() -> pd.DataFrame:
     """Return the stored runs, one row for each, from the oldest on.
 
     Columns: `number`, `id`, `created` (UTC), `program`, `background`, `profile`, `seed`, `end`, `ticks`, `time_s`,
-    `samples`, `summary`, `tags`. Blocks until the store has been looked through.
+    `samples`, `summary`, `tags`. This blocks until the store has been looked through.
 
     Raises:
         LogError: the store cannot be read.

@@ -42,9 +42,9 @@ def run(
     group: str = "default",
     exclusive: bool = False,
 ) -> None:
-    """Run a function in a thread, and pass its result to `then`. Does not block.
+    """Run a function in a thread, and pass its result to `then`. This does not block.
 
-    If the node is removed or other work replaces this one, the function still runs to its end in its thread: `then` is
+    If the node is removed or other work replaces this work, the function still runs to its end in its thread: `then` is
     called, but `failed` is not. While the app shuts down, neither is called.
 
     Args:
@@ -66,7 +66,7 @@ def begin(
     group: str = "default",
     exclusive: bool = False,
 ) -> None:
-    """Run a coroutine function in the app's event loop until it ends or its node is removed. Does not block.
+    """Run a coroutine function in the app's event loop until it ends or its node is removed. This does not block.
 
     Args:
         node: The app, screen or widget that the work belongs to.
@@ -112,7 +112,7 @@ async def _run_and_wait(work: Callable[[], None]) -> None:
 
 
 def start(work: Callable[[], object]) -> None:
-    """Run a function in a thread, and ignore what it returns. Does not block."""
+    """Run a function in a thread, and ignore what it returns. This does not block."""
     _threads[:] = [thread for thread in _threads if thread.is_alive()]
     _threads.append(Thread(target=work, daemon=True))
     _threads[-1].start()

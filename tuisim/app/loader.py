@@ -268,7 +268,7 @@ class Loader:
         self.tell(decided)
 
     def open_task(self, program_path: str, world: Mapping[str, Any], goals: GoalsFile) -> None:
-        """Open a program with goals, in a world that is given as settings by path. Not during a run.
+        """Open a program with goals, in a world that is given as settings by path. Do not call this during a run.
 
         Raises:
             TuisimError: program or world are wrong; nothing has changed.
@@ -439,7 +439,7 @@ class Loader:
         return bool(fields)
 
     def apply_text(self, text: str, path: str, name: str) -> None:
-        """Apply the edited text of the open program. Not during a run.
+        """Apply the edited text of the open program. Do not call this during a run.
 
         Args:
             text: The text as it would be in the file.
@@ -454,7 +454,7 @@ class Loader:
         self._apply_program(build_program(text, Path(path) if path else None, name))
 
     def take_cell(self, source: ProgramSource | None, settings: Mapping[str, Any]) -> None:
-        """Apply the world and the program of a notebook's cell. Not during a run.
+        """Apply the world and the program of a notebook's cell. Do not call this during a run.
 
         A setting that has the same value as in the previous cell keeps the value that the user has given it since.
 
@@ -476,7 +476,7 @@ class Loader:
             self._apply_program(source)
 
     def open_new(self, text: str, name: str) -> None:
-        """Open a text as a new program without a file. Not during a run.
+        """Open a text as a new program without a file. Do not call this during a run.
 
         Raises:
             TuisimError: the magic line of the text is wrong.

@@ -111,7 +111,7 @@ class NoticeRow(Static):
 
 
 class Notices:
-    """The notices of an app. A new one replaces the visible one, unless that is an error that nobody can have read.
+    """The notices of an app. A new one replaces the visible one, but waits while that is an error not read yet.
 
     Args:
         app: The notices are shown on its topmost screen.

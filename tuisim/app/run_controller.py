@@ -499,7 +499,7 @@ class RunController:
         self._moved = True
 
     def load(self, plan: NextRun, program: Program | None) -> None:
-        """Set another world or program for the next run; the robot goes to its start. Only while no run is live."""
+        """Set another world or program for the next run while no run is live; the robot goes to its start."""
         self.timeline.go(None)
         self.next_run = plan
         self.program = program
@@ -507,7 +507,7 @@ class RunController:
         self._set_start(plan.spec.world.start)
 
     def change(self, plan: NextRun) -> None:
-        """Set a plan of the next run with the same start pose; the robot stays where it is. Only while no run is live.
+        """Set a plan of the next run with the same start pose, while no run is live; the robot stays where it is.
 
         The view returns from the past, so that the change is visible.
         """

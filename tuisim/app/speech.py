@@ -81,7 +81,7 @@ class Voice:
         self._sounding: subprocess.Popen[bytes] | None = None
 
     def play(self, sound: Spoke) -> None:
-        """Speak a text or play a sound; do nothing if one is still being played. Does not block."""
+        """Speak a text or play a sound; do nothing if one is still being played. This does not block."""
         if self._sounding and self._sounding.poll() is None:
             return
         if sound.file:

@@ -381,7 +381,7 @@ def time_in_words(layout: Layout) -> str:
 
 
 def _find_rising(table: pa.Table) -> str:
-    """Return the first column as the time if no column has a name, and its numbers rise; else `ROW`."""
+    """Return the name of the first column if its numbers rise and no column has a heading; else `ROW`."""
     names = table.column_names
     nameless = all(name == f"column {number}" for number, name in enumerate(names, 1))
     return names[0] if nameless and len(names) > 1 and _is_rising(table, names[0]) else ROW

@@ -82,7 +82,7 @@ def normalize_dates(texts: Any) -> Any:
 
 
 def order_is_guessed(texts: Any) -> bool:
-    """Return whether there are different dates with the year at the end, which could all begin with day or month."""
+    """Return whether it is a guess that dates with the year at the end begin with the day, not the month."""
     texts = _replace_patterns(texts, _REWRITTEN[:1])
     first, second = _find_largest_parts(texts)
     if not 0 < max(first, second) <= _LAST_MONTH:

@@ -204,7 +204,7 @@ def build_typed_frame(table: LogTable) -> pd.DataFrame:
 def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) -> dict[str, Any]:
     """Return the metadata of a log: units, and program, seed, robot, world and profile of each run.
 
-    They are equal for identical runs: no id, no time of day, no path.
+    The metadata of identical runs are equal: they have no id, no time of day and no path.
 
     Args:
         table: `samples` or `telemetry`.

@@ -230,7 +230,7 @@ class Log:
         return times
 
     def numbers(self, column: str) -> FloatArray:
-        """Return a numeric column as floats, shape (n,), NaN for empty cells. Must not be modified."""
+        """Return a numeric column as floats, shape (n,), NaN for empty cells. Callers must not modify the array."""
         if column not in self._cache.numbers:
             self._cache.numbers[column] = convert_to_floats(self.table.column(column))
         return self._cache.numbers[column]

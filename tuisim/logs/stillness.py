@@ -183,7 +183,7 @@ def _find_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> 
 def _find_wandering(part: FloatArray, spread: FloatArray, sigma: float) -> BoolArray:
     """Return for each row of samples, shape (m, length), whether it moves.
 
-    It does if neighbours differ less than noise with the row's spread would make them.
+    A row moves if neighbours in it differ less than they would by noise with the row's spread.
     """
     is_short = part.shape[1] < _SHORT_SAMPLES
     max_fraction = _SHORT_WANDERS if is_short else _WANDERS

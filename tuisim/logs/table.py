@@ -131,7 +131,7 @@ class Rows:
     # Which rows, in which order
 
     def build_filtered_view(self, conditions: tuple[ValueCondition, ...]) -> TableView:
-        """Return a view of the rows that meet all conditions, in the current order. Slow for a long log.
+        """Return a view of the rows that meet all conditions, in the current order. This is slow for a long log.
 
         Raises:
             LogError: a value does not fit its column.
@@ -146,7 +146,7 @@ class Rows:
     def build_sorted_view(self, column: str, descending: bool) -> TableView:
         """Return a view of the same rows, sorted by a column.
 
-        Without a column, they are in the order of the log. Slow for a long log.
+        Without a column, they are in the order of the log. This is slow for a long log.
         """
         return self._arrange(self.view.conditions, self.view.fulfilled, column, descending)
 
@@ -234,7 +234,7 @@ class Rows:
     ) -> int | None:
         """Return the next position whose row contains a text in a shown column, wrapping around; None if none does.
 
-        Case is ignored. Slow for a long log without a match.
+        Case is ignored. This is slow for a long log without a match.
 
         Args:
             text: The text.

@@ -38,7 +38,7 @@ class CellState:
 
 
 class AppView:
-    """An app in a notebook, shown by the page that last requested it. Its panels and unsaved texts are its own.
+    """An app in a notebook, shown by the page that last requested it. It shares no panels or texts with other apps.
 
     Args:
         words: What the app opens, as words of `tuisim open`.

@@ -81,7 +81,7 @@ class Lab:
 
     @property
     def responder(self) -> Callable[[str], object] | None:
-        """In collaborative mode: called with each line that a program prints for the notebook, without `PY::`.
+        """The function that collaborative mode calls with each line printed for the notebook, without `PY::`.
 
         A return value other than None is an answer; `pyState()` in the program returns all of them.
         It replaces a `pyresponder`.
@@ -263,7 +263,7 @@ class Lab:
         self._show(plan, words, listener, runs=runs)
 
     def _show(self, plan: _CellPlan, words: Arguments, listener: Listener, *, runs: bool) -> None:
-        """Run the program of a cell, or show the world; if a page shows the app, the app shows or runs them."""
+        """Run the program of a cell, or show its world; if a page shows the app, this happens in the app."""
         from tuisim.notebook.display import Stage
 
         stage = Stage(plan.settings, self._build_captions(words, plan))

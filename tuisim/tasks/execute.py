@@ -35,7 +35,7 @@ MAX_OUTPUT_BYTES = 16 << 20
 
 
 def execute(task: Task, folder: Path) -> Result:
-    """Run a task and return its result, which also says what went wrong. Blocks until the run is over.
+    """Run a task and return its result, which also says what went wrong. This blocks until the run is over.
 
     Args:
         task: The task.

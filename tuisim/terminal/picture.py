@@ -360,7 +360,7 @@ _JOIN_CELLS = 6
 
 
 def _fill_tiles(changed: Mask) -> Mask:
-    """Return which cells are in a tile with a changed cell: a changed tile is a new image, so all of them change."""
+    """Return which cells are in a tile with a changed cell: such a tile is a new image, so all its cells change."""
     rows, cols = changed.shape
     filled = np.pad(changed, ((0, -rows % _TILE_ROWS), (0, -cols % _TILE_COLS)))
     tiles = filled.reshape(filled.shape[0] // _TILE_ROWS, _TILE_ROWS, -1, _TILE_COLS).any(

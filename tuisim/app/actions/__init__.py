@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ActionContext:
-    """The parts of the app; every function behind a key gets this object."""
+    """The parts of the app, for the functions that keys run."""
 
     app: LabHost
     runs: RunController

@@ -177,7 +177,7 @@ def ask_instant(context: ActionContext) -> None:
 
 
 def go_to_sample(context: ActionContext, words: str) -> None:
-    """Go to the tick of the sample that a command finds; show a notice if there is none.
+    """Go to the tick of the sample that some words describe, as `find` reads them; show a notice if there is none.
 
     Args:
         context: The parts of the app.
@@ -229,7 +229,7 @@ def go_wrong(context: ActionContext) -> None:
 
 
 def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
-    """Go to the next reason why the run went wrong, and show its text; after the last one, go to the newest instant."""
+    """Go to the next reason why the run went wrong, and show its text; after the last, go to the newest instant."""
     tour = context.reasons
     if (reason := tour.advance()) is None:
         go_to_now(context)

@@ -127,7 +127,7 @@ def has_poses(opened: OpenedLog) -> bool:
 
 
 def load_world(opened: OpenedLog, run: int) -> RunWorld | None:
-    """Return the world of a run of a log; None if it cannot be found. Blocks, long the first time for each mat.
+    """Return the world of a run of a log; None if it cannot be found. This blocks, long the first time for each mat.
 
     Args:
         opened: The log.

@@ -223,7 +223,7 @@ def is_ready() -> bool:
 
 
 def preload() -> None:
-    """Let Jedi read the modules that every program uses, so that later look-ups are quick. Blocks."""
+    """Let Jedi read the modules that every program uses, so that later look-ups are quick. This blocks."""
     find_candidates(*_WARM_UP_PLACE)
 
 

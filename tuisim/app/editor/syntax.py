@@ -78,7 +78,7 @@ def find_spans(line: str, before: str = "") -> tuple[list[Span], str]:
 
 
 class Colouring:
-    """Finds the colours of a text that is edited; it stores for each line the string in which the line begins."""
+    """Finds the colours of a text that is edited; it remembers which lines begin inside a string of several lines."""
 
     def __init__(self) -> None:
         self._before: list[str] = [""]

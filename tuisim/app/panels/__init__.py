@@ -42,7 +42,7 @@ class PanelPlace(StrEnum):
 
 
 class Panel(Protocol):
-    """The interface of all panels, in addition to that of `Widget`."""
+    """The interface that each panel has besides the interface of `Widget`."""
 
     def show(self, snapshot: Snapshot) -> None:
         """Show an instant of the run; takes almost no time if nothing has changed."""

@@ -34,7 +34,7 @@ class Controls(ActionWords, can_focus=False):
         self._snapshot: Snapshot | None = None
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show an instant of the run."""
+        """Show the state of the run at an instant."""
         parts = (
             (snapshot.state, snapshot.end, snapshot.speed, snapshot.pen_down),
             (snapshot.spec, snapshot.instant.noise, snapshot.past and snapshot.time_s),

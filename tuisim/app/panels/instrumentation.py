@@ -47,7 +47,7 @@ class Instrumentation(LinesPanel, can_focus=True):
         self._snapshot: Snapshot | None = None
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show an instant of the run."""
+        """Show the readings at an instant of the run."""
         self._snapshot = snapshot
         self._redraw()
 

@@ -151,7 +151,7 @@ class TimeBar(LinesView):
         self._dragging = False
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show an instant of a run; before the first run the row is empty, so that the world keeps its size."""
+        """Show the time of an instant; before the first run, the row is empty, so that the world keeps its size."""
         if snapshot.state == RunPhase.IDLE or not (snapshot.now_tick > 0 or snapshot.past):
             self._times = None
             self.set_lines([])

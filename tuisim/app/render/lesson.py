@@ -46,7 +46,7 @@ _GOAL_MARKS = {
 
 
 class Away(StrEnum):
-    """What gets the keys while the app does not: nothing, the editor, or a log."""
+    """The part of the app that gets the keys in place of the lesson: none, the editor, or a log."""
 
     NO = "no"
     EDITOR = "editor"
@@ -207,7 +207,7 @@ def _escape(away: Away) -> str:
 
 
 def _describe_done(step: LessonStep, story: str, width: int, away: Away) -> Iterator[Line]:
-    """Yield lines about the step before, which was just done: by what, why that was right, and how to read it again."""
+    """Yield lines about the step that was just done: its story, why it was right, and how to see it again."""
     yield from _wrap_text(f"✓ {step.title}", width, _GOOD)
     yield from _wrap_text(story, width, _PALE)
     yield from _wrap_text(step.why, width, _PLAIN)

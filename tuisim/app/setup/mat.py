@@ -49,7 +49,7 @@ class Mat:
 
 
 def prepare_mat(spec: RunSpec) -> Mat:
-    """Prepare the mat of a run, and return it. Blocks, long the first time: call it in a thread.
+    """Prepare the mat of a run, and return it. This blocks, long the first time: call it in a thread.
 
     Raises:
         BackgroundError: there is no such mat, or its image cannot be read.

@@ -43,7 +43,7 @@ class Recent:
 
 
 def list_recent(new_name: str) -> list[Recent]:
-    """Return recent work that the user may continue, the most likely first. Reads files.
+    """Return recent work that the user may continue, the most likely first. This reads files.
 
     Args:
         new_name: Name for a program without a file.

@@ -194,7 +194,7 @@ def _show_commands(arguments: Arguments, words: str) -> int:
 
 
 def _parse_threshold_option(arguments: Arguments) -> EventChoice:
-    """Return the threshold in the arguments, or the search for commands; a threshold for every variable has no name.
+    """Return the threshold in the arguments, or the search for commands; a name of "" stands for every variable.
 
     Raises:
         ConfigError: there is no threshold, there are two, or it cannot be read.

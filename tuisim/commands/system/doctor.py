@@ -303,7 +303,7 @@ def _judge_dependency(name: str, pinned: str, installed: str) -> Finding:
 
 
 def judge_simulator(old_simulator: str) -> list[Finding]:
-    """Return a finding if the notebooks of a course import the old `nbev3devsim` and not tuisim's.
+    """Return a finding that notebooks import the old `nbev3devsim`, not tuisim's; empty if there is no old one.
 
     Args:
         old_simulator: The file of the old simulator; empty if notebooks import tuisim's.

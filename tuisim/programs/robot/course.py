@@ -15,7 +15,7 @@ _ATTRIBUTES = frozenset({"reflected_light_intensity_pc", "full_reflected_light_i
 
 
 def has_course_names(modules: Mapping[str, Module], text: str) -> bool:
-    """Return whether a program uses names that only the course has.
+    """Return whether a program uses names that only exist in the programs of the course.
 
     Args:
         modules: The program and its own modules.

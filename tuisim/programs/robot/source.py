@@ -205,7 +205,7 @@ def _list_all_imported(modules: Mapping[str, Module]) -> list[str]:
 
 
 def is_for_other_hub(modules: dict[str, Module]) -> bool:
-    """Return whether a program or one of its own modules imports one that only LEGO's Python for SPIKE hubs has."""
+    """Return whether a program or its own modules import a module that only LEGO's Python for SPIKE hubs has."""
     names = {*_list_all_imported(modules)} - {*modules}
     return bool(names & {*SPIKE_MODULES}) and not names & {
         *EV3_MODULES,

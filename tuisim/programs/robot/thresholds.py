@@ -43,19 +43,19 @@ class ProgramThreshold:
     """Where, in the program itself."""
 
     def holds(self, value: float) -> bool | None:
-        """Return whether the comparison is true for a reading; None if the value is one to control the reading to."""
+        """Return whether the comparison is true for a reading; None if the value is a target, see `is_aim`."""
         return None if self.is_aim else bool(COMPARE[self.sign](value, self.value))
 
     @property
     def is_aim(self) -> bool:
-        """Whether the value is one to control the reading to, not one of a comparison."""
+        """Whether the value is the target to which the program controls the reading, and not one of a comparison."""
         return self.sign == AIM
 
     @property
     def words(self) -> str:
         """The comparison without the reading, such as `> 90` or `== Red`.
 
-        `aim 50` for a value to control the reading to.
+        For a target, it is a text such as `aim 50`.
         """
         number = COLOR_NAMES[int(self.value)] if self.read.is_color else f"{self.value:g}"
         return f"{'aim' if self.is_aim else self.sign} {number}"

@@ -134,7 +134,7 @@ def is_girth(name: str) -> bool:
 def find_girth(name: str, number: float) -> float:
     """Return a wheel's circumference from a number with a name such as `MM_PER_DEGREE` or `DEGREES_PER_CM`; else 0.
 
-    It is in the name's unit of length.
+    The result is in the name's unit of length.
     """
     parts = _split_name(name)
     if len(parts) != 3 or parts[1] not in _PER or not number:

@@ -204,7 +204,7 @@ class _Outcome:
 def judge(
     goals: Sequence[Goal], run: JudgedRun, field: Field | None = None
 ) -> tuple[Judgement, ...]:
-    """Judge goals on the recording of a run. Blocks while the recording is read and, if it is packed, unpacked.
+    """Judge goals on the recording of a run. This blocks while the recording is read and, if it is packed, unpacked.
 
     Args:
         goals: Goals as `load_goals` returns them; their names are unique.

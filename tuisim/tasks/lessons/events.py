@@ -220,7 +220,7 @@ def explain_unready(question: QuestionCheck, event: Typed) -> str:
 
 
 def explain_wrong(question: QuestionCheck, wrong: Mapping[str, str], text: str) -> str:
-    """Return in words why a typed answer is wrong: the lesson's reason, or for another number, its direction.
+    """Return in words why a typed answer is wrong: the lesson's reason, else whether a number is too small or large.
 
     Args:
         question: The question.

@@ -57,7 +57,7 @@ _CODE_FENCE = re.compile(r"^(`{3,}|~{3,})\s*(.*?)\s*$")
 
 
 class Role(StrEnum):
-    """What a block of code in a lesson's Markdown is: a program to complete, a model answer, or a wrong program."""
+    """The purpose of a block of code in a lesson: a program to complete, a model answer, or a wrong program."""
 
     PROGRAM = "program"
     ANSWER = "answer"

@@ -83,7 +83,7 @@ class Change(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Sight:
-    """What the app shows a student at one moment."""
+    """The panels, the run and the state of the debugger that a student sees at one moment."""
 
     panels: frozenset[str]
     """The panels in `SEEABLE` that are on the screen."""

@@ -87,7 +87,7 @@ def build_task(
 def try_elsewhere(
     lesson: Lesson, check: RunCheck, run: StoredRun
 ) -> list[tuple[TrialWorld, tuple[Judgement, ...]]]:
-    """Run the program of a run in the other worlds of a check; return each world with its judgements. Blocks meanwhile.
+    """Run the program of a run in the other worlds of a check; block meanwhile; return each world with its judgements.
 
     Raises:
         ConfigError: the program's magic line is wrong in another world.
@@ -99,7 +99,7 @@ def try_elsewhere(
 
 
 def run_model(lesson: Lesson, step: LessonStep | None) -> Recording:
-    """Run the model answer of a step in the lesson's world, and return its recording. Blocks meanwhile.
+    """Run the model answer of a step in the lesson's world, and return its recording. This blocks meanwhile.
 
     The run is not stored.
 

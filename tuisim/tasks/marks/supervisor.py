@@ -78,7 +78,7 @@ def continue_stopped(root: int, before: set[int]) -> set[int]:
 
 
 def supervise(root: int) -> None:
-    """Continue a process and its descendants whenever a program stops them, until stdin is closed. Blocks."""
+    """Continue a process and its descendants whenever a program stops them, until stdin is closed. This blocks."""
     stopped: set[int] = set()
     is_suspended = False
     while True:

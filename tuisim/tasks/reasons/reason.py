@@ -158,7 +158,7 @@ def _find_line(run: StoredRun, time_s: float) -> int:
 
 
 def _find_raised(run: StoredRun) -> Iterator[Reason]:
-    """Yield as reasons the error that ended the run, and errors in threads, which did not end it."""
+    """Yield a reason for each error in a thread, and for the error that ended the run."""
     end = run.end
     ending = end.summary if end and end.end not in _EXPECTED_ENDS else ""
     for error in _find_tracebacks(run):
@@ -177,7 +177,7 @@ def _compile_place(run: StoredRun) -> re.Pattern[str]:
 
 
 def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
-    """Yield as reasons the tracebacks in the program's error output."""
+    """Yield a reason for each traceback in the program's error output."""
     place = _compile_place(run)
     line = 0
     is_inside = False
@@ -195,7 +195,7 @@ def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
 
 
 def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]:
-    """Yield as reasons where an obstacle stopped or pushed the robot, and what the program waited for in vain."""
+    """Yield a reason for an obstacle that stopped or pushed the robot, and for each wait of the program in vain."""
     for contact in (
         find_standstill(run.telemetry, run.spec),
         find_push(run.telemetry, run.spec),
@@ -250,7 +250,7 @@ def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[
 
 
 def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
-    """Yield as a reason where the robot first drove over the edge of the mat."""
+    """Yield a reason at the first instant at which the robot drove over the edge of the mat, if it did."""
     records = run.telemetry.array()
     x_mm, y_mm = records["x_mm"], records["y_mm"]
     is_off = (x_mm < 0) | (x_mm > FIELD_WIDTH_MM) | (y_mm < 0) | (y_mm > FIELD_HEIGHT_MM)
@@ -259,7 +259,7 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
 
 
 def _find_mistaken(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
-    """Yield as reasons where the program probably did not do what its author meant.
+    """Yield reasons at lines whose effect the author of the program probably did not mean.
 
     The program turned the wheels by an angle meant for the robot, or counted a band twice.
     """
@@ -273,7 +273,7 @@ def _find_mistaken(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
 
 
 def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
-    """Yield as reasons that the program ended too early, did not stop its motors, or has a line that does nothing."""
+    """Yield a reason if the program ended too early or did not stop its motors, and for lines that do nothing."""
     for line, text in read_facts(run.program).slips if run.end else ():
         yield Reason(ReasonKind.ENDED, run.time_s, line, text)
     if early := find_early_end(run, mat):
@@ -344,7 +344,7 @@ def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
 
 
 def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:
-    """Yield as a reason where the robot left the path of an earlier run."""
+    """Yield a reason at the instant at which the robot left the path of an earlier run, if it did."""
     hz = run.spec.profile.tick_hz, earlier.spec.profile.tick_hz
     time_s = find_first_difference_s(run.telemetry.array(), earlier.telemetry.array(), hz)
     if time_s is not None:

@@ -234,7 +234,7 @@ class _Search:
                 yield Unmet(stay[0] / self._hz, loop.line, text)
 
     def find_near_misses(self) -> Iterator[Unmet]:
-        """Yield where light just missed the limit of a finished loop, or passed it only between two readings."""
+        """Yield finished loops whose limit the light only just missed, or met only between two readings of the loop."""
         is_finished = self._run.end is not None and self._run.end.end is End.FINISHED
         for loop in self._loops:
             stay = self._find_stay(loop)
