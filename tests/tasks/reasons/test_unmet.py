@@ -7,12 +7,18 @@ import pytest
 from tests.cases import cases
 from tests.tasks.reasons.runs import run_text
 from tuisim.tasks.reasons import unmet
+from tuisim.tasks.reasons.run_data import RunData
 from tuisim.tasks.reasons.unmet import (
     find_early_end,
     find_near_miss,
     find_stale_angle,
     find_unmet,
 )
+
+
+def load(text: str) -> RunData:
+    return RunData(run_text(text))
+
 
 BANDS = "# %%sim_magic_preloaded -b Grey_bands\n"
 DRIVES = f"{BANDS}tank_drive.on(SpeedPercent(40), SpeedPercent(40))\n"
@@ -69,7 +75,7 @@ VAIN = {
 
 @cases("text, words", VAIN)
 def test_what_did_not_come_is_named_with_what_came(text: str, words: str) -> None:
-    wait = find_unmet(run_text(text))
+    wait = find_unmet(load(text))
     assert wait is not None
     assert wait.text.startswith(words)
     assert wait.time_s < 0.1
@@ -86,14 +92,14 @@ RIGHT = {
 
 @cases("text", RIGHT)
 def test_a_program_that_does_what_it_should_waits_for_nothing(text: str) -> None:
-    run = run_text(text)
+    run = load(text)
     assert find_unmet(run) is None
     assert find_near_miss(run) is None
 
 
 def test_a_level_that_is_a_little_too_low_just_misses_a_band() -> None:
     text = f"{DRIVES}while {LIGHT} > 50:\n    pass\ntank_drive.off()\n"
-    miss = find_near_miss(run_text(text))
+    miss = find_near_miss(load(text))
     assert miss is not None
     assert miss.text == "50.2 just missed the 50 or less that it waited for"
     assert miss.time_s == pytest.approx(4.53, abs=0.05)
@@ -105,7 +111,7 @@ SKIP = "at 3.61 s, but the program read it only at 3.07 s and 4.09 s: line 6 tak
 
 
 def test_a_band_between_two_reads_is_told() -> None:
-    miss = find_near_miss(run_text(SELDOM.format(limit=10, pause=1)))
+    miss = find_near_miss(load(SELDOM.format(limit=10, pause=1)))
     assert miss is not None
     assert (
         miss.text
@@ -117,14 +123,14 @@ def test_a_loop_that_goes_on_says_what_came_between_two_reads() -> None:
     text = SELDOM.format(limit=10, pause=1).replace(
         "on(SpeedPercent(80), SpeedPercent(80))", "on_for_seconds(80, 80, 5, block=False)"
     )
-    unmet = find_unmet(run_text(text))
+    unmet = find_unmet(load(text))
     assert unmet is not None
     assert "to read 10 % or less: it was " in unmet.text
     assert unmet.text.endswith("line 6 takes too long")
 
 
 def test_a_loop_that_reads_often_misses_no_band() -> None:
-    assert find_near_miss(run_text(SELDOM.format(limit=10, pause=0.01))) is None
+    assert find_near_miss(load(SELDOM.format(limit=10, pause=0.01))) is None
 
 
 SQUARE = """\
@@ -140,16 +146,16 @@ for side in range(3):
 
 def test_a_turn_to_a_constant_that_the_text_does_not_show_has_no_reason_and_no_error() -> None:
     text = "class Turn:\n    ANGLE = 90\n" + SQUARE.replace("< 90", "< Turn.ANGLE")
-    assert find_stale_angle(run_text(text)) is None
+    assert find_stale_angle(load(text)) is None
 
 
 def test_a_turn_that_ends_at_once_names_the_gyro_that_nobody_reset() -> None:
-    stale = find_stale_angle(run_text(SQUARE))
+    stale = find_stale_angle(load(SQUARE))
     assert stale is not None and stale.line == 5
     assert stale.text.startswith("the gyro on in4 was at 90° already when the loop began again")
     assert (
         find_stale_angle(
-            run_text(SQUARE.replace("    tank_drive.off", "    gyro.reset()\n    tank_drive.off"))
+            load(SQUARE.replace("    tank_drive.off", "    gyro.reset()\n    tank_drive.off"))
         )
         is None
     )
@@ -239,7 +245,7 @@ while left.angle() > -9999:
     },
 )
 def test_waits_of_other_libraries_are_found(text: str, words: str) -> None:
-    wait = find_unmet(run_text(text))
+    wait = find_unmet(load(text))
     assert wait is not None
     assert wait.text.startswith(words)
 
@@ -270,7 +276,7 @@ EARLY = {
 
 @cases("text, words", EARLY)
 def test_a_program_that_is_over_at_once_says_why(text: str, words: str) -> None:
-    early = find_early_end(run_text(text))
+    early = find_early_end(load(text))
     assert early is not None
     assert words in early.text
 
@@ -286,14 +292,14 @@ def test_a_program_that_is_over_at_once_says_why(text: str, words: str) -> None:
     ],
 )
 def test_a_program_that_drives_no_motor_or_far_enough_is_not_over_early(text: str) -> None:
-    assert find_early_end(run_text(text)) is None
+    assert find_early_end(load(text)) is None
 
 
 def test_a_short_wait_is_not_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
-    run = run_text(VAIN["at rest"][0])
+    run = load(VAIN["at rest"][0])
     monkeypatch.setattr(unmet, "_MIN_STAY_S", 31.0)
     assert find_unmet(run) is None
 
 
 def test_light_with_noise_is_not_measured_again() -> None:
-    assert find_unmet(run_text(VAIN["equality"][0].replace("bands", "bands -N 5"))) is None
+    assert find_unmet(load(VAIN["equality"][0].replace("bands", "bands -N 5"))) is None

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from enum import IntEnum, auto
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
@@ -19,13 +19,11 @@ from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.diff import find_first_difference_s, is_repeat
 from tuisim.engine.runs.push import find_push
-from tuisim.engine.runs.readings import MODES_BY_KIND, READING_PORTS, read_readings
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.standstill import find_standstill
-from tuisim.programs.facts import read_facts
-from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.reasons.blank_mat import describe_blank_mat
+from tuisim.tasks.reasons.run_data import RunData
 from tuisim.tasks.reasons.subjects import Subject
 from tuisim.tasks.reasons.unmet import (
     find_early_end,
@@ -36,8 +34,6 @@ from tuisim.tasks.reasons.unmet import (
 from tuisim.tasks.reasons.waited_words import Wait, find_waits
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from tuisim.engine.core.field import Field
     from tuisim.engine.runs.recorded_run import Recording
     from tuisim.engine.runs.run_folder import StoredRun
@@ -102,16 +98,14 @@ def find_reasons(
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.
     """
+    data = RunData(run, mat)
     has_met = bool(judgements) and all(each.is_good for each in judgements)
     reasons = [*_find_raised(run), *_find_missed(judgements)]
     if not has_met:
-        waits = find_waits(run, mat)
+        waits = find_waits(data)
         is_seen = any(wait.subject is Subject.COLOR for wait in waits)
-        reasons += [
-            *_find_blocked(run, waits),
-            *_find_lost(run, mat, is_seen),
-        ]
-        reasons += [*_find_left_mat(run), *_find_mistaken(run, mat), *_find_ended(run, mat)]
+        reasons += [*_find_blocked(run, waits), *_find_lost(data, is_seen)]
+        reasons += [*_find_left_mat(run), *_find_mistaken(data), *_find_ended(data)]
     if earlier is not None and is_repeat(run, earlier):
         reasons += _find_difference(run, earlier)
     return sort_by_cause(reasons)
@@ -217,32 +211,29 @@ def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
             yield Reason(ReasonKind.MISSED, judged.event.time_s, judged.line, text)
 
 
-def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[Reason]:
+def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
     """Yield as reasons where a robot lost its line, light just missed a limit, and sensors saw only one colour.
 
     Args:
-        run: The run.
-        mat: Its mat; None opens it.
-        has_waited: Whether the program waited for a light sensor in vain: one colour only is then no further reason.
+        data: The run.
+        has_waited: Whether it waited for a light sensor in vain; the one colour is then no further reason.
     """
-    eyes = run.spec.robot.color_sensors
-    if not eyes or run.telemetry.count < 2:
+    run = data.run
+    if not run.spec.robot.color_sensors or run.telemetry.count < 2:
         return
     from tuisim.tasks.reasons.lost_line import find_lost_lines
     from tuisim.tasks.reasons.one_colour import find_one_color
     from tuisim.tasks.reasons.unwatched import find_unwatched
 
-    mat = run.open_mat() if mat is None else mat
-    if missed := find_near_miss(run, mat) or find_stale_angle(run, mat):
+    if missed := find_near_miss(data) or find_stale_angle(data):
         yield Reason(ReasonKind.LOST, missed.time_s, missed.line, missed.text)
-    records = run.telemetry.array()
-    read_ticks = _find_read_ticks(run, len(records))
-    for lost in find_lost_lines(records, run.spec, mat, read_ticks):
+    seen_by_eyes = data.records, run.spec, data.mat, data.light_ticks
+    for lost in find_lost_lines(*seen_by_eyes):
         yield _describe_loss(run, lost)
-    unwatched = find_unwatched(run.program, records, run.spec, mat, read_ticks)
+    unwatched = find_unwatched(run.program, *seen_by_eyes)
     if unwatched and not missed:
         yield _explain_lost(run, unwatched.tick, unwatched.text)
-    if not has_waited and (seen := find_one_color(records, run.spec, mat, read_ticks)):
+    if not has_waited and (seen := find_one_color(*seen_by_eyes)):
         text = f"from here on the {seen.sensor} sensor saw only {seen.color}"
         if seen.left_tick is not None:
             text += f", until it left the mat at {seen.left_tick / run.spec.profile.tick_hz:.2f} s"
@@ -258,25 +249,26 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
         yield _explain_lost(run, int(is_off.argmax()), "the robot left the mat")
 
 
-def _find_mistaken(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
-    """Yield reasons at lines whose effect the author of the program probably did not mean.
+def _find_mistaken(data: RunData) -> Iterator[Reason]:
+    """Yield as reasons where the program probably did not do what was meant.
 
     The program turned the wheels by an angle meant for the robot, or counted a band twice.
     """
     from tuisim.tasks.reasons.unwatched import find_mistaken_turn
 
-    if turn := find_mistaken_turn(run):
-        time_s = turn.tick / run.spec.profile.tick_hz
+    if turn := find_mistaken_turn(data):
+        time_s = turn.tick / data.hz
         yield Reason(ReasonKind.MISTAKEN, time_s, turn.line, turn.text)
-    if recount := find_recount(run, mat):
+    if recount := find_recount(data):
         yield Reason(ReasonKind.MISTAKEN, recount.time_s, recount.line, recount.text)
 
 
-def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
-    """Yield a reason if the program ended too early or did not stop its motors, and for lines that do nothing."""
-    for line, text in read_facts(run.program).slips if run.end else ():
+def _find_ended(data: RunData) -> Iterator[Reason]:
+    """Yield as reasons that the program ended too early, did not stop its motors, or has a line that does nothing."""
+    run = data.run
+    for line, text in data.facts.slips if run.end else ():
         yield Reason(ReasonKind.ENDED, run.time_s, line, text)
-    if early := find_early_end(run, mat):
+    if early := find_early_end(data):
         yield Reason(ReasonKind.ENDED, early.time_s, early.line, early.text)
     elif run.end and run.end.end is End.FINISHED and run.end.summary:
         text = f"the program {run.end.summary}"
@@ -291,18 +283,17 @@ def describe_end(run: StoredRun) -> str:
     """
     if run.end is None:
         return ""
+    data = RunData(run)
     eyes = run.spec.robot.color_sensors
-    records = run.telemetry.array()
-    if run.end.end in (End.TIME_LIMIT, End.STOPPED) and eyes and len(records) > 1:
+    if run.end.end in (End.TIME_LIMIT, End.STOPPED) and eyes and len(data.records) > 1:
         from tuisim.tasks.reasons.lost_line import find_lost_lines
 
-        read_ticks = _find_read_ticks(run, len(records))
-        for lost in find_lost_lines(records, run.spec, run.open_mat(), read_ticks):
+        for lost in find_lost_lines(data.records, run.spec, data.mat, data.light_ticks):
             if lost.seen_again is None:
                 return _describe_loss(run, lost).words
-    if missed := find_near_miss(run):
+    if missed := find_near_miss(data):
         return Reason(ReasonKind.LOST, missed.time_s, missed.line, missed.text).words
-    if early := find_early_end(run):
+    if early := find_early_end(data):
         return Reason(ReasonKind.ENDED, early.time_s, early.line, early.text).words
     return describe_blank_mat(run)
 
@@ -310,24 +301,6 @@ def describe_end(run: StoredRun) -> str:
 def _explain_lost(run: StoredRun, tick: int, text: str) -> Reason:
     time_s = tick / run.spec.profile.tick_hz
     return Reason(ReasonKind.LOST, time_s, run.telemetry.record(tick).line, text)
-
-
-def _find_read_ticks(run: StoredRun, count: int) -> dict[str, NDArray[Any]]:
-    """Return the ticks at which the program read each light sensor, by its name, in ascending order.
-
-    Args:
-        run: The run.
-        count: Ticks of the telemetry: a run that goes on may have later readings, which are left out.
-    """
-    readings = read_readings(run.folder, is_over=run.end is not None)
-    rows = readings.find(MODES_BY_KIND["color"])
-    ticks = find_ticks(rows, run.spec.profile.tick_hz)
-    rows = rows[ticks < count]
-    ticks = ticks[ticks < count]
-    return {
-        eye.name: ticks[rows["port"] == READING_PORTS.index(eye.port)]
-        for eye in run.spec.robot.color_sensors
-    }
 
 
 def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:

@@ -3,44 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.core.conditions import COMPARE
-from tuisim.engine.core.hub_spec import HUB_PORTS, INSIDE
 from tuisim.engine.core.profile import Library
-from tuisim.engine.core.spec import (
-    ColorSensorSpec,
-    GyroSpec,
-    InfraredSpec,
-    SensorSpec,
-    UltrasonicSpec,
-)
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.frames import compute_column_values
-from tuisim.engine.runs.readings import READING_MODES, READING_PORTS, read_readings
 from tuisim.engine.runs.records import Stream
-from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.programs.facts import LoopEnd, read_facts
-from tuisim.tasks.goals.evidence import find_ticks
+from tuisim.programs.facts import LoopEnd
 from tuisim.tasks.reasons.one_colour import describe_colors, name_limit, name_seen
-from tuisim.tasks.reasons.read_columns import (
-    COLUMNS,
-    COLUMNS_BY_MODE,
-    LIGHT_COLUMNS,
-    RED,
-    TURN_COLUMNS,
-)
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from tuisim.engine.core.field import Field
-
-    Array = NDArray[Any]
+from tuisim.tasks.reasons.read_columns import LIGHT_COLUMNS
+from tuisim.tasks.reasons.run_data import RunData, Series
 
 _MIN_STAY_S = 3.0
 """A program that has been in a loop for less time does not wait in it in vain."""
@@ -62,26 +36,6 @@ _WORDS = {
     "==": "exactly {}",
     "!=": "anything but {}",
 }
-_NOUNS: Mapping[type[SensorSpec], str] = {
-    ColorSensorSpec: "colour sensor",
-    UltrasonicSpec: "ultrasonic sensor",
-    InfraredSpec: "infrared sensor",
-    GyroSpec: "gyro",
-}
-
-
-@dataclass(frozen=True, slots=True)
-class _Series:
-    """The values that a loop read of one sensor or motor, in the unit in which the program reads them."""
-
-    device: str
-    """Kind and port of the sensor or motor."""
-    column: str
-    """The end of the name of its column."""
-    unit: str
-    """With a blank before it, if there is one; empty for none."""
-    ticks: Array
-    values: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,71 +48,67 @@ class Unmet:
     """A text to follow "waited for", or a sentence on a miss; without a full stop."""
 
 
-def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:
+def find_unmet(data: RunData) -> Unmet | None:
     """Return what a program waited for in its last loop or move, if its run goes on, or a limit or the user ended it.
 
     The result is None for any other run, if the program waited for nothing, or if that is not known.
 
     Args:
-        run: The run.
-        mat: Its mat; None opens it.
+        data: The run.
     """
-    is_cut_off = run.end is None or run.end.end in _CUT_OFF
-    return _find_first(_Search.find_unmet, run, mat) if is_cut_off else None
+    is_cut_off = data.run.end is None or data.run.end.end in _CUT_OFF
+    return _find_first(_Search.find_unmet, data) if is_cut_off else None
 
 
-def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
+def find_near_miss(data: RunData) -> Unmet | None:
     """Return where a finished loop just missed the light that it waited for.
 
     No reading quite reached the light, or it was there only between two readings. The result is None if no loop missed
     it so, or if that is not known.
 
     Args:
-        run: The run.
-        mat: Its mat; None opens it.
+        data: The run.
     """
-    return _find_first(_Search.find_near_misses, run, mat)
+    return _find_first(_Search.find_near_misses, data)
 
 
-def find_stale_angle(run: StoredRun, mat: Field | None = None) -> Unmet | None:
+def find_stale_angle(data: RunData) -> Unmet | None:
     """Return a loop that ended at its first reading because the gyro was not reset.
 
     The result is None if there is no such loop, or if that is not known.
 
     Args:
-        run: The run.
-        mat: Its mat; None opens it.
+        data: The run.
     """
-    return _find_first(_Search.find_stale_angles, run, mat)
+    return _find_first(_Search.find_stale_angles, data)
 
 
-def find_recount(run: StoredRun, mat: Field | None = None) -> Unmet | None:
+def find_recount(data: RunData) -> Unmet | None:
     """Return a line of the program that counted one band of the mat twice.
 
     The result is None if there is none, or if that is not known.
 
     Args:
-        run: The run.
-        mat: Its mat; None opens it.
+        data: The run.
     """
-    return _find_first(_Search.find_recounts, run, mat)
+    return _find_first(_Search.find_recounts, data)
 
 
-def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
+def find_early_end(data: RunData) -> Unmet | None:
     """Return why a program ended too early: before its motors could turn, or because it only defines functions.
 
     Otherwise the result is None.
 
     Args:
-        run: The run.
-        mat: Its mat; None opens it.
+        data: The run.
     """
+    run = data.run
     end = run.end
     if end is None or end.end is not End.FINISHED or run.time_s >= _MIN_RUN_S:
         return None
-    if idle := read_facts(run.program).idle_definition:
+    if idle := data.facts.idle_definition:
         return Unmet(run.time_s, *idle)
-    line = read_facts(run.program).first_drive
+    line = data.facts.first_drive
     last = run.telemetry.last()
     start = run.spec.world.start
     if not line or last is None:
@@ -172,16 +122,14 @@ def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
         "the program ended when the motors that this line starts had moved the robot by only "
         f"{way_mm:.1f} mm"
     )
-    return _find_first(_Search.find_met, run, mat) or Unmet(run.time_s, line, text)
+    return _find_first(_Search.find_met, data) or Unmet(run.time_s, line, text)
 
 
-def _find_first(
-    search: Callable[[_Search], Iterator[Unmet]], run: StoredRun, mat: Field | None
-) -> Unmet | None:
-    if not run.telemetry.count:
+def _find_first(search: Callable[[_Search], Iterator[Unmet]], data: RunData) -> Unmet | None:
+    if not data.run.telemetry.count:
         return None
     try:
-        return next(search(_Search(run, mat)), None)
+        return next(search(_Search(data)), None)
     except (LogError, ConfigError):
         return None
 
@@ -193,35 +141,14 @@ class _Search:
         LogError, ConfigError: a recording is damaged, or the mat no longer exists.
     """
 
-    def __init__(self, run: StoredRun, mat: Field | None) -> None:
-        self._run = run
-        self._mat = mat
-        self._hz = run.spec.profile.tick_hz
-        self._records = run.telemetry.array()
-        self._loops = read_facts(run.program).loop_ends
-        self._has_codes = run.spec.profile.motor_law.library is not Library.PYBRICKS
+    def __init__(self, data: RunData) -> None:
+        self._data = data
+        self._run = data.run
+        self._hz = data.hz
+        self._records = data.records
+        self._loops = data.facts.loop_ends
+        self._has_codes = data.run.spec.profile.motor_law.library is not Library.PYBRICKS
         """Whether `color` is a number in the program's library."""
-
-    @cached_property
-    def _readings(self) -> Array:
-        """The readings of sensors and motors that the program took."""
-        return read_readings(self._run.folder, is_over=self._run.end is not None).rows
-
-    @cached_property
-    def _scales(self) -> dict[str, float]:
-        """The scales of motors by port: degrees in the program per degree of the motor.
-
-        A port without an entry has the scale 1.
-        """
-        # Imported on demand: few runs wait for a motor.
-        from tuisim.engine.runs.command_events import CommandIndex
-
-        return {port: scale for _, port, scale in CommandIndex(self._run).read_scale_changes()}
-
-    @cached_property
-    def _field(self) -> Field:
-        """The mat of the run, opened at the first use."""
-        return self._run.open_mat() if self._mat is None else self._mat
 
     def find_unmet(self) -> Iterator[Unmet]:
         """Yield what the program waited for in its last move and in each loop, the inner loops first."""
@@ -239,7 +166,7 @@ class _Search:
         for loop in self._loops:
             stay = self._find_stay(loop)
             has_left = is_finished or (stay and stay[1] < len(self._records))
-            series = self._measure(loop, stay) if stay and has_left else None
+            series = self._data.measure(loop, stay) if stay and has_left else None
             if not stay or not series or series.column not in LIGHT_COLUMNS:
                 continue
             if miss := self._find_miss(loop, series):
@@ -252,7 +179,7 @@ class _Search:
     def find_met(self) -> Iterator[Unmet]:
         """Yield the loops whose first reading was already what they waited for."""
         for loop in self._loops:
-            series = self._measure(loop, (0, len(self._records)))
+            series = self._data.measure(loop, (0, len(self._records)))
             if series is None:
                 continue
             text = f"the loop ended at once: {series.device} read"
@@ -274,7 +201,7 @@ class _Search:
 
         lines = self._records["line"]
         for loop in self._loops:
-            series = self._measure(loop, (0, len(self._records)))
+            series = self._data.measure(loop, (0, len(self._records)))
             if series is None or series.column != "deg" or isinstance(loop.limit, str):
                 continue
             if not series.device.startswith("the gyro"):
@@ -292,8 +219,8 @@ class _Search:
 
     def find_recounts(self) -> Iterator[Unmet]:
         """Yield lines of the program that counted two readings in a row of the same band while the robot moved."""
-        for line, test in read_facts(self._run.program).counts:
-            series = self._measure(test, (0, len(self._records)))
+        for line, test in self._data.facts.counts:
+            series = self._data.measure(test, (0, len(self._records)))
             if series is None or series.column not in LIGHT_COLUMNS or isinstance(test.limit, str):
                 continue
             is_met = COMPARE[test.operator](series.values, test.limit)
@@ -318,7 +245,7 @@ class _Search:
         import numpy as np
 
         line = int(self._records["line"][-1])
-        turns = read_facts(self._run.program).find_turns(line)
+        turns = self._data.facts.find_turns(line)
         first = int(np.flatnonzero(self._records["line"] != line)[-1:].sum()) + 1
         if turns is None or not self._is_long(first):
             return None
@@ -359,7 +286,7 @@ class _Search:
                 else "in a loop without a wait"
             )
             return f"{loop.name} to be {goal}, {why}"
-        series = self._measure(loop, stay)
+        series = self._data.measure(loop, stay)
         if series is None:
             return ""
         if series.column == "color":
@@ -371,7 +298,7 @@ class _Search:
         came = skip[1] if skip else self._name_nearest(loop, series)
         return f"{series.device} to read {goal}: {came}"
 
-    def _name_nearest(self, loop: LoopEnd, series: _Series) -> str:
+    def _name_nearest(self, loop: LoopEnd, series: Series) -> str:
         """Return which value came nearest to the limit of a loop.
 
         If that was the first value, return how the values changed after it.
@@ -386,8 +313,8 @@ class _Search:
             return f"it stayed at {_round(values[0])}"
         return f"it went from {_round(values[0])} to {_round(values[-1])}"
 
-    def _find_miss(self, loop: LoopEnd, series: _Series) -> Unmet | None:
-        """Return where the light came within `_NEAR` % of a loop's limit without passing it; None if it did not.
+    def _find_miss(self, loop: LoopEnd, series: Series) -> Unmet | None:
+        """Return where the light came within `_NEAR` % of a loop's limit without passing it; None if it did nowhere.
 
         Before and after, the light was at least `_AWAY` % away from the limit.
         """
@@ -410,7 +337,7 @@ class _Search:
         return Unmet(ticks[nearest] / self._hz, loop.line, text)
 
     def _find_skip(
-        self, loop: LoopEnd, stay: tuple[int, int], reads: _Series
+        self, loop: LoopEnd, stay: tuple[int, int], reads: Series
     ) -> tuple[int, str] | None:
         """Return the first tick at which the light met a loop's condition between two readings, and a description.
 
@@ -418,7 +345,9 @@ class _Search:
         """
         import numpy as np
 
-        every = None if isinstance(loop.limit, str) else self._measure(loop, stay, is_between=True)
+        every = (
+            None if isinstance(loop.limit, str) else self._data.measure(loop, stay, is_between=True)
+        )
         if every is None:
             return None
         meets = COMPARE[loop.operator]
@@ -439,94 +368,6 @@ class _Search:
             f"line {lines[counts.argmax()]} takes too long"
         )
         return tick, what
-
-    def _measure(
-        self, loop: LoopEnd, stay: tuple[int, int], *, is_between: bool = False
-    ) -> _Series | None:
-        """Return the values that a loop read; with `is_between` the values that it would have read at every tick.
-
-        The result is None if they are not known, or if noise or the pen's marks would make the computation slow.
-        """
-        import numpy as np
-
-        rows = self._readings[self._readings["line"] == loop.read_line]
-        ticks = np.unique(find_ticks(rows, self._hz))
-        ticks = ticks[(ticks >= stay[0]) & (ticks < stay[1])]
-        ports = [READING_PORTS[port] for port in np.unique(rows["port"])]
-        sensors = [each for each in self._run.spec.robot.sensors if each.port in ports]
-        if not len(ticks):
-            return None
-        if is_between:
-            ticks = np.arange(ticks[0], ticks[-1] + 1)
-        if wheel := self._find_wheel(ports):
-            return self._measure_wheel(loop, wheel, ports[0], ticks)
-        mode = READING_MODES[rows["mode"][0]]
-        read = (
-            COLUMNS_BY_MODE.get(mode) if loop.attribute == "value" else COLUMNS.get(loop.attribute)
-        )
-        if len(sensors) != 1 or read is None:
-            return None
-        return self._measure_sensor(loop, sensors[0], read, ticks)
-
-    def _measure_wheel(self, loop: LoopEnd, wheel: str, port: str, ticks: Array) -> _Series | None:
-        """Return the position in degrees of a wheel's motor at some ticks.
-
-        The result is None if the loop reads another attribute of the motor.
-        """
-        if loop.attribute not in TURN_COLUMNS:
-            return None
-        column, factor, unit = TURN_COLUMNS[loop.attribute]
-        values = self._records[f"{wheel}_position_{column}"][ticks] * factor
-        values = values * self._scales.get(port, 1.0)
-        return _Series(f"the motor on {port}", column, unit, ticks, values)
-
-    def _measure_sensor(
-        self, loop: LoopEnd, sensor: SensorSpec, read: tuple[str, float, str], ticks: Array
-    ) -> _Series | None:
-        """Return what a sensor measured at some ticks.
-
-        The result is None if it has no such measurement, or if computing it would be slow.
-        """
-        import numpy as np
-
-        spec, (column, factor, unit) = self._run.spec, read
-        if spec.world.noise.light or spec.world.pen_marks:
-            return None
-        if loop.attribute == "reflection" and sensor.port in HUB_PORTS:
-            # On a hub, the reflection is measured in all colours.
-            column = "mean_pc"
-        name = f"{sensor.name}_{column}"
-        run = self._run
-        mat = self._field
-        columns = compute_column_values(
-            (name,), self._records[ticks], run, run.actions, mat, lambda _: mat
-        )
-        if name not in columns:
-            return None
-        values = columns[name] * factor
-        if read is RED:
-            values = np.floor(values * spec.profile.reflected_max / 100)
-        elif loop.attribute == "reflection":
-            values = np.floor(values)
-        device = f"the {_NOUNS.get(type(sensor), 'sensor')} {describe_place(sensor.port)}"
-        return _Series(device, column, unit, ticks, values)
-
-    def _find_wheel(self, ports: list[str]) -> str:
-        """Return `left` or `right` if the only port is the port of that wheel's motor.
-
-        The result is empty for other ports, or if the wheels have gears.
-        """
-        robot = self._run.spec.robot
-        wheels = {
-            robot.left_port: "left",
-            robot.right_port: "right",
-        }
-        return wheels.get(ports[0], "") if len(ports) == 1 and robot.gear_ratio == 1 else ""
-
-
-def describe_place(port: str) -> str:
-    """Return where a sensor is in words, such as `on in1`."""
-    return "in the hub" if port == INSIDE else f"on {port}"
 
 
 def _round(value: float) -> str:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tuisim.base.source import Program
     from tuisim.engine.core.field import Field
     from tuisim.engine.core.spec import ColorSensorSpec, RunSpec
-    from tuisim.engine.runs.run_folder import StoredRun
+    from tuisim.tasks.reasons.run_data import RunData
 
     Array = NDArray[Any]
 
@@ -44,18 +44,17 @@ class MistakenTurn:
     """What it did, a sentence that begins small and has no full stop."""
 
 
-def find_mistaken_turn(run: StoredRun) -> MistakenTurn | None:
+def find_mistaken_turn(data: RunData) -> MistakenTurn | None:
     """Return the first turn on the spot in which the wheels, but not the robot, turned by the program's angle.
 
     Otherwise the result is None.
     """
-    turns = [_measure_turns(run, turn) for turn in read_facts(run.program).wheel_turns]
+    turns = [_measure_turns(data.records, turn) for turn in data.facts.wheel_turns]
     return min((turn for turn in turns if turn), key=lambda turn: turn.tick, default=None)
 
 
-def _measure_turns(run: StoredRun, turn: WheelTurn) -> MistakenTurn | None:
+def _measure_turns(records: Array, turn: WheelTurn) -> MistakenTurn | None:
     """Return by which angle a call turned the robot the first time it ran; None if that angle seems to be intended."""
-    records = run.telemetry.array()
     lines = records["line"]
     is_on = (lines >= turn.first_line) & (lines <= turn.last_line)
     spans = find_spans(is_on).tolist()

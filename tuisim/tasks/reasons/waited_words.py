@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.geometry import Pose
@@ -18,12 +18,10 @@ from tuisim.engine.obstacles import OBSTACLES
 from tuisim.engine.runs.readings import BUTTONS_PORT, HUB_BUTTONS_PORT, KEYS_BY_PORT
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.tasks.reasons.hand_presses import find_hits
+from tuisim.tasks.reasons.run_data import RunData, describe_place
 from tuisim.tasks.reasons.subjects import SEEN, Subject
-from tuisim.tasks.reasons.unmet import Unmet, describe_place, find_unmet
+from tuisim.tasks.reasons.unmet import Unmet, find_unmet
 from tuisim.tasks.reasons.waited import Awaited, find_awaited
-
-if TYPE_CHECKING:
-    from tuisim.engine.core.field import Field
 
 COLORED_MAT = "Rainbow_bands"
 COLOR_PLACES_MM: Mapping[str, int] = {"red": 240, "green": 440, "blue": 740, "yellow": 1245}
@@ -59,18 +57,18 @@ class Wait:
     subject: Subject | None = None
 
 
-def find_waits(run: StoredRun, mat: Field | None = None) -> list[Wait]:
+def find_waits(data: RunData) -> list[Wait]:
     """Return descriptions of what a run waited for at its end or, if it is still running, waits for now.
 
     The most important description is first.
 
     Args:
-        run: The run.
-        mat: Its mat; None opens it.
+        data: The run.
     """
+    run = data.run
     all_awaited = find_awaited(run)
     is_seen = all(awaited.subject in SEEN for awaited in all_awaited)
-    unmet = find_unmet(run, mat) if is_seen else None
+    unmet = find_unmet(data) if is_seen else None
     verb = "it waited" if run.end else "it waits"
     waits = []
     for awaited in all_awaited:
@@ -95,7 +93,7 @@ def _describe_unmet(
 
 def describe_wait(run: StoredRun) -> str:
     """Return what a run waited for in one sentence without its full stop; empty if it waited for nothing."""
-    return "; ".join(wait.what for wait in find_waits(run))
+    return "; ".join(wait.what for wait in find_waits(RunData(run)))
 
 
 def describe_wait_with_keys(awaited: Iterable[Awaited], spec: RunSpec) -> str:

@@ -1,0 +1,243 @@
+"""What a run recorded, read once for all who look for reasons why it went wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.hub_spec import HUB_PORTS, INSIDE
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.spec import (
+    ColorSensorSpec,
+    GyroSpec,
+    InfraredSpec,
+    SensorSpec,
+    UltrasonicSpec,
+)
+from tuisim.engine.runs.command_records import MAX_COMMANDS, read_command_rows
+from tuisim.engine.runs.frames import compute_column_values
+from tuisim.engine.runs.readings import (
+    MODES_BY_KIND,
+    READING_MODES,
+    READING_PORTS,
+    Readings,
+    read_readings,
+)
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.programs.facts import LoopEnd, ProgramFacts, read_facts
+from tuisim.tasks.goals.evidence import find_ticks
+from tuisim.tasks.reasons.read_columns import COLUMNS, COLUMNS_BY_MODE, RED, TURN_COLUMNS
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from tuisim.engine.core.field import Field
+
+    Array = NDArray[Any]
+
+_NOUNS: Mapping[type[SensorSpec], str] = {
+    ColorSensorSpec: "colour sensor",
+    UltrasonicSpec: "ultrasonic sensor",
+    InfraredSpec: "infrared sensor",
+    GyroSpec: "gyro",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """The values that a program read of one sensor or motor, in the unit in which it reads them."""
+
+    device: str
+    """Kind and port of the sensor or motor."""
+    port: str
+    column: str
+    """The end of the name of its column."""
+    unit: str
+    """With a blank before it, if there is one; empty for none."""
+    ticks: Array
+    values: Array
+
+
+class RunData:
+    """A run with its telemetry, readings, commands and mat, each read when it is first needed.
+
+    Args:
+        run: The run; it may still be running, and is seen as it is at the first look.
+        mat: Its mat; None opens it.
+
+    Raises:
+        LogError, ConfigError: on a look at a recording that is damaged, or at a mat that no longer exists.
+    """
+
+    def __init__(self, run: StoredRun, mat: Field | None = None) -> None:
+        self.run = run
+        self.hz = run.spec.profile.tick_hz
+        self._mat = mat
+
+    @cached_property
+    def facts(self) -> ProgramFacts:
+        """What the text of the program says."""
+        return read_facts(self.run.program)
+
+    @cached_property
+    def records(self) -> Array:
+        """The telemetry, structured as `TICK_FIELDS`, shape (n,)."""
+        return self.run.telemetry.array()
+
+    @cached_property
+    def readings(self) -> Array:
+        """The readings of sensors and motors that the program took, as rows of `READING_FIELDS`."""
+        return self._recorded.rows
+
+    @cached_property
+    def _recorded(self) -> Readings:
+        return read_readings(self.run.folder, is_over=self.run.end is not None)
+
+    @cached_property
+    def reading_ticks(self) -> Array:
+        """The tick of each of `readings`."""
+        return find_ticks(self.readings, self.hz)
+
+    @cached_property
+    def commands(self) -> Array:
+        """The commands that the program gave, as rows of `COMMAND_FIELDS`; none if the record is missing."""
+        return read_command_rows(self.run.folder, 0, MAX_COMMANDS)
+
+    @cached_property
+    def command_ticks(self) -> Array:
+        """The tick of each of `commands`."""
+        ticks: Array = self.commands["time_ns"] * self.hz // NS_PER_S
+        return ticks
+
+    @cached_property
+    def _scales(self) -> dict[str, float]:
+        """The scales of motors by port: degrees in the program per degree of the motor.
+
+        A port without an entry has the scale 1.
+        """
+        # Imported on demand: few runs wait for a motor.
+        from tuisim.engine.runs.command_events import CommandIndex
+
+        return {port: scale for _, port, scale in CommandIndex(self.run).read_scale_changes()}
+
+    @cached_property
+    def mat(self) -> Field:
+        """The mat of the run."""
+        return self.run.open_mat() if self._mat is None else self._mat
+
+    @cached_property
+    def light_ticks(self) -> dict[str, Array]:
+        """The ticks at which the program read each light sensor, by its name, in ascending order.
+
+        Readings after the telemetry, as a run that goes on may have, are left out.
+        """
+        rows = self._recorded.find(MODES_BY_KIND["color"])
+        ticks = find_ticks(rows, self.hz)
+        rows = rows[ticks < len(self.records)]
+        ticks = ticks[ticks < len(self.records)]
+        return {
+            eye.name: ticks[rows["port"] == READING_PORTS.index(eye.port)]
+            for eye in self.run.spec.robot.color_sensors
+        }
+
+    def measure(
+        self, loop: LoopEnd, stay: tuple[int, int], *, is_between: bool = False
+    ) -> Series | None:
+        """Return the values that a loop read; with `is_between` the values that it would have read at every tick.
+
+        The result is None if they are not known, or if noise or the pen's marks would make the computation slow.
+
+        Args:
+            loop: The loop, or another comparison.
+            stay: The first tick to look at, and the one after the last.
+            is_between: Whether to measure from the first reading to the last at every tick.
+        """
+        import numpy as np
+
+        is_read = self.readings["line"] == loop.read_line
+        ticks = np.unique(self.reading_ticks[is_read])
+        ticks = ticks[(ticks >= stay[0]) & (ticks < stay[1])]
+        if len(ticks) and is_between:
+            ticks = np.arange(ticks[0], ticks[-1] + 1)
+        return self.measure_at(loop, ticks)
+
+    def measure_at(self, loop: LoopEnd, ticks: Array) -> Series | None:
+        """Return the values that a comparison would read at some ticks; None as in `measure`.
+
+        Args:
+            loop: The loop, or another comparison, whose sensor or motor the program read at least once.
+            ticks: The ticks.
+        """
+        import numpy as np
+
+        rows = self.readings[self.readings["line"] == loop.read_line]
+        ports = [READING_PORTS[port] for port in np.unique(rows["port"])]
+        sensors = [each for each in self.run.spec.robot.sensors if each.port in ports]
+        if not len(ticks) or not len(rows):
+            return None
+        if wheel := self._find_wheel(ports):
+            return self._measure_wheel(loop, wheel, ports[0], ticks)
+        mode = READING_MODES[rows["mode"][0]]
+        read = (
+            COLUMNS_BY_MODE.get(mode) if loop.attribute == "value" else COLUMNS.get(loop.attribute)
+        )
+        if len(sensors) != 1 or read is None:
+            return None
+        return self._measure_sensor(loop, sensors[0], read, ticks)
+
+    def _measure_wheel(self, loop: LoopEnd, wheel: str, port: str, ticks: Array) -> Series | None:
+        """Return the position in degrees of a wheel's motor at some ticks.
+
+        The result is None if the loop reads another attribute of it.
+        """
+        if loop.attribute not in TURN_COLUMNS:
+            return None
+        column, factor, unit = TURN_COLUMNS[loop.attribute]
+        values = self.records[f"{wheel}_position_{column}"][ticks] * factor
+        values = values * self._scales.get(port, 1.0)
+        return Series(f"the motor on {port}", port, column, unit, ticks, values)
+
+    def _measure_sensor(
+        self, loop: LoopEnd, sensor: SensorSpec, read: tuple[str, float, str], ticks: Array
+    ) -> Series | None:
+        """Return what a sensor measured at some ticks.
+
+        The result is None if it has no such measurement, or if computing it would be slow.
+        """
+        import numpy as np
+
+        spec, (column, factor, unit) = self.run.spec, read
+        if spec.world.noise.light or spec.world.pen_marks:
+            return None
+        if loop.attribute == "reflection" and sensor.port in HUB_PORTS:
+            # On a hub, the reflection is measured in all colours.
+            column = "mean_pc"
+        name = f"{sensor.name}_{column}"
+        columns = compute_column_values(
+            (name,), self.records[ticks], self.run, self.run.actions, self.mat, lambda _: self.mat
+        )
+        if name not in columns:
+            return None
+        values = columns[name] * factor
+        if read is RED:
+            values = np.floor(values * spec.profile.reflected_max / 100)
+        elif loop.attribute == "reflection":
+            values = np.floor(values)
+        device = f"the {_NOUNS.get(type(sensor), 'sensor')} {describe_place(sensor.port)}"
+        return Series(device, sensor.port, column, unit, ticks, values)
+
+    def _find_wheel(self, ports: list[str]) -> str:
+        """Return `left` or `right` if the only port is that of the wheel's motor.
+
+        The result is empty otherwise, or if the wheels have gears.
+        """
+        robot = self.run.spec.robot
+        wheels = {robot.left_port: "left", robot.right_port: "right"}
+        return wheels.get(ports[0], "") if len(ports) == 1 and robot.gear_ratio == 1 else ""
+
+
+def describe_place(port: str) -> str:
+    """Return where a sensor is in words, such as `on in1`."""
+    return "in the hub" if port == INSIDE else f"on {port}"
