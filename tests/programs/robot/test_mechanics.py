@@ -25,9 +25,26 @@ from tests.programs.robot.reading import USUAL, built, changed
             "t = MoveTank(OUTPUT_B, OUTPUT_C)\nt.set_polarity('inversed')\nt.set_polarity('normal')",
             (False, False),
         ),
+        (
+            "t = MoveTank(OUTPUT_B, OUTPUT_C)\n"
+            "for m in (t.left_motor, t.right_motor):\n    m.polarity = 'inversed'",
+            (True, True),
+        ),
+        (
+            "t = MoveTank(OUTPUT_B, OUTPUT_C)\n"
+            "for m in t.motors.values():\n    m.polarity = 'inversed'",
+            (True, True),
+        ),
+        (
+            "t = MoveTank(OUTPUT_B, OUTPUT_C)\nfor m in [t.left_motor]:\n    m.polarity = 'inversed'",
+            (True, False),
+        ),
         ("m = MediumMotor(OUTPUT_A)\nm.polarity = 'inversed'", (False, False)),
     ],
-    ids=["both", "one", "a motor of a tank", "to and fro", "no wheel"],
+    ids=[
+        *("both", "one", "a motor of a tank", "to and fro", "a loop over both"),
+        *("a loop over all of a tank", "a loop over one", "no wheel"),
+    ],
 )
 def test_a_wheel_with_polarity_turned_is_mounted_the_other_way_round(
     text: str, reversed_: tuple[bool, bool]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import field
 
 from tuisim.base.data_class import dataclass
@@ -236,20 +236,19 @@ class _MechanicsReader:
     # Movements
 
     def _find_calls(
-        self, nodes: Iterable[ast.AST], ports: Iterable[str], names: Iterable[str], scope: Scope
+        self, nodes: Iterable[ast.AST], ports: Iterable[str], names: Collection[str], scope: Scope
     ) -> list[ast.Call]:
         moved = {*ports}
-        known = {*names}
         return [
             node
             for node in nodes
             if isinstance(node, ast.Call)
             and isinstance(node.func, ast.Attribute)
-            and node.func.attr in known
+            and node.func.attr in names
             and moved & {*self._find_motors(node.func.value, scope)}
         ]
 
-    def _moves(self, scope: Scope, ports: Iterable[str], names: Iterable[str]) -> bool:
+    def _moves(self, scope: Scope, ports: Iterable[str], names: Collection[str]) -> bool:
         return bool(self._find_calls(scope.body, ports, names, scope))
 
     def _is_endless(self, base: ast.expr, scope: Scope) -> bool:
@@ -332,35 +331,31 @@ class _MechanicsReader:
 
         The result is empty if the expression stands for several motors in turn, as the variable of a loop does.
         """
-        calls = [
-            value.call
+        in_turn = any(
+            value.call and sum(device.call is value.call for device in self.mentions.devices) > 1
             for value in self.evaluation.values(node, scope)
             if isinstance(value, Instance)
-        ]
-        in_turn = any(
-            sum(device.call is call for device in self.mentions.devices) > 1
-            for call in calls
-            if call
         )
-        return [] if in_turn else self._find_motors(node, scope)
+        if in_turn:
+            return []
+        return [port for item in scope.list_items(node) for port in self._find_motors(item, scope)]
 
     def _find_motors(self, node: ast.expr, scope: Scope) -> list[str]:
         return self._find_ports(node, scope, DeviceKind.LARGE, DeviceKind.MEDIUM, DeviceKind.MOTOR)
 
     def _find_ports(self, node: ast.expr, scope: Scope, *kinds: DeviceKind) -> list[str]:
         """Return the ports of the devices of given kinds that an expression can be."""
-        if isinstance(node, ast.Attribute) and node.attr in ("left_motor", "right_motor"):
-            pairs = self._find_pairs(node.value, scope)
-            if pairs:
-                return [pair.left if node.attr == "left_motor" else pair.right for pair in pairs]
+        match node:
+            case ast.Attribute(value=base, attr="left_motor" | "right_motor" as side):
+                if pairs := self._find_pairs(base, scope):
+                    return [getattr(pair, side.removesuffix("_motor")) for pair in pairs]
         ports = [port for pair in self._find_pairs(node, scope) for port in (pair.left, pair.right)]
-        for value in self._evaluate(node, scope):
-            if isinstance(value, Instance):
-                ports += [
-                    device.port
-                    for device in self.mentions.devices
-                    if device.kind in kinds and device.makes(value)
-                ]
+        ports += [
+            device.port
+            for value in self._evaluate(node, scope)
+            for device in self.mentions.devices
+            if isinstance(value, Instance) and device.kind in kinds and device.makes(value)
+        ]
         return list(dict.fromkeys(ports))
 
     def _evaluate(self, node: ast.expr, scope: Scope) -> Sequence[Value]:

@@ -91,6 +91,20 @@ class Scope:
             scope = scope.outer
         return []
 
+    def list_items(self, node: ast.expr) -> Iterator[ast.expr]:
+        """Yield an expression, and the motors of pairs that it stands for in turn if it is the variable of a loop.
+
+        They are attributes in a list, or for all of a pair, as in `for motor in tank.motors.values()`, the pair.
+        """
+        yield node
+        for binding in self.names.get(node.id, ()) if isinstance(node, ast.Name) else ():
+            match binding:
+                case Bound(node=ast.Tuple(elts=items) | ast.List(elts=items), is_item=True):
+                    yield from (item for item in items if isinstance(item, ast.Attribute))
+                case Bound(node=ast.Call(func=ast.Attribute(attr="values") as func), is_item=True):
+                    if isinstance(func.value, ast.Attribute) and func.value.attr == "motors":
+                        yield func.value.value
+
     def prints(self, node: ast.AST) -> bool:
         """Return whether a node is in an argument of `print` or in an f-string of the scope."""
         return any(
