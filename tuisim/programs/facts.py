@@ -17,9 +17,26 @@ from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.programs.mistakes import find_fault, find_idle_definition, list_slips
 from tuisim.programs.questions import Question, QuestionReader, Word
+from tuisim.programs.remarks import (
+    Remarks,
+    Spin,
+    WrongUnit,
+    list_late_stops,
+    list_spins,
+    list_wrong_units,
+)
 from tuisim.programs.robot.scopes import Binding, Bound, Imported, Scope, build_scope
 from tuisim.programs.robot.source import Module, parse
 from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_reads, find_thresholds
+from tuisim.programs.uses import (
+    LoneStop,
+    LostValue,
+    UnwaitedMove,
+    list_lone_stops,
+    list_lost_values,
+    list_stale_reads,
+    list_unwaited_moves,
+)
 from tuisim.programs.waits import (
     LoopEnd,
     find_first_drive,
@@ -211,10 +228,13 @@ STRUCTURES: Mapping[str, Callable[[ast.Module], int]] = {
 
 __all__ = [
     "STRUCTURES",
+    "LoneStop",
     "LoopEnd",
+    "LostValue",
     "ProgramFacts",
     "ProgramThreshold",
     "Question",
+    "UnwaitedMove",
     "WheelTurn",
     "read_facts",
 ]
@@ -293,6 +313,46 @@ class ProgramFacts:
     def counts(self) -> tuple[tuple[int, LoopEnd], ...]:
         """The lines in loops that add 1 to a variable when a value passes a constant, each with that comparison."""
         return tuple(list_counts(self._short_tree, self._constants))
+
+    @cached_property
+    def stale_reads(self) -> tuple[LoopEnd, ...]:
+        """The uses, in loops, of readings that were taken before the loop."""
+        return tuple(list_stale_reads(self._short_tree, self._constants))
+
+    @cached_property
+    def lone_stops(self) -> tuple[LoneStop, ...]:
+        """The stops of motors that depend on one reading after their start."""
+        return tuple(list_lone_stops(self._short_tree, self._constants))
+
+    @cached_property
+    def lost_values(self) -> tuple[LostValue, ...]:
+        """The values that functions give to names of their own instead of to those of the program."""
+        return tuple(list_lost_values(self._short_tree))
+
+    @cached_property
+    def unwaited_moves(self) -> tuple[UnwaitedMove, ...]:
+        """The moves with an end for which the program does not wait."""
+        return tuple(list_unwaited_moves(self._short_tree))
+
+    @cached_property
+    def remarks(self) -> Remarks:
+        """What the comments, prints and names of the program say."""
+        return Remarks(self._program.text)
+
+    @cached_property
+    def spins(self) -> tuple[Spin, ...]:
+        """The moves of the wheels against each other, where the program says that it drives straight on."""
+        return tuple(list_spins(self._short_tree, self.remarks))
+
+    @cached_property
+    def wrong_units(self) -> tuple[WrongUnit, ...]:
+        """The calls with numbers in a unit that is probably not meant."""
+        return tuple(list_wrong_units(self._short_tree, self.remarks))
+
+    @cached_property
+    def late_stops(self) -> tuple[tuple[int, int, int], ...]:
+        """The lines of loops that end at a band, of the sleep after each, and of the stop after that."""
+        return tuple(list_late_stops(self._short_tree, self.remarks))
 
     def find_turns(self, line: int) -> tuple[float, str] | None:
         """Return by how much a call on a line turns a motor or both wheels, and the unit.

@@ -74,7 +74,7 @@ def _find_values(
     here = frame.line if frame else 0
     loops = [
         (node.lineno, node.end_lineno or 0)
-        for node in _walk_scope(scope)
+        for node in walk_scope(scope)
         if isinstance(node, _LOOPS)
     ]
     # These are the lines of the outermost loop around the current line.
@@ -104,12 +104,12 @@ def _find_values(
     return {line: tuple(names.values()) for line, names in sorted(values.items())}
 
 
-def _walk_scope(scope: ast.AST) -> Iterator[ast.AST]:
-    """Yield the syntax nodes of a scope, without the nodes inside functions, classes and comprehensions."""
+def walk_scope(scope: ast.AST) -> Iterator[ast.AST]:
+    """Yield the syntax nodes of a scope, without those of functions, classes and comprehensions in it."""
     for node in ast.iter_child_nodes(scope):
         if not isinstance(node, (*_OWN_NAMES, ast.FunctionDef, ast.AsyncFunctionDef)):
             yield node
-            yield from _walk_scope(node)
+            yield from walk_scope(node)
 
 
 def _list_assignments(scope: ast.Module | _Function) -> Iterator[tuple[int, str, str | None]]:
@@ -130,10 +130,10 @@ def _list_assignments(scope: ast.Module | _Function) -> Iterator[tuple[int, str,
         )
     constants: Mapping[ast.AST, str] = {
         target: repr(node.value.value)
-        for node in _walk_scope(scope)
+        for node in walk_scope(scope)
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)
         for target in node.targets
     }
-    for node in _walk_scope(scope):
+    for node in walk_scope(scope):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
             yield node.lineno, node.id, constants.get(node)

@@ -162,14 +162,26 @@ def _find_short_wait(tree: ast.Module) -> tuple[int, str] | None:
     """
     for node in ast.walk(tree):
         block = getattr(node, "body", [])
-        body = block if isinstance(block, list) else []
-        for calls in zip(body, body[1:], body[2:], strict=False):
-            match [getattr(call, "value", None) for call in calls]:
+        calls = [
+            getattr(step, "value", None) for step in (block if isinstance(block, list) else [])
+        ]
+        calls = [call for call in calls if not _is_print(call)]
+        for three in zip(calls, calls[1:], calls[2:], strict=False):
+            match three:
                 case (
                     ast.Call(func=ast.Attribute(attr=start)),
-                    ast.Call(func=ast.Name(id="wait"), args=[ast.Constant(int() | float() as ms)]),
+                    ast.Call(
+                        func=ast.Name(id="wait"), args=[ast.Constant(int() | float() as ms)]
+                    ) as wait,
                     ast.Call(func=ast.Attribute(attr=stop)),
                 ) if start in _STARTS and stop in _STOPS and ms <= _MAX_SLIP_MS:
                     text = f"wait({ms}) waits only {ms} ms: wait({ms * 1000:g}) waits {ms} s"
-                    return calls[1].lineno, text
+                    return wait.lineno, text
     return None
+
+
+def _is_print(call: ast.expr | None) -> bool:
+    match call:
+        case ast.Call(func=ast.Name(id="print") | ast.Attribute(attr="print")):
+            return True
+    return False

@@ -118,7 +118,7 @@ def find_turns(
         match node:
             case ast.Call(func=ast.Attribute(attr=attr), lineno=lineno) if lineno == line:
                 amounts = [*node.args, *(each.value for each in node.keywords)]
-                values = [_find_constant(each, constants) for each in amounts]
+                values = [find_constant(each, constants) for each in amounts]
                 numbers = [each for each in values if isinstance(each, int | float)]
                 if numbers and attr in ("on_for_rotations", "on_for_degrees"):
                     return numbers[-1], attr.removeprefix("on_for_")
@@ -197,11 +197,11 @@ def _find_end(
         if isinstance(test.op, ast.Or) is is_break:
             yield from (end for each in ends for end in each if end.attribute)
         return
-    comparison = _read_comparison(test, words, is_break=is_break)
+    comparison = read_comparison(test, words, is_break=is_break)
     if comparison is None:
         return
     value, ending, limit = comparison
-    name, set_line, read_line, attribute = "", 0, value.lineno, _find_attribute(value)
+    name, set_line, read_line, attribute = "", 0, value.lineno, find_attribute(value)
     is_silent = not _has_any(loop, ast.Call, ast.Attribute)
     has_exit = _has_any(loop, ast.Break, ast.Return)
     if isinstance(value, ast.Name):
@@ -210,8 +210,8 @@ def _find_end(
         inner = [value for line, value in values if loop.lineno <= line <= _find_last_line(loop)]
         if inner:
             read_line = inner[-1].lineno
-            attribute = _find_attribute(inner[-1])
-        if values and values[-1][0] < loop.lineno and _find_attribute(values[-1][1]):
+            attribute = find_attribute(inner[-1])
+        if values and values[-1][0] < loop.lineno and find_attribute(values[-1][1]):
             set_line = values[-1][0]
         is_silent = is_silent and bool(inner)
     if attribute or (name and not has_exit and (set_line or is_silent)):
@@ -219,7 +219,7 @@ def _find_end(
         yield LoopEnd(*lines, ending, limit, attribute, read_line, name, set_line, is_silent)
 
 
-def _read_comparison(
+def read_comparison(
     test: ast.expr, constants: Mapping[str, Word], *, is_break: bool
 ) -> tuple[ast.expr, str, Word] | None:
     """Return the compared expression, the operator with which the loop ends, and the constant; None for other tests."""
@@ -229,9 +229,9 @@ def _read_comparison(
         case _:
             return None
     ending = sign if is_break else _OPPOSITE.get(sign, "")
-    limit = _find_constant(right, constants)
+    limit = find_constant(right, constants)
     if limit is None:
-        left, limit, ending = right, _find_constant(left, constants), TURNED.get(ending, ending)
+        left, limit, ending = right, find_constant(left, constants), TURNED.get(ending, ending)
     return None if limit is None or not ending else _split_sum(left, ending, limit, constants)
 
 
@@ -243,9 +243,9 @@ def _split_sum(
         match value:
             case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
                 sign = 1 if isinstance(op, ast.Add) else -1
-                number = _find_constant(right, constants)
+                number = find_constant(right, constants)
                 if number is None and sign > 0:
-                    left, number = right, _find_constant(left, constants)
+                    left, number = right, find_constant(left, constants)
                 if not isinstance(number, int | float):
                     break
                 value, limit = left, limit - sign * number
@@ -275,7 +275,7 @@ def list_constants(tree: ast.Module) -> dict[str, Word]:
     constants: dict[str, Word] = {}
 
     def add(name: str, values: Iterable[ast.expr]) -> None:
-        words = {_find_constant(value, constants) for value in values}
+        words = {find_constant(value, constants) for value in values}
         if times_set[name] == 1 and len(words) == 1 and (word := words.pop()) is not None:
             constants[name] = word
 
@@ -300,13 +300,13 @@ def _is_set(node: ast.Name) -> bool:
     return not isinstance(node.ctx, ast.Load)
 
 
-def _find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None:
-    """Return the text or number of a constant expression, or a name in capitals such as `RED`; else None."""
+def find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None:
+    """Return the text or number of a constant expression, or a name in capitals such as `RED`; None for others."""
     match node:
         case ast.Name(id=name):
             return constants.get(name)
         case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
-            match _find_constant(left, constants), _find_constant(right, constants):
+            match find_constant(left, constants), find_constant(right, constants):
                 case (int() | float() as number, int() | float() as other) if other:
                     return OPERATORS[type(op)](number, other)
             return None
@@ -319,8 +319,8 @@ def _find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None
     return None
 
 
-def _find_attribute(node: ast.expr) -> str:
-    """Return the attribute or method that an expression reads, without an argument or with 0; else an empty text."""
+def find_attribute(node: ast.expr) -> str:
+    """Return the attribute or method that an expression reads, without an argument or with 0; empty for others."""
     match node:
         case (
             ast.Attribute(attr=attr)

@@ -46,6 +46,9 @@ _MIN_GAP_S = 1.5
 _LONGER = 3.0
 """The least factor between the duration of a loss and the longest time beside the line before it."""
 _SOON_S = 0.4
+_MIN_AWAY = 10
+_MIN_AWAY_SHARE = 0.8
+"""A robot that turns away from the line in so many ticks, and in this share of them, steers with the wrong sign."""
 _MIN_TURN_DPS = 5.0
 """A robot steers if its rate of turn changes by so much within this time."""
 
@@ -62,6 +65,8 @@ class LostLine:
     """Whether the line is black, and not just darker than its ground."""
     seen_again: tuple[str, int] | None
     """The sensor that saw the line again, and the tick; None if none did."""
+    turns_away: bool = False
+    """Whether the robot mostly turned away from that of two sensors, left and right, that saw the line."""
 
 
 def find_lost_lines(
@@ -94,7 +99,8 @@ def find_lost_lines(
         if is_looking and way.was_followed(number):
             # `zip` takes only the sensors, which come first among the points.
             dark = {eye.name: true for eye, true in zip(eyes, seen.is_dark, strict=False)}
-            yield _name_loss(dark, watched, left, hz, seen.is_black)
+            loss = _name_loss(dark, watched, left, hz, seen.is_black)
+            yield replace(loss, turns_away=_turns_away(records[: end + 1], eyes, dark, watched))
 
 
 def _name_loss(
@@ -116,6 +122,32 @@ def _name_loss(
     again = [(left + 1 + int(rest.argmax()), name) for name, rest in rests.items() if rest.any()]
     tick, name = min(again, default=(0, ""))
     return LostLine(max(0, seen[sensor]), sensor, is_black, (name, tick) if name else None)
+
+
+def _turns_away(
+    records: Array,
+    eyes: Sequence[ColorSensorSpec],
+    dark: Mapping[str, Bools],
+    watched: Collection[str],
+) -> bool:
+    """Return whether a robot turned away from the line most of the time at which one of two sensors saw it.
+
+    Args:
+        records: Telemetry up to the loss of the line.
+        eyes: The light sensors.
+        dark: For each of them, by name, whether it saw the line at each tick.
+        watched: The names of those that the program reads.
+    """
+    pair = sorted((eye for eye in eyes if eye.name in watched), key=lambda eye: eye.x_mm)
+    if len(pair) != 2 or not pair[0].x_mm < 0 < pair[1].x_mm:
+        return False
+    on_left, on_right = (dark[eye.name][: len(records) - 1] for eye in pair)
+    turned_deg = (np.diff(records["heading_deg"]) + 180) % 360 - 180
+    # A positive turn is one to the left.
+    towards_deg = turned_deg * (on_left.astype(int) - on_right)
+    towards_deg = towards_deg[towards_deg != 0]
+    is_away = towards_deg < 0
+    return len(is_away) >= _MIN_AWAY and bool(is_away.mean() >= _MIN_AWAY_SHARE)
 
 
 def is_on_mat(records: Array, sensor: ColorSensorSpec) -> Bools:

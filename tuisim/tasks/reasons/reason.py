@@ -23,6 +23,7 @@ from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.standstill import find_standstill
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.reasons.blank_mat import describe_blank_mat
+from tuisim.tasks.reasons.cut_moves import find_cut_move
 from tuisim.tasks.reasons.run_data import RunData
 from tuisim.tasks.reasons.subjects import Subject
 from tuisim.tasks.reasons.unmet import (
@@ -120,7 +121,7 @@ def describe_reasons(run: StoredRun) -> list[str]:
 
 
 _CAUSES = frozenset({ReasonKind.LOST, ReasonKind.MISTAKEN})
-_EFFECTS = frozenset({ReasonKind.BLOCKED, ReasonKind.LOST, ReasonKind.MISSED})
+_EFFECTS = frozenset({ReasonKind.BLOCKED, ReasonKind.LOST, ReasonKind.MISSED, ReasonKind.ENDED})
 
 
 def sort_by_cause(reasons: Sequence[Reason]) -> tuple[Reason, ...]:
@@ -135,7 +136,7 @@ def _rank(reason: Reason, reasons: Sequence[Reason]) -> ReasonKind:
         effects = [
             effect
             for effect in reasons
-            if effect.kind in _EFFECTS and reason.time_s < effect.time_s < reason.until_s
+            if effect.kind in _EFFECTS and reason.time_s <= effect.time_s < reason.until_s
         ]
     return min(
         ReasonKind.LOST if each.kind is ReasonKind.MISSED else each.kind
@@ -216,7 +217,7 @@ def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
 
     Args:
         data: The run.
-        has_waited: Whether it waited for a light sensor in vain; the one colour is then no further reason.
+        has_waited: Whether the program waited for a light sensor in vain: one colour only is then no further reason.
     """
     run = data.run
     if not run.spec.robot.color_sensors or run.telemetry.count < 2:
@@ -250,25 +251,29 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
 
 
 def _find_mistaken(data: RunData) -> Iterator[Reason]:
-    """Yield as reasons where the program probably did not do what was meant.
+    """Yield reasons at lines whose effect the author of the program probably did not mean.
 
-    The program turned the wheels by an angle meant for the robot, or counted a band twice.
+    The program turned the wheels by an angle meant for the robot, counted a band twice, or cut off a move, for example.
     """
+    from tuisim.tasks.reasons.misuses import find_misuses
+    from tuisim.tasks.reasons.named_aims import find_missed_aims
     from tuisim.tasks.reasons.unwatched import find_mistaken_turn
 
     if turn := find_mistaken_turn(data):
         time_s = turn.tick / data.hz
         yield Reason(ReasonKind.MISTAKEN, time_s, turn.line, turn.text)
-    if recount := find_recount(data):
-        yield Reason(ReasonKind.MISTAKEN, recount.time_s, recount.line, recount.text)
+    slips = (find_recount(data), find_cut_move(data), *find_misuses(data), *find_missed_aims(data))
+    for mistake in slips:
+        if mistake:
+            yield Reason(ReasonKind.MISTAKEN, mistake.time_s, mistake.line, mistake.text)
 
 
 def _find_ended(data: RunData) -> Iterator[Reason]:
-    """Yield as reasons that the program ended too early, did not stop its motors, or has a line that does nothing."""
+    """Yield a reason if the program ended too early or did not stop its motors, and for lines that do nothing."""
     run = data.run
     for line, text in data.facts.slips if run.end else ():
         yield Reason(ReasonKind.ENDED, run.time_s, line, text)
-    if early := find_early_end(data):
+    if (early := find_early_end(data)) and not find_cut_move(data):
         yield Reason(ReasonKind.ENDED, early.time_s, early.line, early.text)
     elif run.end and run.end.end is End.FINISHED and run.end.summary:
         text = f"the program {run.end.summary}"
@@ -293,6 +298,8 @@ def describe_end(run: StoredRun) -> str:
                 return _describe_loss(run, lost).words
     if missed := find_near_miss(data):
         return Reason(ReasonKind.LOST, missed.time_s, missed.line, missed.text).words
+    for mistake in _find_mistaken(data):
+        return mistake.words
     if early := find_early_end(data):
         return Reason(ReasonKind.ENDED, early.time_s, early.line, early.text).words
     return describe_blank_mat(run)
@@ -307,7 +314,10 @@ def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
     """Return the reason that a sensor lost the line; if a sensor saw the line again, the reason says when."""
     text = f"the {lost.sensor} sensor left the {'black' if lost.is_black else 'dark'}"
     if lost.seen_again is None:
-        return _explain_lost(run, lost.tick, f"{text}, and did not see it again")
+        text += ", and did not see it again"
+        if lost.turns_away:
+            text += ": the robot turned away from the sensor that saw it, so the steering has the wrong sign"
+        return _explain_lost(run, lost.tick, text)
     sensor, tick = lost.seen_again
     who = "it" if sensor == lost.sensor else f"the {sensor} one"
     hz = run.spec.profile.tick_hz

@@ -161,54 +161,71 @@ class RunData:
         ticks = ticks[(ticks >= stay[0]) & (ticks < stay[1])]
         if len(ticks) and is_between:
             ticks = np.arange(ticks[0], ticks[-1] + 1)
-        return self.measure_at(loop, ticks)
+        return self.measure_ticks(loop, ticks)
 
-    def measure_at(self, loop: LoopEnd, ticks: Array) -> Series | None:
+    def measure_ticks(self, loop: LoopEnd, ticks: Array) -> Series | None:
         """Return the values that a comparison would read at some ticks; None as in `measure`.
 
         Args:
             loop: The loop, or another comparison, whose sensor or motor the program read at least once.
             ticks: The ticks.
         """
+        return self.measure_records(loop, self.records[ticks], ticks) if len(ticks) else None
+
+    def measure_records(self, loop: LoopEnd, records: Array, ticks: Array) -> Series | None:
+        """Return the values that a comparison would read in some records; None as in `measure`.
+
+        Args:
+            loop: The loop, or another comparison, whose sensor or motor the program read at least once.
+            records: The records, structured as `TICK_FIELDS`; they need not be those of the run.
+            ticks: The ticks of the records.
+        """
         import numpy as np
 
         rows = self.readings[self.readings["line"] == loop.read_line]
         ports = [READING_PORTS[port] for port in np.unique(rows["port"])]
         sensors = [each for each in self.run.spec.robot.sensors if each.port in ports]
-        if not len(ticks) or not len(rows):
+        if not len(records) or not len(rows):
             return None
         if wheel := self._find_wheel(ports):
-            return self._measure_wheel(loop, wheel, ports[0], ticks)
+            return self._measure_wheel(loop, wheel, ports[0], records, ticks)
         mode = READING_MODES[rows["mode"][0]]
         read = (
             COLUMNS_BY_MODE.get(mode) if loop.attribute == "value" else COLUMNS.get(loop.attribute)
         )
         if len(sensors) != 1 or read is None:
             return None
-        return self._measure_sensor(loop, sensors[0], read, ticks)
+        values = self._measure_sensor(loop, sensors[0], read, records)
+        if values is None:
+            return None
+        sensor, (column, _, unit) = sensors[0], read
+        device = f"the {_NOUNS.get(type(sensor), 'sensor')} {describe_place(sensor.port)}"
+        return Series(device, sensor.port, column, unit, ticks, values)
 
-    def _measure_wheel(self, loop: LoopEnd, wheel: str, port: str, ticks: Array) -> Series | None:
-        """Return the position in degrees of a wheel's motor at some ticks.
+    def _measure_wheel(
+        self, loop: LoopEnd, wheel: str, port: str, records: Array, ticks: Array
+    ) -> Series | None:
+        """Return the position in degrees of a wheel's motor in some records.
 
-        The result is None if the loop reads another attribute of it.
+        The result is None if the loop reads another attribute of the motor.
         """
         if loop.attribute not in TURN_COLUMNS:
             return None
         column, factor, unit = TURN_COLUMNS[loop.attribute]
-        values = self.records[f"{wheel}_position_{column}"][ticks] * factor
+        values = records[f"{wheel}_position_{column}"] * factor
         values = values * self._scales.get(port, 1.0)
         return Series(f"the motor on {port}", port, column, unit, ticks, values)
 
     def _measure_sensor(
-        self, loop: LoopEnd, sensor: SensorSpec, read: tuple[str, float, str], ticks: Array
-    ) -> Series | None:
-        """Return what a sensor measured at some ticks.
+        self, loop: LoopEnd, sensor: SensorSpec, read: tuple[str, float, str], records: Array
+    ) -> Array | None:
+        """Return what a sensor measures in some records.
 
         The result is None if it has no such measurement, or if computing it would be slow.
         """
         import numpy as np
 
-        spec, (column, factor, unit) = self.run.spec, read
+        spec, (column, factor, _) = self.run.spec, read
         if spec.world.noise.light or spec.world.pen_marks:
             return None
         if loop.attribute == "reflection" and sensor.port in HUB_PORTS:
@@ -216,17 +233,16 @@ class RunData:
             column = "mean_pc"
         name = f"{sensor.name}_{column}"
         columns = compute_column_values(
-            (name,), self.records[ticks], self.run, self.run.actions, self.mat, lambda _: self.mat
+            (name,), records, self.run, self.run.actions, self.mat, lambda _: self.mat
         )
         if name not in columns:
             return None
-        values = columns[name] * factor
+        values: Array = columns[name] * factor
         if read is RED:
             values = np.floor(values * spec.profile.reflected_max / 100)
         elif loop.attribute == "reflection":
             values = np.floor(values)
-        device = f"the {_NOUNS.get(type(sensor), 'sensor')} {describe_place(sensor.port)}"
-        return Series(device, sensor.port, column, unit, ticks, values)
+        return values
 
     def _find_wheel(self, ports: list[str]) -> str:
         """Return `left` or `right` if the only port is that of the wheel's motor.

@@ -191,8 +191,8 @@ class _Search:
             elif not isinstance(loop.limit, str):
                 first = series.values[0]
                 if COMPARE[loop.operator](first, loop.limit):
-                    goal = _name_goal(loop, f"{loop.limit:g}{series.unit}")
-                    text = f"{text} {_round(first)}{series.unit}, already {goal}"
+                    goal = name_goal(loop, f"{loop.limit:g}{series.unit}")
+                    text = f"{text} {round_value(first)}{series.unit}, already {goal}"
                     yield Unmet(series.ticks[0] / self._hz, loop.line, text)
 
     def find_stale_angles(self) -> Iterator[Unmet]:
@@ -212,7 +212,7 @@ class _Search:
             stale = begins[is_met[begins]]
             if len(stale) and not is_met[0]:
                 text = (
-                    f"{series.device} was at {_round(series.values[stale[0]])}{series.unit} already when "
+                    f"{series.device} was at {round_value(series.values[stale[0]])}{series.unit} already when "
                     "the loop began again, so that it ended at once: reset the angle before the loop"
                 )
                 yield Unmet(series.ticks[stale[0]] / self._hz, loop.line, text)
@@ -229,7 +229,7 @@ class _Search:
             again = is_met[1:] & is_met[:-1] & moves
             if again.any():
                 first_s, next_s = series.ticks[again.argmax() :][:2] / self._hz
-                goal = _name_goal(test, f"{test.limit:g}{series.unit}")
+                goal = name_goal(test, f"{test.limit:g}{series.unit}")
                 text = (
                     f"this line counted at {first_s:.2f} s and {next_s:.2f} s on the same band: "
                     f"it counts each reading that is {goal}, not each band"
@@ -279,7 +279,7 @@ class _Search:
         if loop.is_silent and not loop.name:
             return "its endless loop to end, in which nothing waits, reads or breaks"
         if loop.set_line or loop.is_silent:
-            goal = _name_goal(loop, str(loop.limit))
+            goal = name_goal(loop, str(loop.limit))
             why = (
                 f"but nothing changes it after line {loop.set_line}"
                 if loop.set_line
@@ -293,7 +293,7 @@ class _Search:
             return describe_colors(loop, series.device, series.values, self._has_codes)
         if isinstance(loop.limit, str) or COMPARE[loop.operator](series.values, loop.limit).any():
             return ""
-        goal = _name_goal(loop, f"{loop.limit:g}{series.unit}")
+        goal = name_goal(loop, f"{loop.limit:g}{series.unit}")
         skip = self._find_skip(loop, stay, series) if series.column in LIGHT_COLUMNS else None
         came = skip[1] if skip else self._name_nearest(loop, series)
         return f"{series.device} to read {goal}: {came}"
@@ -306,15 +306,15 @@ class _Search:
         values = series.values
         nearest = int(abs(values - loop.limit).argmin())
         if values[nearest] != values[0] and values[nearest] == values[-1]:
-            return f"it went from {_round(values[0])} to {_round(values[-1])} only"
+            return f"it went from {round_value(values[0])} to {round_value(values[-1])} only"
         if values[nearest] != values[0]:
-            return f"{_round(values[nearest])} at {series.ticks[nearest] / self._hz:.2f} s came nearest"
+            return f"{round_value(values[nearest])} at {series.ticks[nearest] / self._hz:.2f} s came nearest"
         if values[-1] == values[0]:
-            return f"it stayed at {_round(values[0])}"
-        return f"it went from {_round(values[0])} to {_round(values[-1])}"
+            return f"it stayed at {round_value(values[0])}"
+        return f"it went from {round_value(values[0])} to {round_value(values[-1])}"
 
     def _find_miss(self, loop: LoopEnd, series: Series) -> Unmet | None:
-        """Return where the light came within `_NEAR` % of a loop's limit without passing it; None if it did nowhere.
+        """Return where the light came within `_NEAR` % of a loop's limit without passing it; None if it did not.
 
         Before and after, the light was at least `_AWAY` % away from the limit.
         """
@@ -332,8 +332,8 @@ class _Search:
         nearest = first + int(misses[first : last + 1].argmin())
         if misses[nearest] > _NEAR:
             return None
-        goal = _name_goal(loop, f"{loop.limit:g}")
-        text = f"{_round(values[nearest])} just missed the {goal} that it waited for"
+        goal = name_goal(loop, f"{loop.limit:g}")
+        text = f"{round_value(values[nearest])} just missed the {goal} that it waited for"
         return Unmet(ticks[nearest] / self._hz, loop.line, text)
 
     def _find_skip(
@@ -363,16 +363,23 @@ class _Search:
             return None
         lines, counts = np.unique(self._records["line"][start + 1 : end], return_counts=True)
         what = (
-            f"it was {_round(every.values[first])}{every.unit} at {tick / self._hz:.2f} s, but the program "
+            f"it was {round_value(every.values[first])}{every.unit} at {tick / self._hz:.2f} s, but the program "
             f"read it only at {start / self._hz:.2f} s and {end / self._hz:.2f} s: "
             f"line {lines[counts.argmax()]} takes too long"
         )
         return tick, what
 
 
-def _round(value: float) -> str:
+def round_value(value: float) -> str:
+    """Return a value as text, with at most two decimals."""
     return f"{round(value, 2):g}"
 
 
-def _name_goal(loop: LoopEnd, limit: str) -> str:
+def name_goal(loop: LoopEnd, limit: str) -> str:
+    """Return in words for which values a comparison is true.
+
+    Args:
+        loop: The comparison.
+        limit: Its limit, with the unit.
+    """
     return _WORDS[loop.operator].format(limit)

@@ -1,0 +1,126 @@
+"""How programs use what they read and set, by their text."""
+
+from __future__ import annotations
+
+from tests.cases import cases
+from tuisim.base.source import Program
+from tuisim.programs.facts import ProgramFacts
+
+READ = "light = eye.reflected_light_intensity\n"
+
+
+def read(text: str) -> ProgramFacts:
+    return ProgramFacts(Program("task.py", text))
+
+
+@cases(
+    "text, uses",
+    {
+        "a comparison": (f"{READ}while True:\n    if light < 20:\n        pass\n", [(3, "<")]),
+        "a condition": (f"{READ}while light > 20 and go():\n    pass\n", [(2, ">")]),
+        "a truth": ("hit = touch.is_pressed\nwhile not hit:\n    pass\n", [(2, "")]),
+        "steering by a name computed from it": (
+            f"{READ}for i in range(9):\n    turn = 2 * (light - 50)\n    tank.on(turn, 20)\n",
+            [(4, "")],
+        ),
+        "in a function": (
+            f"def go():\n    {READ}    while True:\n        tank.on(light, 20)\n",
+            [(4, "")],
+        ),
+        "read again": (f"{READ}while light > 20:\n    {READ}", []),
+        "a start value": ("start = gyro.angle\nwhile gyro.angle - start < 90:\n    pass\n", []),
+        "a start value to steer by": (
+            "aim = gyro.angle\nwhile True:\n    tank.on(aim - gyro.angle, 20)\n",
+            [],
+        ),
+        "changed by a function": (
+            f"def look():\n    global light\n    {READ}{READ}while light > 20:\n    look()\n",
+            [],
+        ),
+        "a number": ("limit = 20\nwhile True:\n    if limit < 30:\n        pass\n", []),
+    },
+)
+def test_a_reading_that_a_loop_does_not_renew_is_found(
+    text: str, uses: list[tuple[int, str]]
+) -> None:
+    assert [(use.line, use.operator) for use in read(text).stale_reads] == uses
+
+
+@cases(
+    "text, lines",
+    {
+        "at once": ("tank.on(20, 20)\nif us.distance() < 9:\n    tank.off()\n", (2, 2, 3, 1, True)),
+        "a reading with a name": (
+            f"tank.on(20, 20)\n{READ}sleep(2)\nif light < 9:\n    tank.off()\n",
+            (4, 2, 5, 1, False),
+        ),
+        "in a loop that asks again": (
+            "while True:\n    tank.on(20, 20)\n    if touch.pressed():\n        tank.off()\n",
+            None,
+        ),
+        "after a move that has ended": (
+            "tank.on(20, 20)\ntank.on_for_seconds(5, 5, 1)\nif touch.pressed():\n    tank.off()\n",
+            None,
+        ),
+        "with another way": (
+            "tank.on(20, 20)\nif touch.pressed():\n    tank.off()\nelse:\n    tank.on(5, 5)\n",
+            None,
+        ),
+    },
+)
+def test_a_stop_that_depends_on_one_reading_is_found(text: str, lines: object) -> None:
+    stops = [
+        (stop.line, stop.read_line, stop.stop_line, stop.start_line, stop.is_direct)
+        for stop in read(text).lone_stops
+    ]
+    assert stops == ([lines] if lines else [])
+
+
+LOST = "count = 0\ndef look():\n    {}\nlook()\nprint(count)\n"
+
+
+@cases(
+    "text, line",
+    {
+        "assigned": (LOST.format("count = 1"), 3),
+        "assigned and printed": (LOST.format("count = 1; print(count)"), 3),
+        "returned to nobody": (LOST.format("count = 1; return count"), 3),
+        "global": (LOST.format("global count; count = 1"), None),
+        "used": (LOST.format("count = 1; go(count)"), None),
+        "returned": (
+            LOST.format("count = 1; return count").replace("\nlook()", "\nx = look()"),
+            None,
+        ),
+        "never called": (LOST.format("count = 1").replace("\nlook()", "\n"), None),
+        "not read afterwards": (
+            LOST.format("count = 1").replace("look()\nprint(count)", "print(count)\nlook()"),
+            None,
+        ),
+        "a parameter": (LOST.format("count = 1").replace("look()", "look(count)"), None),
+    },
+)
+def test_a_value_that_a_function_gives_to_a_name_of_its_own_is_found(
+    text: str, line: int | None
+) -> None:
+    assert [lost.line for lost in read(text).lost_values] == ([line] if line else [])
+
+
+@cases(
+    "text, moves",
+    {
+        "cut off by the next": ("t.on_for_seconds(9, 9, 1, block=False)\nt.turn(9)\n", [(1, 2)]),
+        "after a pause": ("t.straight(9, wait=False)\nwait(9)\nprint(1)\nt.turn(9)\n", [(1, 4)]),
+        "that of the same motor first": (
+            "a.on_for_degrees(9, 9, block=False)\nb.on_for_degrees(9, 9)\na.on(9)\n",
+            [(1, 3)],
+        ),
+        "waited for": ("a.run_angle(9, 9, wait=False)\na.wait_while(1)\na.run(9)\n", [(1, 0)]),
+        "looked at": (
+            "a.run_angle(9, 9, wait=False)\nwhile a.busy():\n    pass\na.run(9)\n",
+            [(1, 0)],
+        ),
+        "blocking": ("a.run_angle(9, 9, wait=True)\na.run(9)\n", []),
+    },
+)
+def test_a_move_for_which_nobody_waits_is_found(text: str, moves: list[tuple[int, int]]) -> None:
+    assert [(move.line, move.next_line) for move in read(text).unwaited_moves] == moves

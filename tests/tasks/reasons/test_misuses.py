@@ -1,0 +1,125 @@
+"""Readings that are used too often, questions that are asked too seldom, and values that are lost."""
+
+from __future__ import annotations
+
+from tests.cases import cases
+from tests.tasks.reasons.runs import run_text
+from tuisim.tasks.reasons.reason import ReasonKind, describe_end, find_reasons
+
+ONCE = """\
+# %%sim_magic_preloaded -b Grey_bands
+import time
+light = colorLeft.reflected_light_intensity_pc
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+for step in range(30):
+    if light < 90:
+        tank_drive.off()
+    time.sleep(0.05)
+tank_drive.off()
+"""
+STEERS = """\
+# %%sim_magic_preloaded -b Grey_bands
+light = colorLeft.reflected_light_intensity_pc
+while get_clock() < 4:
+    error = light - 100
+    tank_turn.on(error, SpeedPercent(50))
+"""
+STUCK = """\
+# %%sim_magic -r Explorer --profile ev3 -b Empty_Map
+from ev3dev2.sensor.lego import TouchSensor
+hit = TouchSensor('in1').is_pressed
+while not hit:
+    print(1)
+"""
+ASKS = """\
+# %%sim_magic_preloaded -b Empty_Map -o Wall -x 400 -y 600
+import time
+tank_drive.on(SpeedPercent(30), SpeedPercent(30))
+if ultrasonic.distance_centimeters < {}:
+    tank_drive.off()
+time.sleep(1)
+"""
+TOUCHES = """\
+# %%sim_magic -r Explorer --profile ev3 -b Empty_Map
+from time import sleep
+from ev3dev2.motor import MoveTank, OUTPUT_B, OUTPUT_C
+from ev3dev2.sensor.lego import TouchSensor
+tank = MoveTank(OUTPUT_B, OUTPUT_C)
+bumper = TouchSensor('in1')
+tank.on(20, 20)
+sleep(0.5)
+if bumper.is_pressed:
+    tank.off()
+{}
+"""
+LOST = """\
+# %%sim_magic_preloaded -b Grey_bands
+speed = 20
+def go_faster():
+    speed = 60
+tank_drive.on_for_seconds(SpeedPercent(speed), SpeedPercent(speed), 0.5)
+go_faster()
+tank_drive.on_for_seconds(SpeedPercent(speed), SpeedPercent(speed), 0.5)
+"""
+WRONG = {
+    "compared again and again": (
+        ONCE,
+        "0.61 s, line 6: the colour sensor on in2 saw 89.02 % here, but line 3 read it only once, at "
+        "0.01 s (100 %), before the loop in line 5: read it inside the loop",
+    ),
+    "steered by": (STEERS, "s, line 5: the colour sensor on in2 saw "),
+    "asked once": (
+        ASKS.format(15),
+        "0.01 s, line 4: this line asked only once: the ultrasonic sensor on in1 read 108 cm, not less "
+        "than 15 cm; so line 5 did not stop what line 3 started: a while loop asks until it comes",
+    ),
+    "asked once, never stopped": (
+        TOUCHES.format(""),
+        "line 9: this line asked only once, and the answer was no; so line 10 did not stop what line 7",
+    ),
+    "a name of a function": (
+        LOST,
+        "0.51 s, line 4: speed is a name of go_faster() alone here, so the speed of line 2 stays as it "
+        "was: global speed in go_faster() changes that",
+    ),
+}
+
+
+@cases("text, words", WRONG)
+def test_a_misuse_is_named_with_its_instant_line_and_value(text: str, words: str) -> None:
+    run = run_text(text, limit_s=5.0)
+    first = find_reasons(run)[0]
+    assert first.kind is ReasonKind.MISTAKEN
+    assert words in first.words
+    assert words in describe_end(run)
+
+
+def test_a_truth_that_never_changes_is_named_beside_the_wait_for_it() -> None:
+    waited, read_once = find_reasons(run_text(STUCK, limit_s=5.0))
+    assert waited.kind is ReasonKind.BLOCKED
+    assert (
+        "line 4: hit never changes: line 3 read it only once, at 0.00 s, before" in read_once.words
+    )
+
+
+@cases(
+    "text",
+    {
+        "the light stays as it was": ONCE.replace("< 90", "< 20"),
+        "read inside": ONCE.replace(
+            "    if light", "    light = colorLeft.reflected_light_intensity_pc\n    if light"
+        ),
+        "also read inside": ONCE.replace("    time", "    print(colorLeft.color)\n    time"),
+        "true at once": ASKS.format(150),
+        "asked twice": ASKS.format(15).replace(
+            "time.sleep(1)",
+            "while ultrasonic.distance_centimeters > 100:\n    pass\ntank_drive.off()",
+        ),
+        "stopped anyway": TOUCHES.format("sleep(0.2)\ntank.off()"),
+        "global": LOST.replace("    speed = 60", "    global speed\n    speed = 60"),
+    },
+)
+def test_a_program_that_means_it_is_not_blamed(text: str) -> None:
+    run = run_text(text, limit_s=10.0)
+    assert find_reasons(run) == ()
+    assert describe_end(run) == ""

@@ -1,0 +1,64 @@
+"""What programs say that they mean, and what their runs did."""
+
+from __future__ import annotations
+
+from tests.cases import cases
+from tests.tasks.reasons.runs import run_text
+from tuisim.tasks.reasons.reason import ReasonKind, find_reasons
+
+BANDS = "# %%sim_magic_preloaded -b Grey_bands\nimport time\n"
+LIGHT = "colorLeft.reflected_light_intensity_pc"
+UNTIL = f"{BANDS}tank_drive.on(50, 50)\nwhile {LIGHT} > {{}}:\n    pass\n"
+BASE = """\
+# %%sim_magic -b Empty_Map -x 400 -y 500
+from pybricks.ev3devices import Motor
+from pybricks.parameters import Port
+from pybricks.robotics import DriveBase
+base = DriveBase(Motor(Port.B), Motor(Port.C), 56, 180)
+"""
+MISSED = {
+    "another band": (
+        UNTIL.format(90) + "tank_drive.off()\nprint('I am on black')\n",
+        "line 4: light of 89.02 % ended this loop, since it is 90 % or less, but it is not black: that reads 0 % "
+        "and comes 1204 mm further on",
+    ),
+    "a stop that comes late": (
+        UNTIL.format(60).replace("50, 50", "80, 80")
+        + "print('grey')\ntime.sleep(1)\ntank_drive.off()\n",
+        "line 7: after the light of 51 % at 2.64 s, this line let the robot drive on for 4",
+    ),
+    "wheels against each other": (
+        f"{BANDS}# straight on\ntank_drive.on_for_seconds(30, -30, 1)\n",
+        "line 4: the robot turned on the spot here, by 80°",
+    ),
+    "cm for mm": (
+        f"{BASE}base.straight(50)  # 50 cm\n",
+        "line 6: straight(50) drives 50 mm: straight(500) drives 50 cm",
+    ),
+    "ms for s": (
+        f"{BANDS}tank_drive.on(5, 5)\ntime.sleep(1000)\n",
+        "line 4: sleep(1000) waits 1000 s, not ms: sleep(1) waits 1000 ms",
+    ),
+}
+
+
+@cases("text, words", MISSED)
+def test_what_a_run_did_otherwise_than_its_words_say_is_told(text: str, words: str) -> None:
+    first = find_reasons(run_text(text, limit_s=5.0))[0]
+    assert first.kind is ReasonKind.MISTAKEN
+    assert words in first.words
+
+
+@cases(
+    "text",
+    {
+        "black": UNTIL.format(10) + "tank_drive.off()\nprint('I am on black')\n",
+        "the first grey": UNTIL.format(90) + "tank_drive.off()\nprint('grey, not black')\n",
+        "on to the middle of a band": UNTIL.format(90)
+        + "print('grey')\ntime.sleep(0.1)\ntank_drive.off()\n",
+        "a turn": f"{BANDS}# turn right\ntank_drive.on_for_seconds(30, -30, 1)\n",
+        "another number": f"{BASE}base.straight(500)  # 50 cm\n",
+    },
+)
+def test_a_run_that_did_as_it_says_has_no_reason(text: str) -> None:
+    assert find_reasons(run_text(text)) == ()

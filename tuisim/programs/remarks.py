@@ -1,0 +1,212 @@
+"""What a program's comments, prints and names say that it means, beside the lines that should do it."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.source import source_lines
+from tuisim.programs.robot.words import is_forwards
+
+_MAGIC = "sim_magic"
+"""Lines with this set up the run: their names, such as those of mats, say nothing about the program."""
+_COLORS = {
+    "black": re.compile(r"\b(black|schwarz\w*|noir|negro)\b", re.IGNORECASE),
+    "white": re.compile(r"\b(white|weiß\w*|weiss\w*|blanc|blanco)\b", re.IGNORECASE),
+}
+_OTHERS = re.compile(
+    r"\b(gr[ea]y\w*|grau\w*|gris|not|no|nicht|kein\w*|before|first|next|vor|edge|between)\b",
+    re.IGNORECASE,
+)
+"""Words with which a remark is not, or not only, about a black or white band."""
+_ANY_BAND = re.compile(
+    r"\b(black|white|gr[ea]y|dark|band|line|schwarz|weiß|grau|linie)\b", re.IGNORECASE
+)
+_STRAIGHT = re.compile(r"\bstraight\b", re.IGNORECASE)
+_TURNS = re.compile(r"turn|spin|rotat|dance|circle|dreh|kreis|around", re.IGNORECASE)
+_BEFORE_LINES = 2
+_AFTER_LINES = 3
+"""A remark is about a loop if it is so near to it."""
+
+
+class Remarks:
+    """The lines of a program, with what they say.
+
+    Args:
+        text: The program.
+    """
+
+    def __init__(self, text: str) -> None:
+        self._lines = source_lines(text)
+
+    def find_color(self, first_line: int, last_line: int) -> str:
+        """Return `black` or `white` if the lines around a loop name only this colour; empty otherwise.
+
+        Args:
+            first_line: The first line of the loop.
+            last_line: The last one.
+        """
+        lines = self._list_lines(first_line - _BEFORE_LINES, last_line + _AFTER_LINES)
+        text = " ".join(lines)
+        colors = [name for name, words in _COLORS.items() if words.search(text)]
+        return colors[0] if len(colors) == 1 and not _OTHERS.search(text) else ""
+
+    def names_band(self, first_line: int, last_line: int) -> bool:
+        """Return whether some lines name a band of the mat."""
+        return bool(_ANY_BAND.search(" ".join(self._list_lines(first_line, last_line))))
+
+    def goes_straight(self, line: int) -> bool:
+        """Return whether a line, or a comment above it, says that the robot drives straight on."""
+        above = [each for each in self._list_lines(line - 1, line - 1) if each.strip()[:1] == "#"]
+        text = " ".join([*above, *self._list_lines(line, line)])
+        return (is_forwards(text) or bool(_STRAIGHT.search(text))) and not _TURNS.search(text)
+
+    def has_centimetres(self, line: int, number: int) -> bool:
+        """Return whether a line, or the one above it, has a number with the unit cm."""
+        text = " ".join(self._list_lines(line - 1, line))
+        return bool(re.search(rf"\b{number}\s?cm\b", text))
+
+    def _list_lines(self, first_line: int, last_line: int) -> list[str]:
+        lines = self._lines[max(0, first_line - 1) : last_line]
+        return [line for line in lines if _MAGIC not in line]
+
+
+@dataclass(frozen=True, slots=True)
+class Spin:
+    """Moves of the two wheels against each other, where the program says that it drives straight on."""
+
+    first_line: int
+    last_line: int
+    words: str
+    """The two speeds."""
+
+
+def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[Spin]:
+    """Yield the moves of both wheels in opposite directions that should drive the robot straight on."""
+    forwards = {
+        part
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef) and is_forwards(node.name)
+        for part in ast.walk(node)
+    }
+    for node in ast.walk(tree):
+        for name in ("body", "orelse"):
+            block = getattr(node, name, None)
+            for first, second in pairwise([*block, ast.Pass()] if isinstance(block, list) else []):
+                speeds = _list_speeds(first) or _list_speed(first) + _list_speed(second)
+                if len(speeds) == 2 and speeds[0] == -speeds[1] != 0:
+                    last = first if _list_speeds(first) else second
+                    if first in forwards or remarks.goes_straight(first.lineno):
+                        words = f"{speeds[0]:g} and {speeds[1]:g}"
+                        yield Spin(first.lineno, last.end_lineno or last.lineno, words)
+
+
+def _list_speeds(statement: ast.stmt) -> list[float]:
+    """Return both speeds of a statement that moves two motors, as `tank.on(30, -30)`; empty for another one."""
+    match statement:
+        case ast.Expr(value=ast.Call(func=ast.Attribute(attr=method), args=[left, right, *_])):
+            if method in ("on", "on_for_seconds", "on_for_rotations", "on_for_degrees"):
+                speeds = [*_list_numbers(left), *_list_numbers(right)]
+                return speeds if len(speeds) == 2 and speeds[0] == -speeds[1] else []
+    return []
+
+
+def _list_speed(statement: ast.stmt) -> list[float]:
+    """Return the speed of a statement that starts one motor, as `motor.on(30)`; empty for another one."""
+    match statement:
+        case ast.Expr(value=ast.Call(func=ast.Attribute(attr="on" | "run"), args=[speed])):
+            return _list_numbers(speed)
+    return []
+
+
+def _list_numbers(node: ast.expr) -> list[float]:
+    match node:
+        case ast.Constant(value=int() | float() as number):
+            return [float(number)]
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return [-number for number in _list_numbers(operand)]
+        case ast.Call(func=ast.Name(id=name), args=[speed]) if name.startswith("Speed"):
+            return _list_numbers(speed)
+    return []
+
+
+@dataclass(frozen=True, slots=True)
+class WrongUnit:
+    """A number in a call that is probably in another unit, or at another place, than the call has it."""
+
+    line: int
+    text: str
+    is_endless: bool = False
+    """Whether it is only wrong if the run was cut off in this line."""
+
+
+_MIN_SLEEP = 100
+"""Who lets a robot sleep for so many seconds meant milliseconds."""
+_MIN_SPEED = 15
+_MAX_TIME = 10
+"""Equal numbers from here on are speeds, one up to here before them is a time."""
+
+
+def list_wrong_units(tree: ast.Module, remarks: Remarks) -> Iterator[WrongUnit]:
+    """Yield the calls with numbers in a unit, or an order, that is probably not meant."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(func=ast.Attribute(attr="straight"), args=[number, *_]) if (
+                remarks.has_centimetres(node.lineno, _round(number))
+            ):
+                way = _round(number)
+                text = f"straight({way}) drives {way} mm: straight({way * 10}) drives {way} cm"
+                yield WrongUnit(node.lineno, text)
+            case ast.Call(
+                func=ast.Name(id="sleep") | ast.Attribute(attr="sleep"),
+                args=[ast.Constant(value=int() | float() as seconds)],
+            ) if seconds >= _MIN_SLEEP:
+                text = f"sleep({seconds}) waits {seconds} s, not ms: sleep({seconds / 1000:g}) waits {seconds} ms"
+                yield WrongUnit(node.lineno, text, is_endless=True)
+            case ast.Call(func=ast.Attribute(attr="on_for_seconds"), args=[*args], keywords=[]):
+                if text := _describe_order([_list_numbers(arg) for arg in args]):
+                    yield WrongUnit(node.lineno, text, is_endless=True)
+
+
+def _round(node: ast.expr) -> int:
+    numbers = _list_numbers(node)
+    return round(abs(numbers[0])) if numbers else 0
+
+
+def _describe_order(numbers: Sequence[list[float]]) -> str:
+    """Return what is wrong with the numbers of `on_for_seconds`, if the time comes first; empty otherwise."""
+    match numbers:
+        case [[seconds], [left], [right]] if (
+            left == right >= _MIN_SPEED and 0 < seconds <= _MAX_TIME
+        ):
+            speeds = f"{seconds:g} % on the left and {left:g} % on the right for {right:g} s"
+        case [[seconds], [speed]] if speed >= _MIN_SPEED and 0 < seconds <= _MAX_TIME:
+            speeds = f"{seconds:g} % for {speed:g} s"
+        case _:
+            return ""
+    return f"on_for_seconds takes the time last: this is {speeds}"
+
+
+def list_late_stops(tree: ast.Module, remarks: Remarks) -> Iterator[tuple[int, int, int]]:
+    """Yield the lines of loops, of the sleep after each that names a band, and of the stop of motors after that."""
+    for node in ast.walk(tree):
+        block = getattr(node, "body", None)
+        statements = block if isinstance(block, list) else []
+        for index, loop in enumerate(statements):
+            rest = statements[index + 1 : index + 4]
+            names = [_name_call(each) for each in rest]
+            if isinstance(loop, ast.While) and "sleep" in names[:-1]:
+                place = names.index("sleep")
+                is_plain = set(names[:place]) <= {"print"} and names[place + 1] in ("off", "stop")
+                if is_plain and remarks.names_band(loop.end_lineno or 0, rest[place].lineno):
+                    yield loop.lineno, rest[place].lineno, rest[place + 1].lineno
+
+
+def _name_call(statement: ast.stmt) -> str:
+    match statement:
+        case ast.Expr(value=ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name))):
+            return name
+    return ""

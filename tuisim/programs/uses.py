@@ -1,0 +1,395 @@
+"""How a program uses what it reads and sets: readings that it never renews, and names that are not those it means."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TypeGuard
+
+from tuisim.base.data_class import dataclass
+from tuisim.programs.line_values import walk_scope
+from tuisim.programs.questions import Word
+from tuisim.programs.waits import LoopEnd, find_attribute, read_comparison
+
+_Function = ast.FunctionDef | ast.AsyncFunctionDef
+_Loop = ast.For | ast.While
+STARTS = ("on", "run_forever", "run", "drive", "dc", "run_direct")
+"""Methods that start motors, and return at once."""
+_MOVES = (*STARTS, "on_for_degrees", "on_for_rotations", "on_for_seconds")
+STOPS = ("off", "stop", "brake", "hold")
+_PURE = {"abs", "max", "min", "round", "int", "float"}
+"""Functions whose values depend only on their arguments."""
+_SPEEDS = "Speed"
+"""How the names of classes of speeds begin."""
+
+
+def list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoopEnd]:
+    """Yield the uses, in loops, of readings that were taken before the loop, and that nothing in it renews.
+
+    A use is a comparison with a constant, or a move; that has no operator. Lines are those of the loop around it.
+
+    Args:
+        tree: The program.
+        constants: Values of names in the program; see `list_constants`.
+    """
+    shared = {name for node in ast.walk(tree) if _is_shared(node) for name in node.names}
+    for scope in _list_scopes(tree):
+        nodes = [*walk_scope(scope)]
+        for loop in nodes:
+            if isinstance(loop, _Loop):
+                for name, read in _list_reads_before(loop, nodes).items():
+                    if name not in shared:
+                        yield from _list_uses(loop, name, read, constants)
+
+
+def _is_shared(node: ast.AST) -> TypeGuard[ast.Global | ast.Nonlocal]:
+    return isinstance(node, ast.Global | ast.Nonlocal)
+
+
+def _list_scopes(tree: ast.Module) -> Iterator[ast.Module | _Function]:
+    yield tree
+    yield from (node for node in ast.walk(tree) if isinstance(node, _Function))
+
+
+def _list_reads_before(loop: _Loop, nodes: list[ast.AST]) -> dict[str, ast.Assign]:
+    """Return the last assignment of each name before a loop that does not assign it, if that reads an attribute.
+
+    Args:
+        loop: The loop.
+        nodes: The nodes of its scope.
+    """
+    reads: dict[str, ast.Assign] = {}
+    for node in nodes:
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)]) if node.lineno < loop.lineno:
+                if name not in reads or reads[name].lineno < node.lineno:
+                    reads[name] = node
+    renewed = _list_stored(loop)
+    return {
+        name: node
+        for name, node in reads.items()
+        if name not in renewed and find_attribute(node.value)
+    }
+
+
+def _list_stored(node: ast.AST) -> set[str]:
+    return {
+        part.id
+        for part in ast.walk(node)
+        if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
+    }
+
+
+def _list_uses(
+    loop: _Loop, name: str, read: ast.Assign, constants: Mapping[str, Word]
+) -> Iterator[LoopEnd]:
+    """Yield the comparisons and moves in a loop that depend on a reading, and on nothing that changes in the loop."""
+    stale = _find_derived(loop, name)
+    fresh = _list_stored(loop) - stale
+    last_line = loop.end_lineno or loop.lineno
+
+    def build_use(line: int, operator: str, limit: Word) -> LoopEnd:
+        attribute = find_attribute(read.value)
+        place = line, loop.lineno, last_line
+        return LoopEnd(*place, operator, limit, attribute, read.lineno, name, read.lineno)
+
+    for node in ast.walk(loop):
+        match node:
+            case ast.If(test=test) | ast.While(test=test):
+                for part in test.values if isinstance(test, ast.BoolOp) else [test]:
+                    match read_comparison(part, constants, is_break=True):
+                        case (ast.Name(id=compared), operator, limit) if compared == name:
+                            yield build_use(node.lineno, operator, limit)
+                    if _is_truth(part, name):
+                        yield build_use(node.lineno, "", 0)
+            case ast.Call(func=ast.Attribute(attr=method), args=args) if method in STARTS:
+                if any(_depends(arg, stale, fresh) for arg in args):
+                    yield build_use(node.lineno, "", 0)
+
+
+def _is_truth(test: ast.expr, name: str) -> bool:
+    """Return whether a test asks only whether a name is true, or that it is not."""
+    match test:
+        case ast.Name(id=asked) | ast.UnaryOp(op=ast.Not(), operand=ast.Name(id=asked)):
+            return asked == name
+    return False
+
+
+def _find_derived(loop: _Loop, name: str) -> set[str]:
+    """Return a name, and those names that the loop computes from nothing but it and values from before the loop."""
+    stored = _list_stored(loop)
+    derived = {name}
+    assigns = [node for node in ast.walk(loop) if isinstance(node, ast.Assign)]
+    for _ in assigns:
+        for node in assigns:
+            match node.targets:
+                case [ast.Name(id=target)] if _depends(node.value, derived, stored - derived):
+                    derived.add(target)
+    return derived
+
+
+def _depends(node: ast.expr, stale: set[str], fresh: set[str]) -> bool:
+    """Return whether an expression depends on stale names, and on no fresh ones or further readings."""
+    names = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+    reads = any(
+        isinstance(part, ast.Attribute) or (isinstance(part, ast.Call) and not _is_pure(part))
+        for part in ast.walk(node)
+    )
+    return bool(names & stale) and not names & fresh and not reads
+
+
+def _is_pure(call: ast.Call) -> bool:
+    match call.func:
+        case ast.Name(id=name):
+            return name in _PURE or name.startswith(_SPEEDS)
+    return False
+
+
+@dataclass(frozen=True, slots=True)
+class LoneStop:
+    """A stop of motors that depends on one reading after their start, outside of a loop that would read again."""
+
+    line: int
+    """That of the `if`."""
+    read_line: int
+    stop_line: int
+    start_line: int
+    is_direct: bool
+    """Whether nothing waits between the start and the reading."""
+    test: LoopEnd | None
+    """The comparison; None for another test, such as whether a button is pressed."""
+
+
+def list_lone_stops(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoneStop]:
+    """Yield each `if` that stops motors that the same block has just started, and that no `while` runs again.
+
+    Args:
+        tree: The program.
+        constants: Values of names in the program; see `list_constants`.
+    """
+    again = {
+        part for node in ast.walk(tree) if isinstance(node, ast.While) for part in ast.walk(node)
+    }
+    for block in _list_blocks(tree):
+        start, is_direct, read = 0, True, None
+        for statement in block:
+            match statement:
+                case ast.If(test=test, body=body, orelse=[]) if start and statement not in again:
+                    if stop := next((each for each in body if _find_call(each, STOPS)), None):
+                        lines = statement.lineno, _find_read_line(test, read), stop.lineno, start
+                        comparison = _read_test(test, read, constants)
+                        yield LoneStop(*lines, is_direct, comparison)
+                    start = 0
+                case ast.Assign(targets=[ast.Name()], value=value):
+                    read = statement if find_attribute(value) else None
+                case ast.Expr(value=ast.Call()) if _find_call(statement, STARTS):
+                    start, is_direct = statement.lineno, True
+                case ast.Expr(value=ast.Call()) if _find_call(statement, ("sleep", "wait")):
+                    is_direct = False
+                case ast.Expr(value=ast.Call()) if _find_call(statement, ("print", "reset")):
+                    pass
+                case _:
+                    start = 0
+
+
+def _list_blocks(tree: ast.AST) -> Iterator[list[ast.stmt]]:
+    for node in ast.walk(tree):
+        for name in ("body", "orelse"):
+            block = getattr(node, name, None)
+            if isinstance(block, list):
+                yield block
+
+
+def _find_call(statement: ast.stmt, names: tuple[str, ...]) -> str:
+    """Return the function that a statement calls if its last part is one of some names; empty otherwise."""
+    match statement:
+        case ast.Expr(value=ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name))):
+            return name if name in names else ""
+    return ""
+
+
+def _find_read_line(test: ast.expr, read: ast.Assign | None) -> int:
+    """Return the line that reads what a test asks: its own or, for a name that was just assigned, that line."""
+    names = {part.id for part in ast.walk(test) if isinstance(part, ast.Name)}
+    is_named = read is not None and names & _list_stored(read)
+    return read.lineno if is_named and read else test.lineno
+
+
+def _read_test(
+    test: ast.expr, read: ast.Assign | None, constants: Mapping[str, Word]
+) -> LoopEnd | None:
+    """Return the comparison of a reading with a constant that a test is; None for another test."""
+    comparison = read_comparison(test, constants, is_break=True)
+    if comparison is None:
+        return None
+    value, operator, limit = comparison
+    line = _find_read_line(value, read)
+    attribute = find_attribute(read.value if read and line == read.lineno else value)
+    lines = test.lineno, test.lineno, test.lineno
+    return LoopEnd(*lines, operator, limit, attribute, line) if attribute else None
+
+
+@dataclass(frozen=True, slots=True)
+class LostValue:
+    """A value that a function gives to a name of its own, where the program's name of the same text seems meant."""
+
+    line: int
+    name: str
+    function: str
+    lines: tuple[int, int]
+    """The first and the last of the function."""
+    call_line: int
+    """The first line of the program itself, outside of functions, that calls the function; 0 for none."""
+    set_line: int
+    """That which sets the program's name."""
+
+
+def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
+    """Yield each value that a function assigns but never uses, to a name that the program itself sets and uses.
+
+    To print it is no use, nor to return it where no call takes what the function returns.
+    """
+    functions = [node for node in tree.body if isinstance(node, _Function)]
+    outside = [*walk_scope(tree)]
+    for function in functions:
+        own = {part.arg for part in ast.walk(function.args) if isinstance(part, ast.arg)}
+        own |= {name for node in ast.walk(function) if _is_shared(node) for name in node.names}
+        others = {*ast.walk(tree)} - {*ast.walk(function)}
+        bare = {node.value for node in others if isinstance(node, ast.Expr)}
+        calls = [node for node in others if _is_call(node, function.name)]
+        used = [*_walk_used(function, has_result=not bare.issuperset(calls))]
+        lines = [node.lineno for node in outside if _is_call(node, function.name)]
+        call_line = min(lines, default=0)
+        for node in walk_scope(function):
+            match node:
+                case ast.Assign(targets=[ast.Name(id=name)]) if calls and name not in own:
+                    set_line = _find_set_line(name, outside)
+                    if (
+                        set_line
+                        and _is_meant(name, call_line, outside, functions)
+                        and not _is_loaded(name, used)
+                    ):
+                        span = function.lineno, function.end_lineno or function.lineno
+                        yield LostValue(node.lineno, name, function.name, span, call_line, set_line)
+
+
+def _is_meant(
+    name: str, call_line: int, outside: list[ast.AST], functions: list[_Function]
+) -> bool:
+    """Return whether a program uses a name of its own after the first call of a function, in a loop or in functions.
+
+    Args:
+        name: The name.
+        call_line: The line of the call; 0 for none.
+        outside: The nodes of the program outside of functions.
+        functions: The functions.
+    """
+    later = [node for node in outside if getattr(node, "lineno", 0) >= call_line]
+    loops = [part for node in outside if isinstance(node, _Loop) for part in ast.walk(node)]
+    others = [[*walk_scope(function)] for function in functions]
+    shared = [nodes for nodes in others if not _find_set_line(name, nodes)]
+    return any(_is_loaded(name, nodes) for nodes in (later, loops, *shared))
+
+
+def _walk_used(node: ast.AST, *, has_result: bool) -> Iterator[ast.AST]:
+    """Yield the nodes of a function without those that it prints and, if no call takes it, those that it returns."""
+    for part in ast.iter_child_nodes(node):
+        is_returned = isinstance(part, ast.Return) and not has_result
+        if not is_returned and not _is_call(part, "print"):
+            yield part
+            yield from _walk_used(part, has_result=has_result)
+
+
+def _is_call(node: ast.AST, name: str) -> TypeGuard[ast.Call]:
+    return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == name
+
+
+def _find_set_line(name: str, nodes: Iterable[ast.AST]) -> int:
+    """Return the first line that assigns a name; 0 for none."""
+    lines = [
+        node.lineno
+        for node in nodes
+        if isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store)
+    ]
+    return min(lines, default=0)
+
+
+def _is_loaded(name: str, nodes: Iterable[ast.AST]) -> bool:
+    return any(
+        isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load)
+        for node in nodes
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class UnwaitedMove:
+    """A move with an end for which the program does not wait."""
+
+    line: int
+    last_line: int
+    method: str
+    option: str
+    """The argument because of which it does not wait, such as `block=False`."""
+    next_line: int
+    """That of the next move in its block, if only calls come before it; 0 for none."""
+
+
+_OPTIONS = ("block", "wait")
+_ENDING = (
+    "on_to_position",
+    "straight",
+    "turn",
+    "curve",
+    "arc",
+    "run_angle",
+    "run_target",
+    "run_time",
+)
+_ANY_MOVE = (*_MOVES, *_ENDING)
+
+
+def list_unwaited_moves(tree: ast.Module) -> Iterator[UnwaitedMove]:
+    """Yield the calls of moves with `block=False` or `wait=False`."""
+    for block in _list_blocks(tree):
+        for index, statement in enumerate(block):
+            call = getattr(statement, "value", None)
+            if isinstance(call, ast.Call) and (option := _find_option(statement)):
+                next_line = _find_next_move(call, block[index + 1 :])
+                last_line = statement.end_lineno or statement.lineno
+                method = _find_call(statement, _ANY_MOVE)
+                yield UnwaitedMove(statement.lineno, last_line, method, option, next_line)
+
+
+def _find_option(statement: ast.stmt) -> str:
+    """Return the argument because of which a statement does not wait for its move; empty for other statements."""
+    match statement:
+        case ast.Expr(value=ast.Call(keywords=keywords)) if _find_call(statement, _ANY_MOVE):
+            for keyword in keywords:
+                if keyword.arg in _OPTIONS and getattr(keyword.value, "value", None) is False:
+                    return f"{keyword.arg}=False"
+    return ""
+
+
+def _find_next_move(move: ast.Call, rest: list[ast.stmt]) -> int:
+    """Return the line of the next move of the same object, else of another one, in the calls after a move; else 0."""
+    owner = _name_object(move.func)
+    lines: list[tuple[bool, int]] = []
+    for statement in rest:
+        match statement:
+            case ast.Expr(value=ast.Call(func=func)) if not _find_waiting(statement):
+                if _find_call(statement, _ANY_MOVE):
+                    lines.append((_name_object(func) != owner, statement.lineno))
+            case _:
+                break
+    return min(lines, default=(False, 0))[1]
+
+
+def _find_waiting(statement: ast.stmt) -> bool:
+    return any(
+        isinstance(node, ast.Attribute) and node.attr.startswith("wait_")
+        for node in ast.walk(statement)
+    )
+
+
+def _name_object(func: ast.expr) -> str:
+    return ast.unparse(func.value) if isinstance(func, ast.Attribute) else ""

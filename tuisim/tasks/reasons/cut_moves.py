@@ -1,0 +1,172 @@
+"""Moves with an end that a program cut off, since it did not wait for them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.protocol import End
+from tuisim.engine.runs.command_words import CALL_WORDS, Aim
+from tuisim.programs.facts import UnwaitedMove
+from tuisim.tasks.reasons.run_data import RunData
+from tuisim.tasks.reasons.unmet import Unmet
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[Any]
+
+_BASE = (Call.MOVE_BASE,)
+_TURNS = (Call.RUN_TO, Call.RUN_TO_REL_POS, Call.RUN_TO_ABS_POS)
+_CALLS: Mapping[str, tuple[Call, ...]] = {
+    "on_for_seconds": (Call.RUN_UNTIL, Call.RUN_TIMED),
+    "on_for_degrees": _TURNS,
+    "on_for_rotations": _TURNS,
+    "on_to_position": _TURNS,
+    "straight": _BASE,
+    "turn": _BASE,
+    "curve": _BASE,
+    "arc": _BASE,
+    "run_angle": (Call.MOVE,),
+    "run_target": (Call.MOVE,),
+    "run_time": (Call.RUN_AT,),
+}
+"""The commands with which methods move motors, by the name of the method."""
+_GO_ON = (Call.RUN_TO_REL_POS, Call.RUN_TO_ABS_POS, Call.RUN_TIMED)
+"""Moves that go on after the end of the program."""
+_AT_ONCE_S = 0.1
+"""A move that is followed so soon by another one has hardly begun."""
+_DONE_SHARE = 0.8
+"""A move of which this share is done is not cut off."""
+_MAX_COMMANDS = 10_000
+"""More commands are not looked at."""
+_MAX_HARDLY = 2
+"""Ticks after which a motor has not yet moved."""
+_SIDES = ("left", "right")
+_MIN_MOVE_S = 0.3
+"""A shorter move, or one that should be done in this time, is not missed."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Move:
+    """A command that moves a part, and the tick at which that gets its next one."""
+
+    tick: int
+    end: int
+    call: Call
+    values: list[float]
+    part: int
+    next_call: Call | None
+    """The next command; None for the end of the run."""
+
+
+def find_cut_move(data: RunData) -> Unmet | None:
+    """Return the first move that the next one to the same part, or the end of the program, cut off; None for none.
+
+    Args:
+        data: The run.
+    """
+    unwaited = data.facts.unwaited_moves
+    if not unwaited or not len(data.records):
+        return None
+    for move in _list_moves(data):
+        fitting = [each for each in unwaited if move.call in _CALLS.get(each.method, ())]
+        if call := _find_call(data, move, fitting):
+            share = _describe_share(data, move)
+            after = f"line {call.next_line} began the next one"
+            if not call.next_line:
+                after = "the next one began" if move.next_call else "the program ended"
+            text = f"{call.option} did not wait for this move, {share} when {after}"
+            if share:
+                return Unmet(move.end / data.hz, call.line, text)
+    return None
+
+
+def _list_moves(data: RunData) -> Iterator[_Move]:
+    """Yield the commands that move a part to an end, with the next command to the same part, in order of the end."""
+    aims = [call for call, words in CALL_WORDS.items() if words.aim is not Aim.NONE]
+    is_aim = np.isin(data.commands["call"], aims)
+    rows, ticks = (part[is_aim][:_MAX_COMMANDS] for part in (data.commands, data.command_ticks))
+    last = len(data.records) - 1
+    is_whole = len(rows) == is_aim.sum()
+    is_finished = is_whole and data.run.end is not None and data.run.end.end is End.FINISHED
+    following: dict[tuple[bool, int], tuple[int, Call]] = {}
+    moves: list[_Move] = []
+    for row, tick in zip(rows[::-1], ticks[::-1].tolist(), strict=True):
+        call = Call(int(row["call"]))
+        part = (call >= Call.BUILD_BASE, int(row["part"]))
+        end, next_call = following.get(part, (last, None))
+        following[part] = tick, call
+        if next_call or (is_finished and call not in _GO_ON):
+            moves.append(_Move(tick, end, call, row["values"].tolist(), part[1], next_call))
+    yield from sorted(moves, key=lambda move: move.end)
+
+
+def _find_call(data: RunData, move: _Move, fitting: list[UnwaitedMove]) -> UnwaitedMove | None:
+    """Return the call in the text that gave a command; None if that is not clear, or if it may have meant to cut it.
+
+    Args:
+        data: The run.
+        move: The command.
+        fitting: The calls that give such commands and do not wait.
+    """
+    if move.next_call is None:
+        ending = [each for each in fitting if not each.next_line]
+        return ending[0] if len(ending) == 1 else None
+    if move.end - move.tick > _AT_ONCE_S * data.hz and _has_looked(data, move):
+        return None
+    lines = {*data.records["line"][max(0, move.tick - 1) : move.end + 3].tolist()}
+    calls = [each for each in fitting if lines & {*range(each.line, each.last_line + 1)}]
+    following = [each for each in fitting if each.next_line in lines]
+    if known := next((each for each in (*calls, *following) if each.next_line), None):
+        return known
+    calls = [each for each in calls if _turns_as_asked(data, move, each)] or calls
+    is_at_once = move.end - move.tick <= _MAX_HARDLY and not _has_looked(data, move)
+    return calls[0] if len(calls) == 1 and is_at_once else None
+
+
+def _turns_as_asked(data: RunData, move: _Move, call: UnwaitedMove) -> bool:
+    """Return whether a call in the text turns the motor by as much as a command does."""
+    turns = data.facts.find_turns(call.line)
+    unit_deg = 360.0 if turns and turns[1] == "rotations" else 1.0
+    return turns is not None and abs(turns[0]) * unit_deg == abs(move.values[1])
+
+
+def _has_looked(data: RunData, move: _Move) -> bool:
+    """Return whether the program read something during a move, or then only stopped it."""
+    aim = CALL_WORDS[move.next_call].aim if move.next_call else Aim.NONE
+    ticks = data.reading_ticks
+    has_read = ((ticks >= move.tick) & (ticks <= move.end)).any()
+    return (
+        bool(has_read)
+        or aim is Aim.SPEED
+        or move.next_call in (Call.STOP, Call.STOP_DRIVER, Call.HOLD)
+    )
+
+
+def _describe_share(data: RunData, move: _Move) -> str:
+    """Return how much of a move was done at its end; empty if most was, for a short one, or if that is not known."""
+    values = move.values
+    way = data.records[move.tick : move.end + 1]
+    match move.call:
+        case Call.RUN_UNTIL:
+            asked, done, unit = (values[1] - move.tick) / data.hz, len(way) / data.hz, "s"
+        case Call.RUN_TIMED:
+            asked, done, unit = values[3] / 1000, len(way) / data.hz, "s"
+        case Call.RUN_TO_REL_POS if move.part < len(_SIDES):
+            turned_deg = np.ptp(way[f"{_SIDES[move.part]}_position_deg"])
+            asked, done, unit = abs(values[1]), float(turned_deg), "degrees"
+        case Call.MOVE_BASE if values[0]:
+            steps_mm = np.hypot(np.diff(way["x_mm"]), np.diff(way["y_mm"]))
+            asked, done, unit = abs(values[0]), float(steps_mm.sum()), "mm"
+        case Call.MOVE_BASE:
+            asked, done, unit = abs(values[1]), float(np.ptp(way["heading_deg"])), "degrees"
+        case _:
+            return "which had hardly begun" if len(way) <= _MAX_HARDLY else ""
+    is_cut = math.isfinite(asked) and asked > _MIN_MOVE_S and done < _DONE_SHARE * asked
+    return f"of which {done:.3g} of {asked:g} {unit} were done" if is_cut else ""

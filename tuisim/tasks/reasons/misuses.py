@@ -1,0 +1,219 @@
+"""What a program reads once and uses again and again, asks only once, or sets without an effect."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tuisim.base.errors import ConfigError, LogError
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.conditions import COMPARE
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.protocol import End
+from tuisim.programs.facts import LoneStop, LoopEnd
+from tuisim.tasks.reasons.run_data import RunData, Series
+from tuisim.tasks.reasons.unmet import Unmet, name_goal, round_value
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[Any]
+
+_MAX_READINGS = 64
+"""A line that reads more often does not read once."""
+_MIN_STALE_S = 0.5
+"""A loop that goes on for less time with an old reading may mean it."""
+_OTHER_SHARE = 0.3
+"""Moves by a reading are wrong if it changes by this share of it."""
+_MIN_OTHER = 10.0
+"""And by at least so much."""
+_SOON_S = 0.3
+"""A program that reads again so soon asks again."""
+_MIN_WAY_MM = 20.0
+_MIN_TURN_DEG = 10.0
+"""A robot that moved less after it was not stopped did no harm."""
+
+
+def find_misuses(data: RunData) -> Iterator[Unmet]:
+    """Yield what a program misused: a reading, a test, a name; the first of each kind.
+
+    Args:
+        data: The run.
+    """
+    if not len(data.records):
+        return
+    for find in (_find_stale_reads, _find_lone_stops, _find_lost_values):
+        try:
+            if misuse := next(find(data), None):
+                yield misuse
+        except (LogError, ConfigError):
+            continue
+
+
+# A reading that was taken once and used many times
+
+
+def _find_stale_reads(data: RunData) -> Iterator[Unmet]:
+    """Yield readings that a loop used again and again, while the sensor saw something else."""
+    known = {end.line for end in data.facts.loop_ends if end.set_line}
+    for use in data.facts.stale_reads:
+        if isinstance(use.limit, str) or (use.line in known and _was_in_vain(data, use)):
+            continue
+        for tick in _list_ticks(data, use.read_line):
+            if tick < len(data.records) and (misuse := _compare_stale(data, use, tick)):
+                yield misuse
+
+
+def _list_ticks(data: RunData, line: int) -> list[int]:
+    """Return the first ticks at which a line read something, in ascending order."""
+    ticks: list[int] = np.unique(data.reading_ticks[data.readings["line"] == line]).tolist()
+    return ticks[:_MAX_READINGS]
+
+
+def _was_in_vain(data: RunData, use: LoopEnd) -> bool:
+    """Return whether the run ended in the loop, so that it is told that it waited in vain."""
+    line = data.records["line"][-1]
+    is_over = data.run.end is not None and data.run.end.end is End.FINISHED
+    return use.first_line <= line <= use.last_line and not is_over
+
+
+def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
+    """Return that a reading was used after the sensor saw something else; None if it was right all the time."""
+    lines = data.records["line"]
+    until = _find_next_reading(data, use.read_line, read_tick)
+    is_inside = (lines >= use.first_line) & (lines <= use.last_line)
+    ticks = np.flatnonzero(is_inside[read_tick + 1 : until]) + read_tick + 1
+    if len(ticks) < _MIN_STALE_S * data.hz:
+        return None
+    when = f"at {read_tick / data.hz:.2f} s"
+    inside = f"before the loop in line {use.first_line}: read it inside the loop"
+    old = data.measure_ticks(use, np.array([read_tick]))
+    seen = data.measure_ticks(use, ticks)
+    if old is None or seen is None:
+        is_stuck = use.line == use.first_line and until == len(data.records) == ticks[-1] + 1
+        text = f"{use.name} never changes: line {use.read_line} read it only once, {when}, {inside}"
+        return Unmet(float(ticks[0] / data.hz), use.line, text) if is_stuck else None
+    first = float(old.values[0])
+    if use.operator:
+        compare = COMPARE[use.operator]
+        differs = compare(seen.values, use.limit) != compare(first, use.limit)
+    else:
+        differs = abs(seen.values - first) >= max(_MIN_OTHER, _OTHER_SHARE * abs(first))
+    if not differs.any():
+        return None
+    index = int(differs.argmax())
+    text = (
+        f"{seen.device} saw {_name(seen, seen.values[index])} here, but line {use.read_line} read it only "
+        f"once, {when} ({_name(old, first)}), {inside}"
+    )
+    return Unmet(float(ticks[index] / data.hz), use.line, text)
+
+
+def _find_next_reading(data: RunData, line: int, tick: int) -> int:
+    """Return the tick of the next reading of what a line read, by any line; without one, that of the end."""
+    ports = np.unique(data.readings["port"][data.readings["line"] == line])
+    ticks = data.reading_ticks[np.isin(data.readings["port"], ports)]
+    later = ticks[ticks > tick]
+    return int(later[0]) if len(later) else len(data.records)
+
+
+def _name(series: Series, value: float) -> str:
+    return f"{round_value(value)}{series.unit}"
+
+
+# An `if` where a loop was meant
+
+
+def _find_lone_stops(data: RunData) -> Iterator[Unmet]:
+    """Yield stops that never came, since the program asked only once for what was not yet there."""
+    for stop in data.facts.lone_stops:
+        for read_tick in _list_ticks(data, stop.read_line):
+            # The last reading may lie in the tick that the end of the program cut off.
+            tick = min(read_tick, len(data.records) - 1)
+            if _is_unstopped(data, stop, tick):
+                when_ns = data.readings["time_ns"][data.reading_ticks == read_tick][0]
+                yield Unmet(float(when_ns / NS_PER_S), stop.line, _describe_lone(data, stop, tick))
+
+
+def _is_unstopped(data: RunData, stop: LoneStop, tick: int) -> bool:
+    """Return whether the robot drove on after a reading that should have stopped it, and the program asked no more."""
+    soon = min(tick + round(_SOON_S * data.hz), len(data.records) - 1)
+    next_tick = _find_next_reading(data, stop.read_line, tick)
+    stops = data.command_ticks[select_stops(data)]
+    later = stops[stops >= tick]
+    if next_tick <= soon or (len(later) and later[0] <= tick + 1):
+        return False
+    if not stop.is_direct and len(later):
+        return False
+    end = min([int(tick) for tick in later[:1]] + [next_tick])
+    way = data.records[tick:end]
+    moved_mm = np.hypot(*(np.ptp(way[name]) for name in ("x_mm", "y_mm")))
+    is_met = stop.test is not None and _is_met(data, stop.test, tick)
+    has_moved = moved_mm >= _MIN_WAY_MM or np.ptp(way["heading_deg"]) >= _MIN_TURN_DEG
+    # The summary of a finished run names motors that would turn on.
+    turns_on = data.run.end is not None and bool(data.run.end.summary)
+    return (bool(has_moved) or turns_on) and not is_met
+
+
+def select_stops(data: RunData) -> Array:
+    """Return for each command of a run whether it stops a motor or a drive base.
+
+    Args:
+        data: The run.
+    """
+    stops = [Call.STOP, Call.STOP_DRIVER, Call.HOLD, Call.STOP_BASE]
+    is_stop: Array = np.isin(data.commands["call"], stops)
+    is_stop |= (data.commands["call"] == Call.RUN_FREELY) & np.isnan(data.commands["values"][:, 0])
+    return is_stop
+
+
+def _is_met(data: RunData, test: LoopEnd, tick: int) -> bool:
+    seen = data.measure_ticks(test, np.array([tick]))
+    if seen is None or isinstance(test.limit, str):
+        return False
+    return bool(COMPARE[test.operator](seen.values, test.limit).any())
+
+
+def _describe_lone(data: RunData, stop: LoneStop, tick: int) -> str:
+    text = "this line asked only once"
+    test = stop.test
+    seen = data.measure_ticks(test, np.array([tick])) if test else None
+    if test and seen is not None and not isinstance(test.limit, str):
+        goal = name_goal(test, f"{test.limit:g}{seen.unit}")
+        text += f": {seen.device} read {_name(seen, seen.values[0])}, not {goal}"
+    else:
+        text += ", and the answer was no"
+    return (
+        f"{text}; so line {stop.stop_line} did not stop what line {stop.start_line} started: "
+        "a while loop asks until it comes"
+    )
+
+
+# A name that is not the one that is meant
+
+
+def _find_lost_values(data: RunData) -> Iterator[Unmet]:
+    """Yield the values that a function gave to names of its own, when it ran."""
+    for lost in data.facts.lost_values:
+        tick = _find_tick(data, *lost.lines)
+        if tick is None and lost.call_line:
+            tick = _find_tick(data, lost.call_line + 1, 1 << 31)
+        if tick is not None:
+            text = (
+                f"{lost.name} is a name of {lost.function}() alone here, so the {lost.name} of line "
+                f"{lost.set_line} stays as it was: global {lost.name} in {lost.function}() changes that"
+            )
+            yield Unmet(tick / data.hz, lost.line, text)
+
+
+def _find_tick(data: RunData, first_line: int, last_line: int) -> int | None:
+    """Return the first tick at which the program was in some lines, or read there; None if it never was."""
+    ticks = []
+    for lines, when in (
+        (data.records["line"], np.arange(len(data.records))),
+        (data.readings["line"], data.reading_ticks),
+    ):
+        ticks += when[(lines >= first_line) & (lines <= last_line)][:1].tolist()
+    return min(ticks, default=None)

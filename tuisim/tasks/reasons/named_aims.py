@@ -1,0 +1,156 @@
+"""What a program says that it means, in its comments, prints and names, where its run did something else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tuisim.base.errors import ConfigError, LogError
+from tuisim.engine.core.conditions import COMPARE
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.engine.protocol import End
+from tuisim.engine.runs.arrays import find_spans
+from tuisim.programs.facts import LoopEnd
+from tuisim.tasks.reasons.misuses import select_stops
+from tuisim.tasks.reasons.read_columns import LIGHT_COLUMNS
+from tuisim.tasks.reasons.run_data import RunData
+from tuisim.tasks.reasons.unmet import Unmet, name_goal, round_value
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[Any]
+
+_LIMITS = {"black": (15.0, "<"), "white": (85.0, ">")}
+"""The light in % up to which, or from which, something has a colour."""
+_AHEAD_MM = 1500
+_STEP_MM = 4
+_RIM_MM = 60
+"""So near to the edge of the mat, a sensor may not be on it."""
+_MIN_ON_MM = 200.0
+"""Who drives so far after the light that a loop waited for is not where it was."""
+_MIN_CHANGE_PC = 20.0
+_SOON_S = 0.6
+_MIN_SPIN_DEG = 60.0
+_MAX_SPOT_MM = 20.0
+"""A robot that turns by so much, and gets no farther, turns on the spot."""
+
+
+def find_missed_aims(data: RunData) -> Iterator[Unmet]:
+    """Yield what a run did otherwise than the words of its program say; the first of each kind.
+
+    Args:
+        data: The run.
+    """
+    if not len(data.records):
+        return
+    for find in (_find_wrong_bands, _find_late_stops, _find_spins, _find_wrong_units):
+        try:
+            if missed := next(find(data), None):
+                yield missed
+        except (LogError, ConfigError):
+            continue
+
+
+def _find_wrong_bands(data: RunData) -> Iterator[Unmet]:
+    """Yield loops that wait for black or white, and that another band ended before."""
+    for loop in data.facts.loop_ends:
+        color = data.facts.remarks.find_color(loop.first_line, loop.last_line)
+        if not color or isinstance(loop.limit, str) or loop.operator[0] != _LIMITS[color][1]:
+            continue
+        series = data.measure(loop, (0, len(data.records)))
+        if series is None or series.column not in LIGHT_COLUMNS:
+            continue
+        is_met = COMPARE[loop.operator](series.values, loop.limit)
+        if not is_met[-1] or is_met[:-1].any():
+            continue
+        tick = int(series.ticks[-1])
+        light = _measure_light(data, loop, data.records[tick : tick + 1])
+        ahead = _measure_light(data, loop, _extend_way(data.records[tick]))
+        limit, sign = _LIMITS[color]
+        comes = COMPARE[sign](ahead, limit)
+        if len(light) and not COMPARE[sign](light[0], limit) and comes.any():
+            index = int(comes.argmax())
+            nearest = ahead[index : index + 25]
+            value = nearest.min() if sign == "<" else nearest.max()
+            goal = name_goal(loop, f"{loop.limit:g}{series.unit}")
+            text = (
+                f"light of {round_value(light[0])} % ended this loop, since it is {goal}, but it is not {color}: "
+                f"that reads {value:.0f} % and comes {(index + 1) * _STEP_MM} mm further on"
+            )
+            yield Unmet(tick / data.hz, loop.line, text)
+
+
+def _measure_light(data: RunData, loop: LoopEnd, records: Array) -> Array:
+    """Return the light in % that the sensor of a loop sees in some records, those of them that are on the mat."""
+    is_on = (records["x_mm"] > _RIM_MM) & (records["x_mm"] < FIELD_WIDTH_MM - _RIM_MM)
+    is_on &= (records["y_mm"] > _RIM_MM) & (records["y_mm"] < FIELD_HEIGHT_MM - _RIM_MM)
+    percent = replace(loop, attribute="reflected_light_intensity_pc")
+    series = data.measure_records(percent, records[is_on], np.arange(int(is_on.sum())))
+    return np.empty(0) if series is None else series.values
+
+
+def _extend_way(record: Array) -> Array:
+    """Return records of a robot that drives straight on from where it is in one record."""
+    way_mm = np.arange(_STEP_MM, _AHEAD_MM, _STEP_MM)
+    records = np.repeat(record[None], len(way_mm))
+    heading = np.deg2rad(record["heading_deg"])
+    records["x_mm"] += way_mm * np.cos(heading)
+    records["y_mm"] += way_mm * np.sin(heading)
+    return records
+
+
+def _find_late_stops(data: RunData) -> Iterator[Unmet]:
+    """Yield stops that came long after the light that they are for, at the end of a run."""
+    loops = {loop.first_line: loop for loop in data.facts.loop_ends}
+    for loop_line, sleep_line, stop_line in data.facts.late_stops:
+        loop = loops.get(loop_line)
+        series = data.measure(loop, (0, len(data.records))) if loop else None
+        if loop is None or series is None or series.column not in LIGHT_COLUMNS:
+            continue
+        tick = int(series.ticks[-1])
+        later = data.command_ticks[select_stops(data)]
+        later = later[later > tick]
+        if not len(later) or len(data.records) - later[0] > _SOON_S * data.hz:
+            continue
+        stop_tick = min(int(later[0]), len(data.records) - 1)
+        way = data.records[tick : stop_tick + 1]
+        way_mm = float(np.hypot(np.diff(way["x_mm"]), np.diff(way["y_mm"])).sum())
+        light = _measure_light(data, loop, data.records[[tick, stop_tick]])
+        if way_mm >= _MIN_ON_MM and len(light) > 1 and abs(np.ptp(light)) >= _MIN_CHANGE_PC:
+            text = (
+                f"after the light of {light[0]:.0f} % at {tick / data.hz:.2f} s, this line let the robot drive on "
+                f"for {way_mm:.0f} mm before line {stop_line} stopped it, where the light is {light[1]:.0f} %"
+            )
+            yield Unmet(tick / data.hz, sleep_line, text)
+
+
+def _find_spins(data: RunData) -> Iterator[Unmet]:
+    """Yield turns on the spot where the program says that it drives straight on."""
+    lines = data.records["line"]
+    for spin in data.facts.spins:
+        # The line after those that start motors is the one that waits.
+        is_in = (lines >= spin.first_line) & (lines <= spin.last_line + 1)
+        for start, end in find_spans(is_in).tolist():
+            way = data.records[start:end]
+            turned_deg = float(np.ptp(way["heading_deg"]))
+            spot_mm = max(np.ptp(way["x_mm"]), np.ptp(way["y_mm"]))
+            if turned_deg >= _MIN_SPIN_DEG and spot_mm <= _MAX_SPOT_MM:
+                text = (
+                    f"the robot turned on the spot here, by {turned_deg:.0f}°: {spin.words} turn its wheels "
+                    "against each other; equal signs drive it straight on"
+                )
+                yield Unmet(start / data.hz, spin.first_line, text)
+
+
+def _find_wrong_units(data: RunData) -> Iterator[Unmet]:
+    """Yield calls with numbers in a unit that is probably not meant, when they ran."""
+    lines = data.records["line"]
+    is_cut_off = data.run.end is None or data.run.end.end is not End.FINISHED
+    for wrong in data.facts.wrong_units:
+        ticks = np.flatnonzero(lines == wrong.line)
+        if len(ticks) and (not wrong.is_endless or (is_cut_off and lines[-1] == wrong.line)):
+            yield Unmet(float(ticks[0] / data.hz), wrong.line, wrong.text)
