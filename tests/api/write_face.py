@@ -74,7 +74,7 @@ class World(WorldDescription):
 
 ROBOT_CLASS = '''
 class Robot(RobotDescription):
-    """A robot: a named one or that of a file, and the values that differ.
+    """A robot, given by its name or a file, and the values in which it differs from that robot.
 
     Args:
         base: The name of a robot, or a file.
@@ -147,10 +147,10 @@ def experiment(
     world: Vary[File | World] = None,
     {parameters},
 ) -> pd.DataFrame:
-    """Run a program with all combinations of what varies, block until they end, and return a table of the runs.
+    """Run a program with all combinations of values, block until the runs end, and return a table of the runs.
 
-    An option takes one value for all runs, or several, such as `sensornoise=[0, 20]`. An exception in a program is not
-    raised here: a warning counts them, and the columns `end` and `summary` say what each was.
+    An option takes one value for all runs, or several, such as `sensornoise=[0, 20]`. Exceptions in a program are not
+    raised here: a warning counts them, and the columns `end` and `summary` describe each of them.
 
     Args:
         program: As for `simulate`; or several.

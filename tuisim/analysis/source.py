@@ -202,7 +202,7 @@ class Note:
 def find_notes_file(path: Path) -> Path:
     """Return the path of the file with the notes on a log file; the file need not exist yet.
 
-    It depends on the path and the first line of the log: another log at the same path has other notes.
+    The path depends on the path and the first line of the log: another log at the same path has other notes.
 
     Raises:
         LogError: the log file cannot be read.

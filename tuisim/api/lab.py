@@ -190,7 +190,7 @@ class Lab:
         """Return the world now as a Pillow image, without the pen's trace.
 
         The robot may be at the edge of the mat, so there is a rim around it: `info["extent_mm"]` of the image has the
-        edges of all of it, as the `extent` of matplotlib's `imshow`.
+        edges of the whole image, in the order of `extent` in matplotlib's `imshow`.
         """
         from tuisim.pictures.scene.pictures import draw_world
 
@@ -199,7 +199,7 @@ class Lab:
     def judge(self) -> tuple[float, bool]:
         """Return the points if the run ended now, and whether the goals are decided.
 
-        They are decided if each goal that was not met at the start is met now, or missed for good.
+        The goals are decided if each goal that was not met at the start is met now, or missed for good.
 
         Raises:
             ConfigError: the lab has no goals.

@@ -33,9 +33,9 @@ def mark(
 ) -> pd.DataFrame:
     """Mark the programs of a class, block until all runs are over, and return the marks.
 
-    What a program does wrong is not raised here: it is in its row. Runs that raise, are stopped or miss a goal are
-    stored with the tag `student:NAME`, in the column `tags` of `tuisim.runs()`. The command `tuisim mark` also writes
-    pages, gradebooks and feedback.
+    Errors of a program are not raised here: they are in the program's row. Runs that raise, are stopped or miss a goal
+    are stored with the tag `student:NAME`, in the column `tags` of `tuisim.runs()`. The command `tuisim mark` also
+    writes pages, gradebooks and feedback.
 
     Args:
         goals: The file with the goals of the task and its world.

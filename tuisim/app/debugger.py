@@ -150,7 +150,7 @@ class DebugController:
     def _count_words(self) -> str:
         """Return the number of active breakpoints in words, with the key of their dialog.
 
-        It is empty if all of them are on lines, where the code panel marks them.
+        The result is empty if all of them are on lines, where the code panel marks them.
         """
         active = [entry for entry in self.breaks if not entry.disabled]
         if all(entry.find_line() for entry in active):

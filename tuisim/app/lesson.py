@@ -277,7 +277,7 @@ class LessonController:
         self._follow(Change.SHOW if change is Change.NONE and session.attempt.elsewhere else change)
 
     def _look(self) -> Sight:
-        """Return what a step is checked by: visible panels, the run in view, its judgements, the debugger's state."""
+        """Return the facts by which a step is checked: panels, the run in view, judgements, the debugger's state."""
         runs = self._run_controller
         view = self._debugger.view
         panels = {panel for panel in SEEABLE if self._panel_area.is_shown(panel)}

@@ -220,7 +220,7 @@ class PanelArea(Container):
     def find_pointed_panel(self) -> str:
         """Return the id of the panel that was clicked last but cannot have the focus, else of the focused panel.
 
-        It is empty if there is no such panel.
+        The result is empty if there is no such panel.
         """
         if self.clicked and self.is_shown(self.clicked):
             return self.clicked

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RunUpdate:
-    """What the run has sent since the last poll."""
+    """The output and the events that the run has sent since the last poll."""
 
     rows: list[OutputRow]
     ended: protocol.Ended | None = None

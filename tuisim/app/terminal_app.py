@@ -201,7 +201,7 @@ class TerminalApp(BufferedApp):
     def _ignores(self, event: events.Event) -> bool:
         """Return whether to ignore an event of the user.
 
-        It is ignored if nothing can handle it, or if its target is invisible or was just removed.
+        An event is ignored if nothing can handle it, or if its target is invisible or was just removed.
         """
         if super()._ignores(event):
             return True

@@ -205,7 +205,7 @@ class Plan:
     def build_identity(self) -> dict[str, Any]:
         """Return a dict for JSON that is equal for batches with equal rows.
 
-        It includes goals, but not expressions, since these are computed from the rows.
+        The dict includes goals, but not expressions, since these are computed from the rows.
         """
         programs = [
             {

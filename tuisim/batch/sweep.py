@@ -358,6 +358,6 @@ class Sweep:
             self._partial.remove()
 
     def summarize(self, frame: pd.DataFrame) -> list[ColumnSummary]:
-        """Return statistics of `list_result_columns`, for each combination of parameters unless there are many."""
+        """Return statistics of the result columns for each combination of parameters, or if there are many, for all."""
         parameters = [*([PROGRAM] if PROGRAM in frame.columns else []), *self._plan.names]
         return build_summaries(frame, parameters, list_result_columns(frame, self._expressions))

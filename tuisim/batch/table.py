@@ -227,7 +227,7 @@ class ColumnSummary:
 def build_summaries(
     frame: pd.DataFrame, parameters: Sequence[str], columns: Sequence[str]
 ) -> list[ColumnSummary]:
-    """Return statistics and quantiles of some columns, for each combination of parameters unless there are many.
+    """Return statistics of some columns for each combination of parameters, or if there are many, for all runs.
 
     Args:
         frame: The table.

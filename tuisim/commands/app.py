@@ -48,7 +48,7 @@ OPENED: Sequence[click.Parameter] = (
 
 @dataclass(frozen=True, slots=True)
 class Opened:
-    """What the app opens: a program in its world with goals, or a stored run; read and checked."""
+    """The content with which the app opens: a program in its world with goals, or a stored run; read and checked."""
 
     prepared: Prepared
     goals: GoalsFile | None

@@ -179,7 +179,7 @@ def _find_goals_world(arguments: Arguments) -> str | None:
 def _take_batch_file(arguments: Arguments) -> BatchFile:
     """Return the batch file among the programs in the arguments, or an empty one if there is none.
 
-    It is removed from the arguments; its own programs are added to them unless the user names some.
+    The batch file is removed from the arguments; its own programs are added to them unless the user names some.
     """
     named = [word for word in arguments.programs if is_batch_file(word)]
     if len(named) > 1:

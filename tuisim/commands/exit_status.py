@@ -124,7 +124,7 @@ def describe_last_state(facts: dict[str, Any]) -> str:
 
 
 def has_shown_error(run: StoredRun) -> bool:
-    """Return whether a run's output contains error texts, which end with the traceback of the error that ended it."""
+    """Return whether a run's output has error texts: an error that ended the run is then among them."""
     return any(row.stream == Stream.STDERR for row in run.output.rows())
 
 

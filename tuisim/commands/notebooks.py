@@ -20,7 +20,7 @@ NOT_RUN = "not_run"
 def find_listed(words: Sequence[str], *, run_all: bool = False) -> list[NotebookProgram]:
     """Return the programs of a notebook to list; empty if there is nothing to list.
 
-    They are listed if the notebook is the only word, has several programs, and no cell is named.
+    Programs are listed if the notebook is the only word, has several programs, and no cell is named.
 
     Args:
         words: The words of the command line.

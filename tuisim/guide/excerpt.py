@@ -78,7 +78,7 @@ def _cut_lines(lines: list[Line], max_lines: int) -> list[Line]:
 
 
 def _cut_code(code: list[str], max_lines: int, pattern: re.Pattern[str] | None) -> list[str]:
-    """Return the consecutive lines of code with most words of a question, at most `max_lines`.
+    """Return at most `max_lines` consecutive lines of code, those with most words of a question.
 
     An ellipsis stands for later lines.
     """

@@ -17,7 +17,7 @@ MAX_DRAWN = 1e300
 def find_scale(low: float, high: float) -> float:
     """Return the power of two by which to divide numbers before their sum is computed.
 
-    It is 1 unless the numbers are huge or tiny.
+    The result is 1 unless the numbers are huge or tiny.
 
     Args:
         low, high: The least and the greatest of the numbers, finite.

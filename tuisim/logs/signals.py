@@ -44,7 +44,8 @@ def sort_known(time_s: FloatArray, values: FloatArray) -> IntArray | slice:
 def compute_derivative(time_s: FloatArray, values: FloatArray) -> FloatArray:
     """Return the derivative at each sample, in units per second, shape (n,); NaN if all times are equal.
 
-    It uses second-order differences for uneven spacing (`numpy.gradient`), one-sided at both ends.
+    The derivative is computed by second-order differences for uneven spacing (`numpy.gradient`), one-sided at both
+    ends.
 
     Args:
         time_s: Shape (n,), in any order.

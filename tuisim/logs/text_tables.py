@@ -142,7 +142,7 @@ class CsvReader:
         return Block(rows_follow, block.text.split("\n", rows_follow - block.first_row)[-1])
 
     def _clean(self, text: str) -> str:
-        """Return lines without comments; if blanks separate the cells, with tabs instead."""
+        """Return lines of the table without comments, and with tabs in place of blanks that separate cells."""
         if self._heading.has_comments:
             text = _COMMENTS.sub("", text)
         if self._heading.separator == BLANKS:

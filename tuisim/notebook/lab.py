@@ -84,7 +84,7 @@ class Lab:
         """The function that collaborative mode calls with each line printed for the notebook, without `PY::`.
 
         A return value other than None is an answer; `pyState()` in the program returns all of them.
-        It replaces a `pyresponder`.
+        The function replaces a `pyresponder`.
         """
         return None if self._in_texts else self._responder
 
@@ -98,7 +98,7 @@ class Lab:
         """The old simulator's responder: called with whole lines, `PY::` included, or with `IMG_DATA::` and JSON.
 
         Its answers are shown below a heading; the program gets the JSON of those that begin with `JSON::`.
-        It replaces a `responder`.
+        The function replaces a `responder`.
         """
         return self._responder if self._in_texts else None
 

@@ -116,8 +116,8 @@ class LiveRobot:
     def _is_due(self, kernel: Any) -> bool:
         """Return whether to offer the app below a picture although the cell does not request it.
 
-        It is due below the first picture, below another picture of the same cell, and after the page that showed the
-        app has gone.
+        The offer is due below the first picture, below another picture of the same cell, and after the page that showed
+        the app has gone.
         """
         if not self.is_wanted:
             return False

@@ -399,9 +399,9 @@ class ProgramFacts:
         return places
 
     def find_place(self, line: int) -> tuple[int, range]:
-        """Return the first line of the function around a line, 0 without one, and the lines of the loop around it.
+        """Return the first line of the function around a line, and the lines of the loop around that line.
 
-        Without a loop, these are the lines of the statement around it.
+        Outside functions, the first line is 0; outside loops, the lines are those of the statement.
         """
         return self._places.get(line, (0, range(0)))
 

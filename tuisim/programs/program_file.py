@@ -319,7 +319,7 @@ def _find_docstring_end(lines: list[str]) -> int:
 def choose_prelude(text: str, path: str = "") -> str:
     """Return the prelude for a program without a magic line.
 
-    It is `none` if the program imports the library, or uses no name of a prelude.
+    The prelude is `none` if the program imports the library, or uses no name of a prelude.
 
     Args:
         text: The program.

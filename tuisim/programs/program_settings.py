@@ -156,7 +156,7 @@ class ProgramSettings:
 def read_source_facts(program: Program) -> SourceFacts:
     """Return the facts in the source of a program.
 
-    They have default values if the program is not Python, or too deeply nested to be read.
+    The facts have default values if the program is not Python, or too deeply nested to be read.
     """
     facts = SourceFacts()
     try:
@@ -435,7 +435,8 @@ def _read_run_facts(source: ProgramSource) -> SourceFacts:
     """Return the facts in the source of a program that apply to its run.
 
     If a program of the course has the parts of the default robot on the same ports, it gets the default robot; its own
-    sizes, sides and mountings are ignored. They apply in programs with the rules of a brick, and in all for Pybricks.
+    sizes, sides and mountings are ignored. These apply only in programs with the rules of a brick, and in all for
+    Pybricks.
     """
     facts = read_source_facts(source.program)
     brings_rules = facts.library is Library.PYBRICKS or _has_brick_rules(source, facts)

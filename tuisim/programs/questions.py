@@ -96,7 +96,7 @@ class Question:
     def remote_buttons(self) -> tuple[str, ...]:
         """The remote control's buttons that the program tests, by the names of `REMOTE_BY_HAND`.
 
-        It is empty for any button.
+        The result is empty for any button.
         """
         return self._find_words(REMOTE_WORDS)
 

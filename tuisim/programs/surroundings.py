@@ -191,7 +191,7 @@ class Surroundings:
 def compute(expression: ast.expr, values: Mapping[str, Any]) -> str | None:
     """Return the value of an expression as text of `ValueWriter`; None if the expression uses other names.
 
-    It may use constants, `math`, and classes that only store their values.
+    The expression may use constants, `math`, and classes that only store their values.
     """
     for node in ast.walk(expression):
         match node:

@@ -187,7 +187,7 @@ def _prepare_worker() -> None:
 def _end_with_parent() -> None:
     """End this worker process once its parent has been killed.
 
-    It would not notice that otherwise, since other workers keep its pipe open.
+    The process would not notice this otherwise, since other workers keep its pipe open.
     """
     parent = parent_process()
     assert parent is not None

@@ -71,7 +71,7 @@ class VariableStatistics:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """The result of a task: how its run ended, and what it recorded. It does not depend on the process that ran it."""
+    """The result of a task: how its run ended, and its recording. The process that ran the task has no effect on it."""
 
     index: int
     parameters: Mapping[str, Value]

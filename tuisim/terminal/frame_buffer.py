@@ -342,7 +342,7 @@ def _join_looks(first: CellLook, second: CellLook) -> CellLook | None:
 class _Pen:
     """Collects the codes that write cells; it knows the terminal's cursor and current style.
 
-    It begins and ends with the terminal's default style.
+    The codes begin and end with the terminal's default style.
     """
 
     def __init__(self) -> None:

@@ -33,7 +33,7 @@ _BRAILLE_BITS = (0, 3, 1, 4, 2, 5, 6, 7)
 def _list_octants() -> list[str]:
     """Return the glyphs of all 256 patterns of octants, in the order of the patterns.
 
-    They are the characters from U+1CD00 on; the patterns of `_ELSEWHERE` have other characters.
+    The glyphs are the characters from U+1CD00 on; the patterns of `_ELSEWHERE` have other characters.
     """
     following = iter(range(0x1CD00, 0x1CDE6))
     return [_ELSEWHERE.get(pattern) or chr(next(following)) for pattern in range(256)]

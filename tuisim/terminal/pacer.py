@@ -139,7 +139,7 @@ class Pacer:
     def ready(self) -> bool:
         """Return whether a frame may be drawn now.
 
-        It may not be too soon after the last frame, or while too much is still on its way to the terminal.
+        A frame is not drawn too soon after the last one, or while too many bytes are on their way to the terminal.
         """
         now = self._clock()
         # The gap may be a tenth shorter: a timer that fires slightly early would otherwise halve the rate.

@@ -172,7 +172,7 @@ def name_around(name: str, environment: Mapping[str, str]) -> str:
 def _ask_tmux(what: str, environment: Mapping[str, str]) -> str:
     """Return a property of the terminal around tmux, such as its name.
 
-    It is empty if tmux does not know it, or is not the innermost program.
+    The result is empty if tmux does not know it, or is not the innermost program.
     """
     if "TMUX" not in environment or "STY" in environment:
         return ""

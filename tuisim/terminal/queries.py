@@ -44,7 +44,7 @@ _MIN_CELL_PX, _MAX_CELL_PX = (2, 4), (300, 300)
 
 @dataclass(frozen=True, slots=True)
 class TerminalFacts:
-    """What is known of a terminal from its answers so far."""
+    """The facts that are known of a terminal from its answers so far."""
 
     name: str = ""
     """Name and version of the terminal, such as `kitty(0.36.4)`; empty if it does not say."""
@@ -71,7 +71,7 @@ class TerminalFacts:
 
     @property
     def without_refusal(self) -> TerminalFacts:
-        """The facts in which kitty's protocol is unknown again, unless the terminal has answered about it."""
+        """The same facts; if the terminal has not answered whether it knows kitty's protocol, this is unknown again."""
         return (
             self
             if self.has_kitty_graphics or self.kitty_error

@@ -254,7 +254,7 @@ def _select_facets(facets: list[LogTrace], selected: str, max_count: int) -> lis
 def _build_measure_line(model: AnalysisModel, unit: str, width: int) -> list[list[Run]]:
     """Return a line about the selected variable between the two cursors: time, change, slope and statistics.
 
-    It is empty without a second cursor.
+    The result is empty without a second cursor.
     """
     if model.mark_s is None or not model.log.rows:
         return []

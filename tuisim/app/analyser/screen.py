@@ -48,7 +48,7 @@ Made = TypeVar("Made")
 
 
 class LogScreen(ActionHost, ClosesOnce[None]):
-    """The screen with the views of one log. It is modal, so that the keys of the app below do not work.
+    """The screen with the views of one log. The screen is modal, so that the keys of the app below do not work.
 
     Args:
         request: The log to open.

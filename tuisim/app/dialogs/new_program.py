@@ -18,7 +18,7 @@ from tuisim.programs.program_file import replace_mat
 
 
 class Skeleton(StrEnum):
-    """What a new program contains at first, such as a loop that logs a sensor; `EMPTY` is a program without a loop."""
+    """The first content of a new program, such as a loop that logs a sensor; `EMPTY` is a program without a loop."""
 
     LOG = "log"
     UNTIL = "until"

@@ -191,7 +191,7 @@ def _build_line(rgb: Rgb | None, port: str, words: str) -> Line:
 def _describe_place(sensor: SensorSpec) -> str:
     """Return a sensor's position in mm from the robot's centre, and its size, such as `: 10 left, 65 ahead, ⌀ 20`.
 
-    It is empty for a sensor without a position.
+    The result is empty for a sensor without a position.
     """
     x_mm, y_mm = getattr(sensor, "x_mm", math.nan), getattr(sensor, "y_mm", math.nan)
     if math.isnan(x_mm):

@@ -156,7 +156,8 @@ def parse_branch_root(run: RunInfo) -> int | None:
 def find_likeliest(listed: Sequence[RunInfo], this: RunInfo) -> int:
     """Return the index of the run in a list with which the user most likely compares the run `this`.
 
-    It is the run from which `this` branched off, else the first run of the same program, else the first of all.
+    The likeliest is the run from which `this` branched off, else the first run of the same program, else the first of
+    all.
     """
     root = parse_branch_root(this)
     likely = [index for index, run in enumerate(listed) if run.number == root]

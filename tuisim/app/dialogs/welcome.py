@@ -20,7 +20,7 @@ from tuisim.terminal.textual_internals import find_bindings
 
 
 class Begin(StrEnum):
-    """What a user can begin with in the welcome, such as a lesson or a new program."""
+    """A choice of the welcome with which a user can begin, such as a lesson or a new program."""
 
     NEW = "new"
     EXAMPLE = "example"

@@ -56,8 +56,8 @@ class Assistant:
     def describe_cursor(self, width: int) -> Text:
         """Return a message about the cursor's place in at most `width` cells.
 
-        It is about an unknown name at the cursor or, without one, the signature of the call around the cursor. The
-        message is empty if there is no such name and no call.
+        The message is about an unknown name at the cursor or, without one, the signature of the call around the cursor.
+        The message is empty if there is no such name and no call.
         """
         row, column = self._area.cursor_location
         unknown = next(

@@ -75,7 +75,7 @@ def measure_width(candidates: Sequence[Candidate], room: int) -> int:
 def list_place(word: Offset, size: Size, screen: Size) -> Offset:
     """Return the position of a list of names on the screen, all of it visible.
 
-    It is below the word that is being typed or, if there is no room, above the word.
+    The list is below the word that is being typed or, if there is no room, above the word.
 
     Args:
         word: Position of the word.
@@ -117,7 +117,7 @@ def _build_signature(signature: Signature, indices: range) -> Text:
 class CandidateList(Widget):
     """The list of names that may complete a word, above everything else on the screen.
 
-    It never has the focus: the text passes on the keys.
+    The list never has the focus: the text passes on the keys.
     """
 
     ALLOW_SELECT = False
@@ -197,7 +197,7 @@ class CandidateList(Widget):
     def can_complete(self, word: str) -> bool:
         """Return whether a dot or a parenthesis typed after a word replaces the word by the chosen name.
 
-        It does if the user asked for the list, and the word is not a whole name already.
+        The word is replaced if the user asked for the list, and the word is not a whole name already.
         """
         return (
             self.is_open and bool(word) and not self.is_offered and not self._has_whole_name(word)
@@ -206,8 +206,8 @@ class CandidateList(Widget):
     def takes_key(self, event: events.Key) -> bool:
         """Return whether the list handles a key; if not, the text gets the key.
 
-        Enter begins a new line in the text if it was pressed before the list was visible. It also does after a whole
-        name, if the list has opened by itself.
+        Enter begins a new line in the text if it was pressed before the list was visible. Enter also does so after a
+        whole name, if the list has opened by itself.
         """
         is_whole = self.is_offered and self._has_whole_name(self._word)
         ends_line = event.key == "enter" and (is_whole or event.time < self._opened_s)

@@ -95,7 +95,7 @@ def _encode_text(text: str, form: TextFormat, path: Path) -> bytes:
 def _is_declared(encoding: str, text: str) -> bool:
     """Return whether Python would read a text in an encoding.
 
-    It does if this is the default encoding, or the first two lines of the text name it.
+    Python does so if this is the default encoding, or the first two lines of the text name it.
     """
     return encoding == "utf-8" or encoding in "\n".join(text.split("\n", 2)[:2])
 

@@ -52,7 +52,7 @@ def _outdent_line(line: str) -> str:
 def count_deletable_blanks(before: str) -> int:
     """Return how many blanks backspace deletes behind the text `before`: one level of indentation.
 
-    It is 0 if `before` is not only indentation.
+    The number is 0 if `before` is not only indentation.
     """
     return (len(before) - 1) % len(INDENT) + 1 if before and not before.strip(" ") else 0
 

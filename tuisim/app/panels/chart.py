@@ -32,7 +32,7 @@ _VALUE_COLS = 40
 
 
 class Chart(LinesPanel, can_focus=True):
-    """The chart panel. It also stores the data that arrives while it is hidden."""
+    """The chart panel. The panel also stores the data that arrives while it is hidden."""
 
     FOOTER_KEYS: ClassVar[tuple[KeyWord, ...]] = (("← →", "cursor"), ("1…9", "traces"))
     FROZEN: ClassVar[str] = "frozen: f follows again"

@@ -135,7 +135,7 @@ class Debug(LinesPanel, can_focus=True):
 def _read_module_line(paused: Paused) -> str:
     """Return the source line at which a program is paused in another module.
 
-    It is empty if the program is paused in its own file, or the line cannot be read.
+    The result is empty if the program is paused in its own file, or the line cannot be read.
     """
     if not paused.file:
         return ""

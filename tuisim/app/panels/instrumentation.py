@@ -39,7 +39,7 @@ _CELL = 16
 class Instrumentation(LinesPanel, can_focus=True):
     """The instrumentation panel: the readings of motors and sensors, and the pose.
 
-    It has four forms, by height: 11 lines, 9 lines, 6 lines, and columns of cells.
+    The panel has four forms, by height: 11 lines, 9 lines, 6 lines, and columns of cells.
     """
 
     def __init__(self) -> None:

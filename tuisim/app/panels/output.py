@@ -190,8 +190,8 @@ def split_row(row: OutputRow, width: int) -> list[str]:
 def _find_break(text: str, width: int) -> int:
     """Return the index at which to break a text that is longer than `width` cells.
 
-    It is behind a blank or a separator if that leaves less than half of the row empty; else before a word that fits in
-    one row.
+    The break is behind a blank or a separator if that leaves less than half of the row empty; else before a word that
+    fits in one row.
     """
     good, fair = (
         max(text.rfind(sign, width // 2, width) for sign in signs) + 1 for signs in _BREAKS

@@ -53,7 +53,7 @@ def name_mat(mat: str, layout: str, width: int) -> str:
 def name_sensors(now: Snapshot, width: int) -> str:
     """Return the names of the colour sensors for a frame: number, name in the robot, port, name in the program.
 
-    It is empty if not even the numbers with name and port fit.
+    The result is empty if not even the numbers with name and port fit.
     """
     prelude = PRELUDE_TEXTS.get(now.program.prelude, "") if now.program else ""
     predefined = {f"in{port}": name for name, port in _PREDEFINED.findall(prelude)}

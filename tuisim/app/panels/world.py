@@ -412,7 +412,7 @@ class WorldView(PixelView):
     def _locate_mouse(self, event: events.MouseEvent) -> tuple[float, float]:
         """Return the point of the field under the mouse, in mm.
 
-        It is the middle of a cell, or more exact if the terminal reports pixels.
+        The point is the middle of a cell, or more exact if the terminal reports pixels.
         """
         assert self._port is not None
         col = event.pointer_x

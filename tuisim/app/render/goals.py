@@ -80,7 +80,7 @@ class GoalsPicture:
 def find_current_goal(states: tuple[GoalState, ...]) -> int:
     """Return the index of the goal whose details are shown by default.
 
-    It is the first missed goal; without one, the first open goal; if all are met, the first of all.
+    This is the first missed goal; without one, the first open goal; if all are met, the first of all.
     """
     for state in (GoalState.MISSED, GoalState.OPEN):
         if state in states:

@@ -170,7 +170,7 @@ def judge_locale(variable: str, encoding: str) -> Finding:
     """Return a finding on the locale.
 
     Args:
-        variable: The variable that decides it with its value, such as `LANG=C.UTF-8`; empty if none is set.
+        variable: The variable that decides the locale, with its value, such as `LANG=C.UTF-8`; empty if none is set.
         encoding: The encoding that Python uses.
     """
     value = f"{variable or 'not set'} ({encoding})"

@@ -108,7 +108,7 @@ def label_ticks(limits: Limits, count: int) -> list[tuple[float, str]]:
 def grow_limits(end_s: float) -> Limits:
     """Return limits from 0 to a time in s shortly after `end_s`.
 
-    They grow in steps, so that a new point rarely rescales the curves.
+    The limits grow in steps, so that a new point rarely rescales the curves.
     """
     step = choose_step(max(end_s, 1.0), 8)
     return 0.0, max(math.ceil(end_s / step - 1e-9) * step, 1.0)

@@ -41,7 +41,7 @@ _THINNED = 4
 def find_scale_name(name: str) -> str:
     """Return the name of the scale to which a variable is drawn: its unit, or the word for its reading.
 
-    It is empty for light in any unit, and for unknown variables.
+    The result is empty for light in any unit, and for unknown variables.
     """
     name = name.partition(" #")[0]
     sign = parse_unit(name).sign

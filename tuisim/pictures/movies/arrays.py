@@ -37,7 +37,7 @@ _MIN_DISC_PX = 60
 def draw_face(face: DiscFace, width: int, height: int, *, has_limits: bool) -> Drawing:
     """Return the picture of what a colour sensor sees: its disc, and its values below the disc.
 
-    These are the value that the program reads, a scale, the thresholds and the rings.
+    The values are the value that the program reads, a scale, the thresholds and the rings.
 
     Args:
         face: What is shown of the sensor.

@@ -36,7 +36,7 @@ _FINEST = 80
 
 @dataclass(frozen=True, slots=True)
 class DiscFace:
-    """What pictures show of a colour sensor: the pixels of its disc, its values, and the program's thresholds."""
+    """The data of a colour sensor that pictures show: pixels of its disc, its values, and the program's thresholds."""
 
     name: str
     box: bytes
@@ -122,7 +122,7 @@ class DiscFace:
 def list_disc_faces(
     spec: RunSpec, instant: Instant, field: Field, program: Program | None
 ) -> list[DiscFace]:
-    """Return for each colour sensor of a run what pictures show of it at an instant.
+    """Return for each colour sensor of a run the data that pictures show at an instant.
 
     Args:
         spec: The run.

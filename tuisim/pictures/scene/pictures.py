@@ -39,7 +39,7 @@ RIM_RGB: Rgb = (232, 234, 238)
 def find_area(records: NDArray[Any]) -> Area:
     """Return the area that a picture of a run shows: the field, extended to where the robot has been.
 
-    It ends `_MAX_OFF_MM` beyond the field.
+    The area ends `_MAX_OFF_MM` beyond the field.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`.

@@ -33,7 +33,7 @@ USUAL = ROBOTS[DEFAULT_ROBOT]
 
 
 def find_usual(hub: str) -> RobotSpec:
-    """Return the usual robot, from which the robot of a program is built.
+    """Return the usual robot of a hub, from which the robot of a program is built.
 
     Args:
         hub: One of `HUBS`; empty for the EV3.

@@ -50,7 +50,7 @@ def resolve_column(condition: ValueCondition, run: RunSpec) -> ValueCondition:
 def parse_goal_condition(text: str) -> ValueCondition | None:
     """Parse a condition of a goal; return None if the text is not one.
 
-    It is one of `parse_run_condition`, or `sound matches REGEX` or `display matches REGEX`.
+    A condition is one of `parse_run_condition`, or `sound matches REGEX` or `display matches REGEX`.
     """
     word, _, rest = text.strip().partition(" ")
     verb, _, pattern = rest.strip().partition(" ")

@@ -72,7 +72,7 @@ def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: Evid
 
 
 def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when comparisons of a condition were first false or, with a share, if they were false for too long."""
+    """Return when comparisons of a condition were first false or, with a share, that they were so for too long."""
     import numpy as np
 
     records = evidence.records[span.ticks]

@@ -58,7 +58,7 @@ def format_distance(distance_mm: float) -> str:
 def share_words(share: float) -> str:
     """Return a share from 0 to 1 for a sentence, such as `45 %`.
 
-    It is rounded down, so that the text names no share that was not reached.
+    The share is rounded down, so that the text names no share that was not reached.
     """
     return f"{int(share * 1000) / 10:g} %"
 
@@ -135,7 +135,7 @@ class Evidence:
     def falsified(self) -> str:
         """How the program has falsified its recording, a sentence without a full stop.
 
-        It is empty if the recording can be trusted.
+        The result is empty if the recording can be trusted.
         """
         return self.end.summary if self.end is not None and self.end.end is End.FALSIFIED else ""
 

@@ -182,7 +182,7 @@ def _measure_way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
 
 
 def find_left(condition: InsideCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the robot left an area in which it must stay."""
+    """Return when the robot left an area in which it must stay; `Finding()` if it did not."""
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -195,7 +195,7 @@ def find_left(condition: InsideCondition, evidence: Evidence, span: EvidenceSpan
 
 
 def find_entered(condition: OutsideCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the robot entered an area that it must stay out of."""
+    """Return when the robot entered an area that it must stay out of; `Finding()` if it did not."""
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -280,7 +280,7 @@ def _measure_circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec
 
 
 def find_touch(condition: TouchNothingCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the robot touched an obstacle or a wall, or came too near to one."""
+    """Return when the robot touched an obstacle or a wall, or came too near to one; `Finding()` if it did not."""
     world = evidence.spec.world
     robot = evidence.spec.robot
     walls = world.walls and condition.walls
@@ -311,7 +311,7 @@ def _find_first_contact(
 ) -> tuple[int, int] | None:
     """Return the first index at which the robot is too near to a solid object, and the index of the object.
 
-    The result is None if the robot is never too near. Ticks during which it cannot have come so near are skipped.
+    The result is None if the robot is never too near. Ticks are skipped if the robot cannot have come so near in them.
 
     Args:
         records: Telemetry.

@@ -52,7 +52,7 @@ class BodyPart(StrEnum):
 
 
 class Reading(StrEnum):
-    """What a goal can require the program to read: a kind of sensor, or a motor."""
+    """A device that a goal can require the program to read: a kind of sensor, or a motor."""
 
     COLOR = "color"
     ULTRASONIC = "ultrasonic"

@@ -23,7 +23,7 @@ from tuisim.tasks.lessons.spec import (
 
 @dataclass(frozen=True, slots=True)
 class JudgedRun:
-    """Event: a run has met goals. It comes again when the run has met more."""
+    """Event: a run has met goals. The event comes again when the run has met more."""
 
     run_id: str
     seed: int

@@ -435,7 +435,7 @@ def _check_models(step: LessonStep, location: Location) -> None:
 def _add_answers(steps: Sequence[LessonStep], location: Location) -> tuple[LessonStep, ...]:
     """Return the steps, in which each step that runs a program has a model answer.
 
-    It is the step's own, or else that of the next step with one.
+    This is the step's own answer, or else that of the next step with one.
     """
     answer = ""
     completed = []

@@ -70,7 +70,7 @@ _PAUSE_S = 10.0
 
 
 class Change(StrEnum):
-    """What the caller of a `LessonSession` must do after an event."""
+    """The action that the caller of a `LessonSession` must take after an event."""
 
     NONE = "none"
     SHOW = "show"

@@ -220,7 +220,7 @@ def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
 
 
 def _is_weightier(goal: GoalOutcome, before: GoalOutcome | None) -> bool:
-    """Return whether a goal's outcome in a world replaces the one before.
+    """Return whether a goal's outcome in a world replaces its outcome in the worlds before.
 
     A good outcome is replaced by any other, an unknown outcome only by a miss.
     """
@@ -256,7 +256,8 @@ def make_portable(text: str, folder: Path | str) -> str:
 def _find_cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgement:
     """Return the judgement with the reason for a missed goal.
 
-    It is the goal's own or, for a goal with `all`, the judgement of the first of those goals that is not met.
+    This is the goal's own judgement or, for a goal with `all`, the judgement of the first of those goals that is not
+    met.
     """
     if isinstance(judgement.goal.condition, AllOf):
         for name in judgement.goal.condition.goals:
