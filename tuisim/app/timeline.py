@@ -93,6 +93,10 @@ class Timeline:
         """Whether the recording is being played back."""
         return self._played_s is not None
 
+    def find_tick(self, time_s: float) -> int:
+        """Return the last tick up to a time in s."""
+        return int(time_s * self.tick_hz + 1e-6)
+
     def record(self) -> TickRecord | None:
         """Return the record of the past tick in view; None at the newest instant."""
         if self.at is None or self.recording is None:
@@ -154,7 +158,7 @@ class Timeline:
             return False
         self._played_s += (wall_s - self._wall_s) * (speed or FASTEST)
         self._wall_s = wall_s
-        tick = int(self._played_s * self.tick_hz + 1e-6)
+        tick = self.find_tick(self._played_s)
         if tick >= self.newest:
             self.go(None)
             return True

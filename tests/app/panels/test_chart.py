@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from typing import Any
 
 import pytest
 from textual.pilot import Pilot
 
 from tests.app.app_help import until
-from tests.app.panel_help import PanelApp, moment, screen_text
+from tests.app.panel_help import SPEC, PanelApp, moment, screen_text
 from tests.cases import cases
 from tuisim.app.panels.chart import Chart
 from tuisim.app.snapshot import RunPhase
@@ -42,6 +43,20 @@ def rows(app: PanelApp[Chart]) -> list[str]:
 async def opened(app: PanelApp[Chart], pilot: Pilot[None]) -> None:
     app.panel.focus()
     await pilot.pause()
+
+
+@pytest.mark.parametrize("hz", [100, 30])
+async def test_the_readout_of_a_past_tick_is_what_was_printed_last_in_it(hz: int) -> None:
+    async with open_chart() as (_, app):
+        spec = replace(SPEC, profile=replace(SPEC.profile, tick_hz=hz))
+        times_s = (80.99 / hz, 81 / hz, 81.99 / hz, 82 / hz, 82.5 / hz)
+        app.panel.append("pos", times_s, (-1.0, -2.0, -3.0, -4.0, -5.0))
+        now = moment(spec=spec)
+        app.panel.show(replace(now, past=True, instant=replace(now.instant, tick=81)))
+        rows(app)
+        assert "pos -3" in str(app.panel.border_subtitle)
+        copied = app.panel.copy_text()
+        assert copied is not None and "pos -3" in copied.text
 
 
 @pytest.mark.parametrize("size", [(20, 6), (80, 16), (180, 30)], ids=str)

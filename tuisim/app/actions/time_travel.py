@@ -71,17 +71,16 @@ def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -
         sample: Name of a sample printed at that time: the line of the program that printed it is highlighted; empty for
             none.
     """
-    tick = None if time_s is None else round(time_s * context.runs.timeline.tick_hz)
-    recording = context.runs.timeline.recording
-    if (
-        sample
-        and tick is not None
-        and recording is not None
-        and (line := recording.rows.find_line(sample, tick))
-    ):
-        context.debugger.choose_line(tick, line)
-        if not context.panels.is_shown("code"):
-            context.app.say(f"Line {line} printed this: {{panel-code}} shows it")
+    timeline = context.runs.timeline
+    tick = None if time_s is None else round(time_s * timeline.tick_hz)
+    recording = timeline.recording
+    if sample and time_s is not None and recording is not None:
+        # The program printed it within a tick.
+        tick = timeline.find_tick(time_s)
+        if line := recording.rows.find_line(sample, tick):
+            context.debugger.choose_line(tick, line)
+            if not context.panels.is_shown("code"):
+                context.app.say(f"Line {line} printed this: {{panel-code}} shows it")
     go_to_tick(context, tick)
 
 
@@ -237,7 +236,7 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
         return
     if reason.kind is ReasonKind.DIFFERS and context.runs.earlier is not earlier:
         context.runs.show_earlier(earlier)
-    tick = round(reason.time_s * context.runs.timeline.tick_hz)
+    tick = context.runs.timeline.find_tick(reason.time_s)
     context.debugger.choose_line(tick, reason.line)
     go_to_tick(context, tick)
     if reason.kind is ReasonKind.RAISED and not context.runs.in_run:

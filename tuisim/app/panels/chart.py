@@ -76,6 +76,8 @@ class Chart(LinesPanel, can_focus=True):
         self._dragging = False
         self._pointed_s: float | None = None
         """The time below the pointer."""
+        self._end_s = 0.0
+        """The last moment of the instant in view."""
         self._light = PLAIN_LIGHT
         self._is_at_rest = False
         self._spanned: object = None
@@ -113,6 +115,7 @@ class Chart(LinesPanel, can_focus=True):
         if state != self._state:
             self._state = state
             self._dirty = True
+        self._end_s = snapshot.end_s
         self._light = find_light(snapshot.recorded_spec or snapshot.spec)
         was_at_rest = self._is_at_rest
         self._is_at_rest = snapshot.state in AT_REST
@@ -289,29 +292,33 @@ class Chart(LinesPanel, can_focus=True):
             time_s: Time under the pointer; None shows the values at the cursor.
         """
         self._pointed_s = time_s
-        time_s = self._state.cursor_s if time_s is None else time_s
-        drawn = self._traces.list_drawn()
-        if time_s is None or not drawn:
-            words = self.FROZEN if self._state.x_limits else ""
-        else:
-            words = escape_markup(
-                format_values(drawn, time_s, self._state.unit, self.size.width - 4)
-            )
+        words = escape_markup(self._format_values(self.size.width - 4))
+        words = words or (self.FROZEN if self._state.x_limits else "")
         # An assignment draws the panel again even if the words are the same.
         if words != self.border_subtitle:
             self.border_subtitle = words
+
+    def _format_values(self, width: int) -> str:
+        """Return the values of the drawn traces at the pointer, else at the cursor, as a text; empty if there are none.
+
+        At the cursor they are those of the instant in view, like the newest line of the output.
+        """
+        time_s = self._state.cursor_s if self._pointed_s is None else self._pointed_s
+        drawn = self._traces.list_drawn()
+        if time_s is None or not drawn:
+            return ""
+        end_s = self._end_s if self._pointed_s is None else time_s
+        return format_values(drawn, time_s, self._state.unit, width, end_s=end_s)
 
     def copy_text(self) -> Copied | None:
         """Return the values of all drawn traces at the pointer or, without a pointer, at the cursor.
 
         The result is None without a pointer and a cursor, or if no trace is drawn.
         """
-        time_s = self._state.cursor_s if self._pointed_s is None else self._pointed_s
         drawn = self._traces.list_drawn()
-        if time_s is None or not drawn:
-            return None
         width = sum(len(trace.name) + _VALUE_COLS for trace in drawn) + _VALUE_COLS
-        return Copied("Values of the chart", format_values(drawn, time_s, self._state.unit, width))
+        words = self._format_values(width)
+        return Copied("Values of the chart", words) if words else None
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
         if self._dragging:

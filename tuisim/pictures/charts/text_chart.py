@@ -326,11 +326,21 @@ def measure_margins(
     )
 
 
-def format_values(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) -> str:
-    """Return the values of traces at a time as a text of at most `width` letters, as many as fit."""
+def format_values(
+    drawn: Sequence[Trace], cursor_s: float, unit: str, width: int, *, end_s: float | None = None
+) -> str:
+    """Return the values of traces at a time as a text of at most `width` letters, as many as fit.
+
+    Args:
+        drawn: The traces.
+        cursor_s: The time.
+        unit: Its unit.
+        width: The width.
+        end_s: The end of the tick at this time, up to which values count; None if they count up to the time itself.
+    """
     line = f"{cursor_s:.2f} {unit}"
     for number, trace in enumerate(drawn):
-        value = trace.find_value(cursor_s)
+        value = trace.find_value(cursor_s if end_s is None else end_s)
         read = (
             f"  {trace.name} {value:.5g}{find_unit(trace.name)}"
             if value is not None
