@@ -71,7 +71,10 @@ async def test_keys_go_back_and_forward() -> None:
         assert "This is the start of the run" in notices(app)
 
 
-OF_NOW: dict[str, Any] = dict.fromkeys(("next_spec", "recorded_spec", "now_pose", "program"))
+OF_NOW: dict[str, Any] = {
+    "wheels": "last speeds",
+    **dict.fromkeys(("next_spec", "recorded_spec", "now_pose", "program")),
+}
 """What a snapshot of a former instant says of the present."""
 
 

@@ -203,7 +203,7 @@ class DebugController:
     def run_changed(self) -> None:
         """Reset the debugger after the app has switched to another run, or to none."""
         self._app.notices.release()
-        self._paused = self.position = self.view = self._run_controller.paused_line = None
+        self._paused = self.position = self.view = self._run_controller.shown_pause = None
         self._run_controller.chosen_line = None
         self._frame = 0
         self._thread = ""
@@ -225,7 +225,7 @@ class DebugController:
         self._paused = None
         if not self.is_away:
             self._forget_steps()
-            self.view = self._run_controller.paused_line = None
+            self.view = self._run_controller.shown_pause = None
             self.show()
 
     def handle(self, event: Message) -> None:
@@ -388,7 +388,7 @@ class DebugController:
             self.show()
 
     def _return_to_now(self) -> None:
-        self.view = None
+        self.view = self._run_controller.shown_pause = None
         self._wanted = None
         self.show()
         self._inspect_again()
@@ -465,9 +465,7 @@ class DebugController:
         self.show()
 
     def _set_paused(self, view: PauseView) -> None:
-        self.view = view
-        line = view.paused.line if not view.paused.file else 0
-        self._run_controller.paused_line = view.paused.tick, line
+        self.view = self._run_controller.shown_pause = view
         if not view.past:
             self._run_controller.chosen_line = None
         self.show()

@@ -7,20 +7,21 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tuisim.app.earlier_run import find_pose, is_comparable
+from tuisim.app.pending import Pending
 from tuisim.app.run_update import NearSampleWatch, RunUpdate, describe_contacts, describe_remarks
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
-from tuisim.app.snapshot import RunPhase, Snapshot
+from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
 from tuisim.app.timeline import Timeline
-from tuisim.base.data_class import dataclass
 from tuisim.engine import protocol
 from tuisim.engine.core.drift import find_drift
 from tuisim.engine.core.end_stops import build_start_flags
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import PRESSABLE, NoiseSpec, RunSpec
-from tuisim.engine.core.state import Instant
+from tuisim.engine.core.state import Instant, Present
 from tuisim.engine.protocol import RunState
+from tuisim.engine.runs.command_words import WHEEL_WORDS
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.store import RunStore
@@ -41,57 +42,6 @@ FIRST_LINE = (0, 1)
 
 ROWS_A_POLL = 4000
 """Most output rows that one poll reads, so that a flood of prints does not block the app."""
-
-
-@dataclass(slots=True)
-class Pending:
-    """User actions that were sent to the run but are not in its newest record yet."""
-
-    _after: tuple[int, int] = (-1, 0)
-    """Tick of the record after which the actions were sent, and the number of actions that it counts."""
-    _pose: Pose | None = None
-    _noise: NoiseSpec | None = None
-    _pen_down: bool | None = None
-
-    def note(self, record: TickRecord, action: protocol.Message) -> None:
-        """Remember an action that was sent to the run while `record` was its newest record."""
-        if self._after != _build_key(record):
-            self.forget()
-            self._after = _build_key(record)
-        match action:
-            case protocol.SetPose(x_mm=x_mm, y_mm=y_mm, heading_deg=heading_deg):
-                self._pose = Pose(x_mm, y_mm, heading_deg)
-            case protocol.SetNoise(light=light, motor=motor):
-                self._noise = NoiseSpec(light, motor)
-            case protocol.SetPen(down=down):
-                self._pen_down = down
-
-    def forget(self) -> None:
-        """Remove all pending user actions."""
-        self._after = (-1, 0)
-        self._pose = None
-        self._noise = None
-        self._pen_down = None
-
-    def apply_pending(
-        self, record: TickRecord, instant: Instant, pen_down: bool
-    ) -> tuple[Instant, bool]:
-        """Return the instant of the newest record, and whether the pen is down, with the pending actions applied.
-
-        The gyro keeps its angle, as it does when the robot is lifted.
-        """
-        if self._after != _build_key(record):
-            return instant, pen_down
-        pose = self._pose or instant.pose
-        zero_deg = instant.gyro_zero_deg + pose.heading_deg - instant.pose.heading_deg
-        instant = replace(
-            instant, pose=pose, noise=self._noise or instant.noise, gyro_zero_deg=zero_deg
-        )
-        return instant, pen_down if self._pen_down is None else self._pen_down
-
-
-def _build_key(record: TickRecord) -> tuple[int, int]:
-    return record.tick, record.actions
 
 
 class RunController:
@@ -138,8 +88,8 @@ class RunController:
         self._near_samples = NearSampleWatch()
         self.propose: Callable[[protocol.Message], bool] = lambda _: False
         """Proposes a branch with a user action if the past is in view, and returns whether it is."""
-        self.paused_line: tuple[int, int] | None = None
-        """Tick and line at which the program is paused: more exact than the record of that tick."""
+        self.shown_pause: PauseView | None = None
+        """The pause that was shown last: its line and its values are more exact than the record of its tick."""
         self.chosen_line: tuple[int, int] | None = None
         """Tick and line that the user has gone to: of a sample that was clicked in the chart, or of a reason."""
 
@@ -206,6 +156,8 @@ class RunController:
         face = timeline.face(now_tick if timeline.at is None else timeline.at)
         hz = timeline.tick_hz
         turns = face.extrapolate_turns(instant.tick / hz, hz) if record else ()
+        if record and (present := self._find_present(record)):
+            turns = present.turns[2:]
         return Snapshot(
             state=state,
             end=self._end if state == RunPhase.ENDED else None,
@@ -223,6 +175,7 @@ class RunController:
             face=face,
             turns=turns,
             pressed=self._find_pressed(record),
+            wheels=recording.commands.describe_wheels() if recording else WHEEL_WORDS[-1],
             placed=recording is not None and self._moved and not past,
             past=past,
             now_tick=now_tick,
@@ -273,13 +226,24 @@ class RunController:
             return self._still, 0, self.next_run.spec.robot.pen.down
         noise = recording.find_noise(record) if self._is_of_run else self.next_run.spec.world.noise
         # Before a run, the pen is up or down as at the start of the next run.
-        down = record.is_pen_down if self._is_of_run else self.next_run.spec.robot.pen.down
-        exact = dict(known for known in (self.paused_line, self.chosen_line) if known)
+        down = (
+            recording.is_pen_down(record) if self._is_of_run else self.next_run.spec.robot.pen.down
+        )
+        paused_line = self.shown_pause and self.shown_pause.line
+        exact = dict(known for known in (paused_line, self.chosen_line) if known)
         instant = recording.instant(record, self.spec, noise)
+        if present := self._find_present(record):
+            instant, down = present.apply(instant), present.pen_down
         line = exact.get(record.tick, record.line)
         if self.in_run and not self.in_past:
             instant, down = self._pending.apply_pending(record, instant, down)
         return instant, line, down
+
+    def _find_present(self, record: TickRecord) -> Present | None:
+        """Return what the program would read at the pause in view; None if there is none at a record."""
+        pause = self.shown_pause
+        is_there = pause is not None and (pause.past or self._is_paused)
+        return pause.find_present(record, self.spec.robot) if pause and is_there else None
 
     def _find_pressed(self, record: TickRecord | None) -> frozenset[str]:
         """Return the buttons that the user holds down; without any, or in the past, the buttons pressed at a record.

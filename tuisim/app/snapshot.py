@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from enum import StrEnum
 from functools import cached_property
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import Program
@@ -14,11 +14,15 @@ from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.sensors import color, measure_sensors, ultrasonic
 from tuisim.engine.core.sensors.color import ColorReading
-from tuisim.engine.core.spec import RunSpec
-from tuisim.engine.core.state import Instant
+from tuisim.engine.core.spec import RobotSpec, RunSpec
+from tuisim.engine.core.state import Instant, Present
 from tuisim.engine.protocol import BusyLoop, End, Ended, Inspected, Paused, RunState, Unended
 from tuisim.engine.runs.brick_state import BrickState
+from tuisim.engine.runs.command_words import WHEEL_WORDS
 from tuisim.engine.runs.run_folder import format_end
+
+if TYPE_CHECKING:
+    from tuisim.engine.runs.views import TickRecord
 
 CHART_PERIOD_S = 0.33
 """Drawing a chart takes tens of milliseconds: three times a second is enough to follow it."""
@@ -46,9 +50,6 @@ AT_REST = frozenset({RunPhase.PAUSED, RunPhase.ENDED})
 
 GOOD_ENDS: frozenset[RunState | None] = frozenset({End.FINISHED, End.STOPPED})
 """Ways to end a run that are no failure."""
-
-LAST_SPEEDS = ", last speeds"
-"""Follows the state where `Snapshot.ends_turning`."""
 
 _HALF_NS = 5e-10
 _DARK = BrickState()
@@ -88,6 +89,8 @@ class Snapshot:
     a run, and after the robot was placed following it: all motors are reset."""
     pressed: frozenset[str] = frozenset()
     """The brick's buttons that are held down."""
+    wheels: str = WHEEL_WORDS[-1]
+    """How the program has left wheels that turn, of `WHEEL_WORDS`."""
 
     placed: bool = False
     """Whether the robot was placed since the run, so that this is what the next one begins with."""
@@ -179,10 +182,11 @@ class Snapshot:
         return measure_sensors(self.spec.robot.further_sensors, self.instant, self.spec, self.field)
 
     @property
-    def ends_turning(self) -> bool:
-        """Whether the end of a run is in view, and its wheel motors still turned in the last tick."""
+    def turning(self) -> str:
+        """How wheels that turn at the end of a run were left, to follow its state; empty at any other instant."""
         is_end = self.state is RunPhase.ENDED and not (self.past or self.placed)
-        return is_end and bool(self.instant.left_speed_dps or self.instant.right_speed_dps)
+        turns = self.instant.left_speed_dps or self.instant.right_speed_dps
+        return f", {self.wheels}" if is_end and turns else ""
 
     def has_stopped_since(self, before: Snapshot | None) -> bool:
         """Return whether the run is paused or over, and had another state in the snapshot `before`; False for None."""
@@ -212,6 +216,24 @@ class PauseView:
     inspected: Inspected
     past: bool
     """Whether this is a past instant."""
+
+    @property
+    def line(self) -> tuple[int, int]:
+        """The tick, and the line of the program; 0 if it is one of a module."""
+        return self.paused.tick, 0 if self.paused.file else self.paused.line
+
+    def find_present(self, record: TickRecord, robot: RobotSpec) -> Present | None:
+        """Return what the program would read there; None if that is unknown, or another instant than that of a record.
+
+        After an action of the user, only the record is right.
+        """
+        present = self.inspected.present
+        key = record.tick, record.actions
+        if present is None or (self.inspected.tick, present.actions) != key:
+            return None
+        # The program could have written the message.
+        counts = {len(present.turns), len(present.scales), len(present.motors) or len(robot.motors)}
+        return present if counts == {len(robot.motors)} else None
 
 
 @dataclass(frozen=True, slots=True)

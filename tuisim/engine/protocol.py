@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.spec import PRESSABLE
+from tuisim.engine.core.state import Present
 
 
 @dataclass(frozen=True, slots=True)
@@ -534,6 +535,8 @@ class Inspected(Message):
     watches: tuple[Watched, ...]
     note: str = ""
     """Why data is missing, such as values that took too long."""
+    present: Present | None = None
+    """None if it could not be read in time."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -220,10 +220,10 @@ def test_a_motor_shows_the_angle_and_the_speed_that_its_program_reads() -> None:
     assert "L -1234  -525°/s" in cells and "D    45   -10°/s" in cells
 
 
-def test_the_state_says_that_speeds_are_those_of_the_last_tick() -> None:
-    end = moment(state=RunPhase.ENDED, end=End.FINISHED)
+def test_the_state_says_how_wheels_that_turn_at_the_end_were_left() -> None:
+    end = moment(state=RunPhase.ENDED, end=End.FINISHED, wheels="still set to turn")
     still = replace(end.instant, left_speed_dps=0.0, right_speed_dps=0.0)
-    words = "State finished, last speeds"
+    words = "State finished, still set to turn"
     for now, says in (
         (end, True),
         (replace(end, past=True), False),

@@ -10,7 +10,7 @@ from rich.text import Text
 from textual.reactive import reactive
 
 from tuisim.app.action import ACT, ActionWords, fill_keys
-from tuisim.app.snapshot import IN_RUN, LAST_SPEEDS, RunPhase, Snapshot, end_label, speed_label
+from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot, end_label, speed_label
 
 _LABEL_CELLS = 9
 
@@ -127,6 +127,6 @@ def _label_state(now: Snapshot) -> str:
         case RunPhase.STARTING | RunPhase.RUNNING | RunPhase.PAUSED:
             return now.state.value
         case RunPhase.ENDED:
-            return end_label(now.end) + LAST_SPEEDS * now.ends_turning
+            return end_label(now.end) + now.turning
         case _:
             assert_never(now.state)

@@ -24,7 +24,7 @@ from tuisim.app.panels.instrumentation_lines import (
     list_seen,
 )
 from tuisim.app.panels.titles import build_title, name_setup
-from tuisim.app.snapshot import LAST_SPEEDS, RunPhase, Snapshot, end_label
+from tuisim.app.snapshot import RunPhase, Snapshot, end_label
 from tuisim.engine.core.geometry import shown_heading_deg
 from tuisim.logs.units import parse_unit
 from tuisim.terminal.cell_view import LinesPanel
@@ -362,7 +362,7 @@ def _build_state_line(now: Snapshot, width: int) -> Line:
     state = _describe_state(now)
     profile = now.spec.profile.name
     pen = "pen down" if now.pen_down else "pen up"
-    turning = [(format_label("State"), state, format_unit(LAST_SPEEDS))] * now.ends_turning
+    turning = [(format_label("State"), state, format_unit(now.turning))] * bool(now.turning)
     return fit_line(
         width,
         *turning,

@@ -155,6 +155,10 @@ class BrickMotor:
         """Current speed of the encoder's count in degrees per second."""
         return self.moving_dps
 
+    def read_turn(self, now_ns: int) -> tuple[float, float]:
+        """Return position and speed of the encoder, in degrees, as a program reads them after the last tick."""
+        return self.position_deg, self.counting_dps
+
     @property
     def aim_dps(self) -> float:
         """Target speed of the wheel in degrees per second, negative if it is to turn backwards; 0 while stopped."""

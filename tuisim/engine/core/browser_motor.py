@@ -262,6 +262,10 @@ class BrowserMotor:
             return self.speed_dps * ((self.mode != STOPPED) + 1) * (-1.0 if self.backwards else 1.0)
         return 0.0 if self.mode == STOPPED else self.speed_dps
 
+    def read_turn(self, now_ns: int) -> tuple[float, float]:
+        """Return position and speed of the encoder; the speed is not the register's, which a stopped motor keeps."""
+        return self.position_deg, self.counting_dps if self._command else 0.0
+
     @property
     def aim_dps(self) -> float:
         """Target speed of the wheel in degrees per second, negative if it is to turn backwards; 0 while stopped."""

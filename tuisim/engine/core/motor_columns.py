@@ -106,11 +106,11 @@ class MotorRecorder:
         if ticks > 1:
             buffer[offset : begin + self._size * ticks] = buffer[begin:offset] * (ticks - 1)
 
-    def read_values(self, tick: int) -> tuple[MotorValues, ...]:
-        """Return the drivers' values that were recorded at a tick; without a sink, their present values."""
+    def read_values(self, tick: int | None) -> tuple[MotorValues, ...]:
+        """Return the drivers' values that were recorded at a tick; for None or without a sink, their present ones."""
         buffer = self._buffer
-        begin = self._size * tick + 64
-        if buffer is None:
+        begin = 0 if tick is None else self._size * tick + 64
+        if buffer is None or tick is None:
             buffer = bytearray(self._size)
             begin = 0
             for number, motor in enumerate(self._motors):

@@ -18,7 +18,7 @@ from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.servo.bases import DriveBases
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.spec import NO_PORT
-from tuisim.engine.core.state import Instant
+from tuisim.engine.core.state import Instant, Present
 from tuisim.engine.core.tick_record import END_FLAGS, TICK_RECORD, TickSink
 
 if TYPE_CHECKING:
@@ -120,6 +120,17 @@ class Simulation(Motion):
             scales=tuple(self.scales.get(motor, 1.0) for motor in self.motors)
             if with_motors
             else (),
+        )
+
+    def read_present(self, now_ns: int) -> Present:
+        """Return what the program would read at a time after the last tick; it may advance the drivers to that time."""
+        return Present(
+            turns=tuple(motor.read_turn(now_ns) for motor in self.motors),
+            motors=self._motor_recorder.read_values(None),
+            scales=tuple(self.scales.get(motor, 1.0) for motor in self.motors),
+            gyro_zero_deg=self.drive.gyro_zero_deg,
+            pen_down=self.pen_down,
+            actions=self.actions & 0xFFFF,
         )
 
     def read_records(self, first: int) -> Iterator[tuple[float, ...]]:

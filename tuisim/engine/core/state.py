@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 from typing import TypeAlias
 
@@ -55,6 +56,34 @@ class Instant:
         """The clockwise rate of turn, in whole degrees per second, limited to what the gyro can measure."""
         fastest = self.profile.gyro_max_dps or inf
         return round(max(-fastest, min(fastest, -self.turn_rate_dps)))
+
+
+@dataclass(frozen=True, slots=True)
+class Present:
+    """What a program would read between two ticks, where that differs from the values of the earlier one."""
+
+    turns: tuple[tuple[float, float], ...]
+    """Position in degrees and speed in degrees per second of each motor."""
+    motors: tuple[MotorValues, ...]
+    scales: tuple[float, ...]
+    gyro_zero_deg: float
+    pen_down: bool
+    actions: int
+    """The number of user actions in the record of the tick; after another one, these values are outdated."""
+
+    def apply(self, instant: Instant) -> Instant:
+        """Return the instant of the earlier tick with these values."""
+        left, right, *_ = self.turns
+        return replace(
+            instant,
+            left_position_deg=left[0],
+            right_position_deg=right[0],
+            left_speed_dps=left[1],
+            right_speed_dps=right[1],
+            gyro_zero_deg=self.gyro_zero_deg,
+            motors=self.motors,
+            scales=self.scales,
+        )
 
 
 def end_flag(robot: RobotSpec, port: str, end: str) -> int:

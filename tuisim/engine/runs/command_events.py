@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from array import array
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -12,16 +13,24 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import TuisimError
-from tuisim.engine.core.commands.calls import MAX_VALUES, Call
+from tuisim.engine.core.commands.calls import MAX_VALUES, Call, SimulationCommand
 from tuisim.engine.core.commands.robot import decode_parts
 from tuisim.engine.core.commands.table import SCALING_CALLS, compute_scale
 from tuisim.engine.core.plugged import plug_parts
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import RobotSpec, RunSpec
 from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
-from tuisim.engine.runs.command_records import read_command_rows
-from tuisim.engine.runs.command_words import CALL_WORDS, Aim, describe_command
+from tuisim.engine.runs.command_records import RecordedCommands, read_command_rows
+from tuisim.engine.runs.command_words import (
+    CALL_WORDS,
+    MOVES,
+    WHEEL_WORDS,
+    Aim,
+    describe_aim,
+    describe_command,
+)
 from tuisim.engine.runs.records import Mark
+from tuisim.engine.runs.tick_changes import IMMEDIATE_CALLS
 
 if TYPE_CHECKING:
     import numpy as np
@@ -113,6 +122,10 @@ class CommandIndex:
         self._robots: list[RobotSpec] = [run.first_spec.robot]
         """The robot at the start, and after each time that parts were plugged in."""
         self._end = self._newest_ns = 0
+        self._change_rows, self._change_ticks = array("I"), array("I")
+        """Row and tick of each command of `IMMEDIATE_CALLS`."""
+        self._listed: tuple[tuple[int, int], list[SimulationCommand]] = (0, 0), []
+        """The last result of `list_changes`, and where its commands are in `_change_rows`."""
         # Arrays take 48 bytes for each event; objects would take too much memory, as there may be two million commands.
         self._starts, self._counts, self._codes = array("I"), array("I"), array("Q")
         """Row of the first command, number of commands, and robot, call and part of each event."""
@@ -120,6 +133,8 @@ class CommandIndex:
         """Time of the first and the last command."""
         self._lows, self._highs = array("d"), array("d")
         """The lowest and the highest main value of each event."""
+        self._wheels: dict[int, str] = {}
+        """What the last command to the left (0) and the right (1) wheel's motor asks of it, of `WHEEL_WORDS`."""
         self._latest: dict[int, int] = {}
         """The latest event by its code."""
         self._ends: list[int] = []
@@ -139,6 +154,7 @@ class CommandIndex:
         rows = read_command_rows(self._run.folder, self._end, _PIECE)
         if len(rows):
             self._take(rows)
+            self._note_wheels(rows)
             self._end += len(rows)
         return bool(len(rows))
 
@@ -163,6 +179,7 @@ class CommandIndex:
 
         times = np.maximum.accumulate(np.maximum(rows["time_ns"], self._newest_ns))
         self._newest_ns = int(times[-1])
+        self._note_changes(rows, times)
         codes = self._read_codes(rows)
         self._take_scales(rows, times, codes)
         mains = rows["values"][np.arange(len(rows)), _find_mains()[rows["call"]]]
@@ -183,6 +200,28 @@ class CommandIndex:
         lists = [column[turn].tolist() for column in (*columns, *spreads)]
         for event in zip(*lists, strict=True):
             self._add(*event)
+
+    def _note_changes(self, rows: Array, times: Array) -> None:
+        """Store where the commands are that change at once what the program reads."""
+        import numpy as np
+
+        changes = np.flatnonzero(np.isin(rows["call"], IMMEDIATE_CALLS))
+        self._change_rows.extend((changes + self._end).tolist())
+        self._change_ticks.extend((times[changes] * self._hz // NS_PER_S).tolist())
+
+    def _note_wheels(self, rows: Array) -> None:
+        """Store what the last command that moves or stops a wheel's motor, or a drive base, asks of it."""
+        import numpy as np
+
+        moves = np.isin(rows["call"], MOVES)
+        for part in (0, 1):
+            is_part = (rows["part"] == part) | (rows["call"] >= Call.BUILD_BASE)
+            for row in rows[moves & is_part][-1:]:
+                self._wheels[part] = describe_aim(Call(int(row["call"])), row["values"].tolist())
+
+    def describe_wheels(self) -> str:
+        """Return of `WHEEL_WORDS` how the program has left wheels that turn."""
+        return min(self._wheels.values(), key=WHEEL_WORDS.index, default=WHEEL_WORDS[-1])
 
     def _take_scales(self, rows: Array, times: Array, codes: Array) -> None:
         import numpy as np
@@ -259,6 +298,23 @@ class CommandIndex:
         The number is 1 for a port that is missing in the result.
         """
         return {port: scale for when, port, scale in self.scale_changes if when <= tick}
+
+    def list_changes(self, tick: int) -> list[SimulationCommand]:
+        """Return the commands in a tick, in order, from the first to the last one of `IMMEDIATE_CALLS`."""
+        ticks = self._change_ticks
+        first, end = bisect_left(ticks, tick), bisect_right(ticks, tick)
+        if first == end:
+            return []
+        if self._listed[0] != (first, end):
+            row = self._change_rows[first]
+            count = self._change_rows[end - 1] + 1 - row
+            rows = RecordedCommands(read_command_rows(self._run.folder, row, count))
+            commands: list[SimulationCommand] = []
+            # The program may have damaged the record.
+            with suppress(ValueError):
+                commands.extend(rows.unpack())
+            self._listed = (first, end), commands
+        return self._listed[1]
 
     def find_events(self, text: str = "") -> list[int]:
         """Return the numbers of the events whose part and command contain all words of a text; all if it is empty."""

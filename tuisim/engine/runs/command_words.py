@@ -148,6 +148,11 @@ CALL_WORDS: Mapping[Call, CallWords] = {
     ),
 }
 """How each kind of command is described in words."""
+MOVES = tuple(call for call, words in CALL_WORDS.items() if words.aim is not Aim.NONE)
+"""The commands that move or stop a motor or a drive base."""
+_STOPS = (Call.STOP, Call.STOP_DRIVER, Call.RESET_DRIVER, Call.HOLD, Call.STOP_BASE)
+WHEEL_WORDS = "still set to turn", "stopping", "last speeds"
+"""How a program can have left a wheel that turns; the last words are for a move to a position."""
 _WITHOUT: Mapping[Call, str] = {
     Call.RUN_FREELY: "coast",
     Call.RUN_AT: "run {0}",
@@ -155,6 +160,14 @@ _WITHOUT: Mapping[Call, str] = {
     Call.STOP_BASE: "stop, coast",
 }
 """Words for commands that lack a value which `CALL_WORDS` names."""
+
+
+def describe_aim(call: Call, values: Sequence[float]) -> str:
+    """Return of `WHEEL_WORDS` how one of `MOVES` leaves a wheel that turns."""
+    # NaN lets the motor coast.
+    if call in _STOPS or (call is Call.RUN_FREELY and not abs(values[0]) > 0):
+        return WHEEL_WORDS[1]
+    return WHEEL_WORDS[0 if CALL_WORDS[call].aim in (Aim.SPEED, Aim.BASE_SPEED) else 2]
 
 
 def describe_command(

@@ -27,6 +27,7 @@ from tuisim.engine.runs.run_folder import StoredRun, find_noise, restore_program
 from tuisim.engine.runs.samples import parse_sample
 from tuisim.engine.runs.side_files import read_actions
 from tuisim.engine.runs.standstill import touches_solid
+from tuisim.engine.runs.tick_changes import apply_commands, find_pen
 
 if TYPE_CHECKING:
     from tuisim.engine.core.plugged import PluggedPart
@@ -136,20 +137,26 @@ class Recording:
         return self._marks.at(tick)
 
     def instant(self, record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
-        """Return the instant of a tick record, with the motors' scales and their drivers' values.
+        """Return the instant of a tick record, after what the program's commands in this tick have changed at once.
 
-        A scale is the number of degrees that the program counts for one of the motor. The drivers' values are left out
-        if their file is damaged.
+        It has the drivers' values of the motors, unless their file is damaged, and the motors' scales: the number of
+        degrees that the program counts for one of the motor.
         """
         motors: tuple[MotorValues, ...] = ()
         with suppress(LogError):
             motors = read_motor_values(self.folder, self.spec, record.tick)
         scales = self.commands.find_scales(record.tick)
-        return replace(
+        instant = replace(
             record.build_instant(spec, noise),
             motors=motors,
             scales=tuple(scales.get(motor.port, 1.0) for motor in self.spec.robot.motors),
         )
+        commands = self.commands.list_changes(record.tick)
+        return apply_commands(instant, record.running, commands, self.spec.profile.motor_law)
+
+    def is_pen_down(self, record: TickRecord) -> bool:
+        """Return whether the pen is down after the commands in the tick of a record."""
+        return find_pen(self.commands.list_changes(record.tick), is_down=record.is_pen_down)
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
         """Return for the left and the right wheel's motor whether it was running but did not turn.

@@ -182,6 +182,12 @@ class SimulatedMotor(DriverMotor):
         """Approximate number of ticks until the speed is steady; 0 only if it is steady."""
         return 0 if self.is_at_rest or self._cruise_dps else 1
 
+    def read_turn(self, now_ns: int) -> tuple[float, float]:
+        """Advance the driver to a time, and return the position and the speed that it reports, in degrees."""
+        if not self.is_at_rest:
+            self.run_until(now_ns)
+        return self.position, self.speed_dps
+
     def set_position(self, position: int) -> None:
         """Set the value that the motor reports for its present position; it also becomes the target."""
         before = self.position

@@ -182,6 +182,13 @@ class ServoMotor:
             return round(self._free_dps * self.sign * COUNTS_PER_DEG)
         return self.counts_per_s if self._course is None else round(self._guide.rate(now_us, self))
 
+    def read_turn(self, now_ns: int) -> tuple[float, float]:
+        """Return position and speed in degrees, as a program reads them at a time after the last tick."""
+        now_us = now_ns // 1000
+        rate = self.find_counts_per_s(now_us, self.control.settings.speed_window_ms)
+        deg = self.sign / COUNTS_PER_DEG
+        return self.find_milli(now_us) * deg / MILLI, rate * deg
+
     def measure_start(self, now_us: int) -> Segment:
         """Return position and speed of the motor, as the encoder shows them, as the start of a trajectory."""
         return Segment(

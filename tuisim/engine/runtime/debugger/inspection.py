@@ -11,12 +11,14 @@ import threading
 import types
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from dataclasses import asdict
 from typing import Any, assert_never
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.motors import POSITION, TIMED, Motor
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.sensors import build_reader
+from tuisim.engine.core.state import Present
 from tuisim.engine.protocol import FrameState, Inspect, Inspected, ThreadState, Variable, Watched
 from tuisim.engine.runtime.debugger.fork import run_apart
 from tuisim.engine.runtime.debugger.tracer import Tracer
@@ -293,6 +295,7 @@ class Inspector:
             globals=found_globals,
             watches=tuple(Watched(*watch) for watch in values["watches"]),
             note=note,
+            present=Present(**values["present"]) if "present" in values else None,
         )
 
     def name_thread(self, task: ScheduledThread) -> str:
@@ -380,8 +383,10 @@ class Inspector:
         plain = _copy_names(names)
         visible = {**inside, **plain}
         builtin = frame.f_builtins if frame is not None else self._module.get("__builtins__", {})
-        watched = {**self._read_columns(watches), **visible}
+        present = self._session.sim.read_present(self._session.now)
+        watched = {**self._read_columns(watches, present), **visible}
         return {
+            "present": asdict(present),
             "watches": [(text, *evaluate(renderer, text, watched, builtin)) for text in watches],
             "locals": _render_names(
                 renderer, self._own_names(plain) if own_module else plain, whole=not own_module
@@ -391,15 +396,16 @@ class Inspector:
             else _render_names(renderer, self._own_names(inside), whole=False),
         }
 
-    def _read_columns(self, watches: tuple[str, ...]) -> dict[str, float]:
+    def _read_columns(self, watches: tuple[str, ...], present: Present) -> dict[str, float]:
         """Return the present values of those columns of the recording that watched expressions name."""
         sim = self._session.sim
+        instant = present.apply(sim.build_instant())
         field = self._session.field
         readers = {
             name: build_reader(name, sim.spec) for text in watches for name in _find_names(text)
         }
         return {
-            name: read(sim.build_instant(with_motors=True), sim.spec, field)
+            name: read(instant, sim.spec, field)
             for name, read in readers.items()
             if read is not None
         }
