@@ -295,7 +295,7 @@ def _find_commands(
 
 
 class Events:
-    """The events of a log that the user has chosen; if the log changes, they are found again.
+    """The events of a log that the user has chosen; if the log changes, the events are found again.
 
     Args:
         runs: As of `find_events`.

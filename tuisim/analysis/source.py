@@ -46,7 +46,7 @@ class _Reading:
 
 
 def request_file(file: str, choices: ReadChoices = NO_CHOICES) -> LogRequest:
-    """Return the request to open a file; without choices, it has those that the user made for the file before."""
+    """Return the request to open a file; without choices, the request has those that were made for the file before."""
     remembered = find_choices(file) if choices == NO_CHOICES else None
     return LogRequest(file, choices=remembered or choices, is_remembered=remembered is not None)
 
@@ -167,7 +167,7 @@ class OpenedLog:
         return (find_notes_file(file),) if file.is_file() else ()
 
     def stamp(self) -> object:
-        """Return an object that compares as different after the source of the log has grown."""
+        """Return an object that differs from the object of an earlier call if the source of the log has grown since."""
         if self.runs:
             return tuple(
                 (run.telemetry.count if self.request.telemetry else run.output.length)
@@ -202,7 +202,7 @@ class Note:
 def find_notes_file(path: Path) -> Path:
     """Return the path of the file with the notes on a log file; the file need not exist yet.
 
-    The path depends on the path and the first line of the log: another log at the same path has other notes.
+    The path depends on the path and the first line of the log file: another log at the same path has other notes.
 
     Raises:
         LogError: the log file cannot be read.

@@ -78,7 +78,7 @@ class Feed:
         return self._charted + POINTS_A_FEED < self.recording.telemetry.count
 
     def begin_again(self) -> bool:
-        """If a part was plugged in, which adds columns, restart the chart at the first tick, and return True.
+        """Restart the chart at the first tick if a part was plugged in, which adds columns; return whether this was so.
 
         Returns:
             Whether a part was plugged in since the last call.

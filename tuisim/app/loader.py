@@ -595,7 +595,7 @@ def _find_differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict
 
 
 def program_of(run: StoredRun) -> Program:
-    """Return the program of a stored run with the text that ran; it has a path only if the file still has this text."""
+    """Return the program of a stored run with the text that ran, and with its path if the file still has this text."""
     from tuisim.programs.program_file import read_program
 
     stored = run.program

@@ -233,7 +233,7 @@ class PanelArea(Container):
         return [widget for widget in around if panel in widget.ancestors_with_self]
 
     def choose_preset(self, preset: Preset) -> Preset:
-        """Show the panels of a preset and return the preset; if it is shown already, return to the standard preset.
+        """Show the panels of a preset and return it; if this preset is shown already, show and return the standard one.
 
         This changes only the shown panels, never the run.
         """

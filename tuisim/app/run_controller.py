@@ -45,7 +45,7 @@ ROWS_A_POLL = 4000
 
 
 class RunController:
-    """Starts runs and sends them commands; it has the current run or, before the first run, the placed robot.
+    """Starts runs and sends commands to them; has the current run or, before the first run, the placed robot.
 
     Args:
         program: The program that runs next; None for none yet.

@@ -418,7 +418,7 @@ def _read_printed_names(recording: Recording) -> list[str]:
 def _find_change(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
     """Return the nearest tick, in the direction of a search, at which a condition becomes true.
 
-    For the name of a printed sample, it is the tick of the nearest sample that meets the condition.
+    For the name of a printed sample, the result is the tick of the nearest sample that meets the condition.
 
     Raises:
         ConfigError: there is none, or no such name.

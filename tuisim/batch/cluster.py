@@ -36,7 +36,7 @@ _GOES_ON = "with --out, --resume continues with the rows so far"
 
 
 def call_within_s(seconds: float, call: Callable[..., _Found], *args: Any, **named: Any) -> _Found:
-    """Call a function in a thread, and return its result, for which this waits at most some seconds.
+    """Call a function in a thread, wait for its result for at most some seconds, and return the result.
 
     Args:
         seconds: The longest time to wait.

@@ -344,7 +344,7 @@ _active: list[Progress] = []
 
 @contextmanager
 def hide_progress(stream: TextIO) -> Iterator[None]:
-    """In a `with` block, hide the progress bar, if any, since a stream that is a terminal may be the same terminal."""
+    """In a `with` block, hide the progress bar if a stream is a terminal, as the bar may be in the same terminal."""
     if _active and stream.isatty():
         with _active[-1].hide():
             yield

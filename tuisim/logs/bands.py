@@ -293,7 +293,8 @@ def _find_edges(
 ) -> FloatArray:
     """Return where samples pass the middle between each level and the next level, in mm, shape (n - 1,).
 
-    With noise, they may pass it several times: the edge is in the middle between the first and the last time.
+    With noise, samples may pass the middle several times: the edge is in the middle between the first and the last
+    time.
     """
     level, row = pairs
     middles = (levels.true_level[:-1] + levels.true_level[1:]) / 2.0

@@ -208,7 +208,7 @@ class Log:
     def times_s(self) -> FloatArray:
         """The time of each row in seconds, shape (n,).
 
-        Without a time column, they are row numbers from 0. The array must not be modified.
+        Without a time column, the times are row numbers from 0. The array must not be modified.
         """
         return self._read_times(None)
 

@@ -109,7 +109,7 @@ class Rows:
     def place(self, row: int) -> int:
         """Return the position of a row of the log in the table.
 
-        For a hidden row, it is the position of the next shown row, or 0 in a sorted table.
+        For a hidden row, the result is the position of the next shown row, or 0 in a sorted table.
         """
         if self.view.order is None or not len(self.view.order):
             return row
@@ -146,7 +146,7 @@ class Rows:
     def build_sorted_view(self, column: str, descending: bool) -> TableView:
         """Return a view of the same rows, sorted by a column.
 
-        Without a column, they are in the order of the log. This is slow for a long log.
+        Without a column, the rows are in the order of the log. This is slow for a long log.
         """
         return self._arrange(self.view.conditions, self.view.fulfilled, column, descending)
 

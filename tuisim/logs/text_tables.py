@@ -260,7 +260,7 @@ def _list_rows(block: Block) -> list[int]:
 
 
 def _count_words(texts: Sequence[pa.Array], typed: Sequence[pa.ChunkedArray]) -> int:
-    """Return how many rows at the end have words in place of numbers: they are sentences below the table."""
+    """Return how many rows at the end have words in place of numbers, as sentences below a table have."""
     numbers = [
         cells for cells, column in zip(texts, typed, strict=True) if is_floating(column.type)
     ]

@@ -66,7 +66,7 @@ class AppRun:
         self.output = RunStore().load_run(self.run_id).output
 
     def _wait_for_news(self, *kinds: str) -> Mapping[str, Any]:
-        """Return the next message of one of these kinds that comes from the app.
+        """Wait for the next message of some kinds from the app, and return the message.
 
         Raises:
             HostError: the message is a problem, the user has interrupted the cell, or no message comes in time.

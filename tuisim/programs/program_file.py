@@ -386,7 +386,7 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
 def parse_unfinished(text: str, name: str) -> Program:
     """Return a program that is being edited.
 
-    Without a magic line and imports of a library, it has the default prelude.
+    Without a magic line and imports of a library, the program has the default prelude.
     """
     try:
         source = parse_program(text, name)

@@ -218,7 +218,7 @@ def _is_pure(value: object) -> bool:
 
 
 def _parse(text: str) -> list[ast.stmt]:
-    """Return the statements of a text outside functions and classes; the statements in a block follow the block's."""
+    """Return the statements of a text outside functions and classes; those in a block come after its own statement."""
     try:
         return [*_list_statements(parse_module(text).body)]
     except NOT_PYTHON:

@@ -238,7 +238,7 @@ def read_comparison(
 def _split_sum(
     value: ast.expr, ending: str, limit: Word, constants: Mapping[str, Word]
 ) -> tuple[ast.expr, str, Word]:
-    """Return a comparison without the numbers added to its value; they are subtracted from the limit instead."""
+    """Return a comparison without the numbers added to its value, which are subtracted from the limit instead."""
     while isinstance(limit, int | float):
         match value:
             case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):

@@ -139,7 +139,7 @@ def draw_cells(grid: CellGrid) -> Image:
 def _draw_mask(text: str, bold: bool, italic: bool, underline: bool, strike: bool) -> Mask:
     """Return how much of each pixel of a cell a character covers, 0 to 255.
 
-    After a NUL, it is the mask of the right half of a wide character.
+    After a NUL, the result is the mask of the right half of a wide character.
     """
     width, height = CELL_PX
     right = text.startswith("\0")

@@ -115,9 +115,9 @@ def _find_typical(
 ) -> list[npt.NDArray[np.intp]]:
     """Return the index of the typical point in each cell, first among its covered points, then among its other points.
 
-    It is the point nearest to the mean of its group. The mean itself often is no colour of the picture, and looks
-    blurred. Of two points that are as near, it is the darker one: with the lighter one, the ground would be a notch in
-    the edge of a band beside a robot's corner.
+    The typical point is the point nearest to the mean of its group. The mean itself often is no colour of the picture,
+    and looks blurred. Of two points that are as near, it is the darker one: with the lighter one, the ground would be a
+    notch in the edge of a band beside a robot's corner.
     """
     points: list[npt.NDArray[np.intp]] = []
     for share in (covered, 1 - covered):

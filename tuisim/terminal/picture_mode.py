@@ -47,7 +47,7 @@ class Recoloring(TypingProtocol):
         """Return the colour in place of one of the app's own; any other colour is returned unchanged."""
 
     def choose_text_rgb(self, own: Rgb) -> Rgb:
-        """Return the colour for text or lines in place of one of the app's own; it is legible on the background."""
+        """Return the colour for text or lines in place of one of the app's own colours, legible on the background."""
 
 
 @dataclass(slots=True)

@@ -71,7 +71,7 @@ class TerminalFacts:
 
     @property
     def without_refusal(self) -> TerminalFacts:
-        """The same facts; if the terminal has not answered whether it knows kitty's protocol, this is unknown again."""
+        """The facts without an assumed refusal: unless the terminal has answered, kitty's protocol is unknown."""
         return (
             self
             if self.has_kitty_graphics or self.kitty_error

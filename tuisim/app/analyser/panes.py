@@ -255,7 +255,7 @@ PANES: Mapping[str, Pane] = {
 
 
 def build_frame(name: str, model: AnalysisModel) -> pd.DataFrame:
-    """Return the rows of any pane but the table as a data frame; for the bands, it has all their properties."""
+    """Return the rows of any pane but the table as a data frame; for bands, the frame has all their properties."""
     import pandas as pd
 
     if name == "bands":

@@ -301,7 +301,7 @@ def search_groups(groups: Iterable[ChoiceGroup], typed: str) -> list[ChoiceGroup
 def find_best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
     """Return the value of the first entry whose name begins with the typed text.
 
-    If there is none, it is the first entry whose name contains the text, or else the first entry of all.
+    If there is none, the result is that of the first entry whose name contains the text, or else of the first entry.
     """
     entries = [entry for group in groups for entry in group.entries]
     prefix = typed.lower()

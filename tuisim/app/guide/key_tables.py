@@ -56,7 +56,7 @@ def _load_actions(module: str) -> Mapping[str, Action[Any, Any]]:
 
 
 def list_app_keys() -> Table:
-    """Return the table of the app's keys; where the user has chosen other keys, it has those."""
+    """Return the table of the app's keys, with the user's own keys in place of those that they replace."""
     actions = _load_actions("tuisim.app.actions.keys")
     # The app and `tuisim config` report wrong keys, so the guide need not.
     with suppress(ConfigError):

@@ -332,7 +332,7 @@ class Chart(LinesPanel, can_focus=True):
     def _find_sample(self, time_s: float, picture: ChartPicture) -> tuple[float, str]:
         """Return the time and the name of the sample at a time.
 
-        On a band, it is the band's sample that is nearest to the time. If there is no sample, return the time itself
+        On a band, this is the band's sample that is nearest to the time. If there is no sample, return the time itself
         and an empty name.
         """
         span = next((span for span in self._state.spans if span.start <= time_s <= span.stop), None)

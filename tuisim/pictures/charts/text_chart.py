@@ -226,7 +226,7 @@ def _style_runs(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
 
 
 def _style_of_names(drawn: Sequence[Trace], spans: Sequence[Span]) -> Style:
-    """Return the style of the names of bands; with several curves, it has the colour of the curve with the bands."""
+    """Return the style of the names of bands; with several curves, in the colour of the curve with the bands."""
     names = {span.name for span in spans}
     of_bands = [trace for trace in drawn if {trace.name} == names]
     return build_style(of_bands[0].rgb) if of_bands and len(drawn) > 1 else NAME

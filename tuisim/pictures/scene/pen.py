@@ -198,7 +198,7 @@ def place_pen_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatAr
 def place_drawn_mm(
     robot: RobotSpec, telemetry: npt.NDArray[Any]
 ) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
-    """Return x and y of the pen in mm at each record, NaN where the pen is up; and whether it is up.
+    """Return x and y of the pen in mm at each record, NaN where the pen is up; and whether the pen is up.
 
     Each has shape (n,).
     """

@@ -351,7 +351,7 @@ class _Builder:
         self._tell_sizes({key: Size(mm, wheels.where) for key, mm in sizes.items()})
 
     def _find_kinds(self, mentions: Iterable[Mention]) -> dict[str, DeviceKind]:
-        """Return the kind of device on each port that the program names; of several kinds, that named most often."""
+        """Return the kind of device on each port that the program names; of several kinds, the most frequent one."""
         votes: dict[str, Counter[DeviceKind]] = {}
         for mention in mentions:
             if mention.port:
@@ -460,7 +460,7 @@ class _Builder:
         return ported
 
     def _stay(self, left: list[SensorSpec], placed: dict[str, SensorSpec]) -> None:
-        """Put the usual sensors that the program does not name on their ports; if a port is taken, on a free port.
+        """Add the usual sensors that the program does not name: on the usual port or, if that is taken, a free one.
 
         Args:
             left: The usual sensors that the program does not name.

@@ -359,7 +359,7 @@ class _MechanicsReader:
         return list(dict.fromkeys(ports))
 
     def _evaluate(self, node: ast.expr, scope: Scope) -> Sequence[Value]:
-        """Return the values that an expression has in its place: after the nearest assignment above, in its object."""
+        """Return the values of an expression at its line, after the nearest assignment above, in its own object."""
         match node:
             case ast.Name(id=name):
                 known = [

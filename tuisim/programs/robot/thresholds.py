@@ -55,7 +55,7 @@ class ProgramThreshold:
     def words(self) -> str:
         """The comparison without the reading, such as `> 90` or `== Red`.
 
-        For a target, it is a text such as `aim 50`.
+        For a target, the text is, for example, `aim 50`.
         """
         number = COLOR_NAMES[int(self.value)] if self.read.is_color else f"{self.value:g}"
         return f"{'aim' if self.is_aim else self.sign} {number}"
@@ -74,7 +74,7 @@ def find_light_read(text: str) -> LightRead:
 def find_light_reads(program: Program, robot: RobotSpec) -> Mapping[str, LightRead]:
     """Return which reading of each colour sensor a program compares first or, without one, reads first, by sensor name.
 
-    For a sensor without a reading in the text, it is the reading that `find_light_read` returns.
+    For a sensor without a reading in the text, the result is the reading that `find_light_read` returns.
     """
     usual = find_light_read(program.text)
     reads: dict[str, tuple[int, LightRead]] = {}

@@ -145,7 +145,7 @@ def find_girth(name: str, number: float) -> float:
 
 
 def _is_alone(name: str, measure: frozenset[str]) -> bool:
-    """Return whether a name is, apart from its unit, a single long word of a measure, such as `diameter_mm`.
+    """Return whether a name consists of one long word for a measure and perhaps a unit, such as `diameter_mm`.
 
     The measure must then be that of a wheel.
     """

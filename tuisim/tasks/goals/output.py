@@ -43,7 +43,7 @@ _MAX_TRIED = 1000
 def _describe_pattern(pattern: str) -> str:
     """Return a verb phrase for a line that must match a pattern, such as `matches 'done'`.
 
-    For a pattern with a lookaround, it is `says what the goal needs`.
+    For a pattern with a lookaround, the phrase is `says what the goal needs`.
     """
     words = re.sub(r"\(\?i\)|\\b|[\^$]", "", pattern)
     if words == re.escape(words).replace("\\ ", " "):

@@ -185,7 +185,7 @@ def find_off_line(condition: FollowCondition, evidence: Evidence, span: Evidence
 def _compute_light_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:
     """Return the light in percent of the mat's pixel under a point of the robot, at every tick.
 
-    Off the mat, it is the light of the floor.
+    Off the mat, the result is the light of the floor.
     """
     import numpy as np
 

@@ -203,7 +203,7 @@ def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]
 
 
 def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
-    """Yield as reasons the missed goals, and the met goals that take points off, but no hidden goals."""
+    """Yield a reason for each missed goal, and for each met goal that takes points off, except for hidden goals."""
     for judged in judgements:
         is_known = judged.state is not GoalState.UNKNOWN
         if judged.event and is_known and not judged.is_good and not judged.goal.hidden:
@@ -213,7 +213,7 @@ def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
 
 
 def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
-    """Yield as reasons where a robot lost its line, light just missed a limit, and sensors saw only one colour.
+    """Yield a reason for each loss of the line, and if light just missed a limit or sensors saw only one colour.
 
     Args:
         data: The run.

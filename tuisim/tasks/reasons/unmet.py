@@ -63,8 +63,8 @@ def find_unmet(data: RunData) -> Unmet | None:
 def find_near_miss(data: RunData) -> Unmet | None:
     """Return where a finished loop just missed the light that it waited for.
 
-    No reading quite reached the light, or it was there only between two readings. The result is None if no loop missed
-    it so, or if that is not known.
+    No reading quite reached the light, or the light was there only between two readings. The result is None if no loop
+    missed light in this way, or if that is not known.
 
     Args:
         data: The run.
