@@ -487,7 +487,7 @@ class LabApp(PanelMessages):
         notice, last = end_words(ended, stood)
         self._last_words = last if good else f"{last}: {self.fill_keys(find_remedy(ended.summary))}"
         self.document.mark_failure(ended.error_line, "" if good else notice)
-        # The output, if it is shown, ends with the same words.
+        # If the output is shown, it ends with the same words, so no notice is needed.
         if not self.panel_area.is_shown("output"):
             self.notify(notice, severity="information" if good else "error")
         self.debugger.handle_end()

@@ -505,7 +505,7 @@ class RunController:
 
     def send(self, command: protocol.Message) -> None:
         """Send a command to the live run; do nothing without one."""
-        # On the way to its instant, a branch must repeat the run exactly.
+        # On the way to its instant, a branch must repeat the run exactly, so only answers to `input()` are sent.
         if self.run is not None and (self._branch is None or isinstance(command, protocol.Answer)):
             self.run.send(command)
 

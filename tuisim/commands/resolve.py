@@ -150,7 +150,7 @@ def _find_effective_defaults(
     try:
         return remarks if remarks and build_run_spec(plain) != spec else ()
     except ConfigError:
-        # Without the defaults there is no such run, for example on a mat in the user's own folder.
+        # Without the user's defaults, the run is impossible, for example on a mat in the user's own folder.
         return remarks
 
 

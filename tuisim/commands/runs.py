@@ -171,7 +171,7 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
     """Print a run; rows are printed while they are read, as there may be millions."""
     rows = (row for row in run.output.rows() if row.stream in STREAMS)
     if as_json:
-        # `describe` would count all rows first; here the counts follow the rows.
+        # `describe` reads all rows to count them, so the rows are printed first and the counts after them.
         read, _ = _list_files_read(run)
         files = {
             "files_read": [asdict(file) for file in read.files],

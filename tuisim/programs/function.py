@@ -305,7 +305,7 @@ class _Reader:
         reserved = {
             number for block in self._blocks if block.file == own for number in block.numbered
         }
-        # All statements go on one line, so that functions keep their lines; on the first if free, as defaults use them.
+        # All statements are in one line, so that functions keep theirs: in line 1 if it is free, for default values.
         place = max(reserved) + 1 if 1 in reserved else 1
         lines = {place: "; ".join(self._statements)}
         defined = place

@@ -93,7 +93,7 @@ def _can_draw_pixels(now: Situation) -> str:
 
 
 def _can_nudge(now: Situation) -> str:
-    # Only a running program prevents this: one that waits may have asked the user to place the robot.
+    # Only a running program prevents moves by keys: a waiting one may have asked the user to place the robot.
     if now.looks_back or now.state not in (RunPhase.STARTING, RunPhase.RUNNING):
         return ""
     return "{pause} pauses the program, then keys move the robot; the mouse does at any time"

@@ -103,7 +103,7 @@ def _fit_columns(
     left = width - sum(widths.values()) - 2 * len(frozen)
     others = rows.columns[rows.frozen :]
     index = max(rows.column - rows.frozen, 0)
-    # First leftwards from the selected column until the width is used up, then on to its right.
+    # The columns to the left of the selected one are chosen first, then those to its right, until the width is full.
     chosen: list[str] = []
     for column in [*reversed(others[: index + 1]), *others[index + 1 :]]:
         need = measure_column(column) + 2

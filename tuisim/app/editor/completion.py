@@ -278,7 +278,7 @@ def _find_pybricks(text: str) -> str:
 def _is_likely(completion: Completion, word: str) -> bool:
     if completion.name.startswith("_") and not word.startswith("_"):
         return False
-    # Jedi says that a property is defined in `builtins`.
+    # For a property of a class, Jedi gives `builtins` as the module.
     if completion.name in _SIMULATED_NAMES and _find_module(completion).startswith(
         (_PYBRICKS, "builtins")
     ):

@@ -366,7 +366,7 @@ class Code(Vertical):
         self._stands = stands
         self.show_line(line)
         if (lit := self._find_shown_line(line)) and not self.typing and stands:
-            # The cursor moves there, so that the arrow keys start from this line.
+            # The cursor moves to the highlighted line, so that the arrow keys start from this line.
             self._area.move_to_code(lit)
 
     def show_line(self, line: int) -> None:

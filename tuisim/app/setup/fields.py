@@ -101,8 +101,8 @@ def _parse_value(value: Value, text: str) -> Any:
         raise RobotError(error.message, error.hint) from None
 
 
-# The following functions build the fields of the robot: they show the robot with the mat's changes, and edit it
-# without.
+# The following functions build the fields of the robot: they show the robot with the mat's changes, and edit the
+# robot without these changes.
 
 
 def _build_robot_field(

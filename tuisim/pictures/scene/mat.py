@@ -102,7 +102,7 @@ def _find_edges(
     first, last = int(inside[0]), int(inside[-1]) + 1
     edges = np.floor(start_mm + np.arange(first, last + 1) * mm_per_px + 0.5).astype(np.intp)
     edges = np.clip(edges, 0, size_mm)
-    # Where a picture pixel is smaller than a mat pixel, it shows the one that begins there.
+    # A picture pixel may be smaller than a mat pixel: it then shows the mat pixel that begins at its edge.
     edges[:-1] = np.minimum(edges[:-1], size_mm - 1)
     edges[-1] = max(edges[-1], edges[-2] + 1)
     return slice(first, last), edges

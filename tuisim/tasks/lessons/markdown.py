@@ -103,7 +103,7 @@ def _build_list(headings: Sequence[Text], rows: Sequence[Sequence[Text]]) -> Gro
             yield Text.assemble((row[0].plain, "bold")) if not row[0].spans else row[0]
             for heading, cell in zip(headings[1:], row[1:], strict=False):
                 if cell.plain:
-                    # In a table of two columns the cell needs no heading.
+                    # In a table of two columns, the cell needs no heading.
                     name = (heading, ": ") if len(headings) > _PAIR else ()
                     yield Padding(Text.assemble(*name, cell, overflow="fold"), (0, 0, 0, _INDENT))
 
