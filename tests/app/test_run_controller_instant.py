@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import pytest
@@ -10,6 +11,7 @@ from textual.widgets import Input
 
 from tests.app.app_help import open_lab, press_and_stand, recording_of, until, until_state
 from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.panels.output import Output
 from tuisim.app.snapshot import RunPhase
 from tuisim.base.source import Program
 from tuisim.settings.build import build_run_spec
@@ -38,6 +40,10 @@ def list_left(app: LabApp) -> tuple[int, int]:
     return round(position_deg), round(dps)
 
 
+def shows(output: Output, text: str) -> bool:
+    return output.copy_text().text == text
+
+
 async def find(pilot: Pilot[Any], app: LabApp, words: str) -> int:
     """Go to an instant, and return its tick."""
     await pilot.press("g")
@@ -64,6 +70,25 @@ async def test_a_step_shows_the_effect_of_its_line(profile: str) -> None:
 
 
 @pytest.mark.slow
+async def test_a_step_back_within_a_tick_takes_back_value_and_printed_line() -> None:
+    text = "print('a')\ntank_drive.left_motor.position = 9\nprint('b')\n"
+    async with open_lab(open_program(text, "robolab")) as (pilot, app):
+        output = app.panel_area.output
+        assert output is not None
+        for key, position_deg, printed in (
+            ("n", 0, ""),
+            ("n", 0, "a"),
+            ("n", 9, "a"),
+            ("N", 0, "a"),
+            ("N", 0, ""),
+            ("n", 0, "a"),
+        ):
+            await press_and_stand(pilot, key)
+            await until(pilot, partial(shows, output, printed), key)
+            assert list_left(app) == (position_deg, 0)
+
+
+@pytest.mark.slow
 @PROFILES
 async def test_the_end_and_the_past_show_what_was_printed_and_commanded_last(profile: str) -> None:
     async with open_lab(open_program(RESETS, profile)) as (pilot, app):
@@ -74,11 +99,11 @@ async def test_the_end_and_the_past_show_what_was_printed_and_commanded_last(pro
         assert app.run_controller.build_snapshot().turning == ""
         tick = await find(pilot, app, "pos < -50 first")
         rows = recording_of(app).rows
-        printed = rows.list_texts(tick, 1)[0][0].text
+        printed = rows.list_texts(rows.until(tick), 1)[0][0].text
         assert int(printed.partition(":")[2]) < -50
         chart = app.panel_area.chart
         assert chart is not None
         await until(pilot, lambda: printed.replace(":", "") in str(chart.border_subtitle))
         await pilot.press("comma")
-        earlier = rows.list_texts(tick - 1, 1)[0][0].text
+        earlier = rows.list_texts(rows.until(tick - 1), 1)[0][0].text
         await until(pilot, lambda: earlier.replace(":", "") in str(chart.border_subtitle))

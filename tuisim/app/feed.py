@@ -298,26 +298,41 @@ class PanelFeed:
                 if xs:
                     world.extend_trace(xs, ys, self._feed.recording.spec.robot.pen)
             self._send_telemetry(self._feed)
-            self._show_newest_line(self._feed.recording, self._runs.timeline.at)
-        is_past = self._runs.timeline.at is not None
-        if is_past or self._shows_past:
-            self._shows_past = is_past
-            self._show_past(self._runs.timeline.recording, self._runs.timeline.at)
+        recording, count = self._runs.timeline.recording, self._count_rows()
+        if recording is not None:
+            self._show_newest_line(recording, count)
+        if count is not None or self._shows_past:
+            self._shows_past = count is not None
+            self._show_past_trace(recording, self._runs.timeline.at)
+            self._show_past_rows(recording, count)
 
-    def _show_newest_line(self, recording: Recording, tick: int | None) -> None:
+    def _count_rows(self) -> int | None:
+        """Return the number of output rows up to the past instant in view, even to an earlier line of its tick.
+
+        None at the newest instant.
+        """
+        timeline = self._runs.timeline
+        if (recording := timeline.recording) is None:
+            return None
+        pause = self._runs.shown_pause
+        if pause and pause.past and pause.paused.tick == timeline.tick:
+            return min(pause.inspected.rows, recording.rows.until(timeline.tick))
+        return None if timeline.at is None else recording.rows.until(timeline.at)
+
+    def _show_newest_line(self, recording: Recording, count: int | None) -> None:
         """Show the newest line of the output in the debug panel if the output panel is hidden."""
         debug = self._panel_area.debug
         if debug is None or not debug.display:
             return
         is_hidden = not self._panel_area.is_shown("output")
         rows = recording.rows
-        count = len(rows) if tick is None else rows.until(tick)
+        count = len(rows) if count is None else count
         if (key := (rows, count, debug, is_hidden)) != self._newest:
             self._newest = key
-            newest, _ = rows.list_texts(tick, 1) if is_hidden else ([], 0)
+            newest, _ = rows.list_texts(count, 1) if is_hidden else ([], 0)
             debug.show_printed(newest[0].format_line() if newest else "")
 
-    def _show_past(self, recording: Recording | None, tick: int | None) -> None:
+    def _show_past_trace(self, recording: Recording | None, tick: int | None) -> None:
         if world := self._panel_area.world:
             key = None if tick is None or recording is None else (recording, tick, world)
             if key != self._traced:
@@ -326,15 +341,19 @@ class PanelFeed:
                     world.show_past_trace(None)
                 else:
                     world.show_past_trace(trace_run(recording, tick), recording.spec.robot.pen)
-        if output := self._panel_area.output:
-            count = (
-                None
-                if tick is None or recording is None
-                else (recording, recording.rows.until(tick), output)
-            )
-            if count != self._printed:
-                self._printed = count
-                if tick is None or recording is None:
-                    output.show_past(None)
-                else:
-                    output.show_past(*recording.rows.list_texts(tick, PAST_ROWS))
+
+    def _show_past_rows(self, recording: Recording | None, count: int | None) -> None:
+        output, chart = self._panel_area.output, self._panel_area.chart
+        printed = None if count is None else (recording, count, output, chart)
+        if printed == self._printed:
+            return
+        self._printed = printed
+        if count is None or recording is None:
+            if output:
+                output.show_past(None)
+            return
+        rows, before = recording.rows.list_texts(count, PAST_ROWS)
+        if output:
+            output.show_past(rows, before)
+        if chart:
+            chart.show_printed(rows[-1].time_ns / 1e9 if rows else 0.0)

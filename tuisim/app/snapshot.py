@@ -51,7 +51,6 @@ AT_REST = frozenset({RunPhase.PAUSED, RunPhase.ENDED})
 GOOD_ENDS: frozenset[RunState | None] = frozenset({End.FINISHED, End.STOPPED})
 """Ways to end a run that are no failure."""
 
-_HALF_NS = 5e-10
 _DARK = BrickState()
 
 
@@ -109,11 +108,6 @@ class Snapshot:
     def time_s(self) -> float:
         """The simulated time in s."""
         return self.instant.tick / self.tick_hz
-
-    @property
-    def end_s(self) -> float:
-        """The last moment of the tick in view, in s: all that is printed up to it is part of the instant."""
-        return (self.instant.tick + 1) / self.tick_hz - _HALF_NS
 
     @property
     def tick_hz(self) -> int:

@@ -537,6 +537,8 @@ class Inspected(Message):
     """Why data is missing, such as values that took too long."""
     present: Present | None = None
     """None if it could not be read in time."""
+    rows: int = 0
+    """The number of rows of output so far."""
 
 
 @dataclass(frozen=True, slots=True)

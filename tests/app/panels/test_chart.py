@@ -50,6 +50,7 @@ async def test_the_readout_of_a_past_tick_is_what_was_printed_last_in_it(hz: int
     async with open_chart() as (_, app):
         spec = replace(SPEC, profile=replace(SPEC.profile, tick_hz=hz))
         times_s = (80.99 / hz, 81 / hz, 81.99 / hz, 82 / hz, 82.5 / hz)
+        app.panel.show_printed(times_s[2])
         app.panel.append("pos", times_s, (-1.0, -2.0, -3.0, -4.0, -5.0))
         now = moment(spec=spec)
         app.panel.show(replace(now, past=True, instant=replace(now.instant, tick=81)))

@@ -64,9 +64,11 @@ def test_rows_are_found_by_tick(tmp_path: Path) -> None:
         ],
     )
     assert [index.until(tick) for tick in (0, 4, 5, 8, 9, 99)] == [1, 1, 3, 4, 5, 5]
-    texts = {tick: [row.text for row in index.list_texts(tick, 2)[0]] for tick in (0, 6, 99)}
+    texts = {
+        tick: [row.text for row in index.list_texts(index.until(tick), 2)[0]] for tick in (0, 6, 99)
+    }
     assert texts == {0: ["a"], 6: ["a", "b"], 99: ["b", "c"]}
-    assert index.list_texts(99, 2)[1] == 1
+    assert index.list_texts(index.until(99), 2)[1] == 1
     assert [row.text for row in index.rows(3)] == [leds[1], "c"]
     assert [row.text for row in index.rows(1, -1)] == [leds[0], "a"]
     assert [index.row(number).text for number in index.list_face_numbers(6)] == [leds[0]]

@@ -76,8 +76,8 @@ class Chart(LinesPanel, can_focus=True):
         self._dragging = False
         self._pointed_s: float | None = None
         """The time below the pointer."""
-        self._end_s = 0.0
-        """The last moment of the instant in view."""
+        self._printed_s = 0.0
+        """When the newest line of the output at a past instant was printed."""
         self._light = PLAIN_LIGHT
         self._is_at_rest = False
         self._spanned: object = None
@@ -115,13 +115,18 @@ class Chart(LinesPanel, can_focus=True):
         if state != self._state:
             self._state = state
             self._dirty = True
-        self._end_s = snapshot.end_s
         self._light = find_light(snapshot.recorded_spec or snapshot.spec)
         was_at_rest = self._is_at_rest
         self._is_at_rest = snapshot.state in AT_REST
         if self._dirty or self._is_at_rest != was_at_rest:
             self._dirty = True
             self._throttle.ask()
+
+    def show_printed(self, time_s: float) -> None:
+        """Show at the cursor the values up to the newest line of the output, which was printed at this time."""
+        if time_s != self._printed_s:
+            self._printed_s = time_s
+            self._schedule_drawing()
 
     def _schedule_drawing(self) -> None:
         self._dirty = True
@@ -307,7 +312,7 @@ class Chart(LinesPanel, can_focus=True):
         drawn = self._traces.list_drawn()
         if time_s is None or not drawn:
             return ""
-        end_s = self._end_s if self._pointed_s is None else time_s
+        end_s = max(time_s, self._printed_s) if self._pointed_s is None else time_s
         return format_values(drawn, time_s, self._state.unit, width, end_s=end_s)
 
     def copy_text(self) -> Copied | None:

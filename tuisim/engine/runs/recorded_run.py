@@ -293,12 +293,9 @@ class RowIndex:
         """Return the number of output rows up to the end of a tick."""
         return bisect_right(self._ticks, tick)
 
-    def list_texts(self, tick: int | None, most: int) -> tuple[list[OutputRow], int]:
-        """Return the last readable rows up to the end of a tick, at most `most`, and the number of earlier ones.
-
-        A tick of None stands for all rows that have been read so far.
-        """
-        end = bisect_right(self._texts, (len(self) if tick is None else self.until(tick)) - 1)
+    def list_texts(self, count: int, most: int) -> tuple[list[OutputRow], int]:
+        """Return the last readable ones of the first `count` rows, at most `most`, and the number of earlier ones."""
+        end = bisect_right(self._texts, count - 1)
         first = max(0, end - most)
         return [self.row(number) for number in self._texts[first:end]], first
 

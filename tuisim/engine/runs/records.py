@@ -236,7 +236,7 @@ class OutputWriter(MappedWriter):
 
     def __init__(self, folder: Path) -> None:
         super().__init__(f"{folder}{os.sep}{OUTPUT_FILE}", OUTPUT_MAGIC, 0, OUTPUT_CHUNK)
-        self.length = self._rows = 0
+        self.length = self.rows = 0
 
     def write(self, text: bytes, tick: int, time_ns: int, line: int, stream: Stream) -> None:
         """Append one row of output.
@@ -253,8 +253,8 @@ class OutputWriter(MappedWriter):
         """
         if self._is_full:
             return
-        self._rows += 1
-        if self._rows > MAX_OUTPUT_ROWS + time_ns // _NS_PER_ROW:
+        self.rows += 1
+        if self.rows > MAX_OUTPUT_ROWS + time_ns // _NS_PER_ROW:
             raise LogError(
                 f"the program printed more than {MAX_OUTPUT_ROWS:,} lines and {MAX_ROWS_PER_S:,} a second"
             )

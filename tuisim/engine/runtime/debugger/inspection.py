@@ -296,6 +296,7 @@ class Inspector:
             watches=tuple(Watched(*watch) for watch in values["watches"]),
             note=note,
             present=Present(**values["present"]) if "present" in values else None,
+            rows=self._session.output.writer.rows,
         )
 
     def name_thread(self, task: ScheduledThread) -> str:
