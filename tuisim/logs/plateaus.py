@@ -249,7 +249,7 @@ def _cut(values: FloatArray, sigma: float) -> Pieces:
 def _choose_places(scaled: FloatArray) -> IntArray:
     """Return the positions of possible cuts, from 0 to the length, both included.
 
-    In a long log these are the positions where the means of the samples before and after differ most, by more than
+    In a long log, these are the positions where the means of the samples before and after differ most, by more than
     `CERTAINTY` standard deviations. Each width of the means is about three times the one before it, so that one of them
     fits into a level of any length without losing much of its weight; 24 samples show a step of 1.2 times the noise.
     The neighbours of a peak may be cuts, too: noise shifts it.

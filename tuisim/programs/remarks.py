@@ -1,4 +1,4 @@
-"""What a program's comments, prints and names say that it means, beside the lines that should do it."""
+"""The intentions of a program that its comments, prints and names tell, and the lines that should carry them out."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _AFTER_LINES = 3
 
 
 class Remarks:
-    """The lines of a program, with what they say.
+    """The lines of a program, in which comments, prints and names tell its intentions.
 
     Args:
         text: The program.
@@ -47,7 +47,7 @@ class Remarks:
 
         Args:
             first_line: The first line of the loop.
-            last_line: The last one.
+            last_line: The last line of the loop.
         """
         lines = self._list_lines(first_line - _BEFORE_LINES, last_line + _AFTER_LINES)
         text = " ".join(lines)
@@ -65,7 +65,7 @@ class Remarks:
         return (is_forwards(text) or bool(_STRAIGHT.search(text))) and not _TURNS.search(text)
 
     def has_centimetres(self, line: int, number: int) -> bool:
-        """Return whether a line, or the one above it, has a number with the unit cm."""
+        """Return whether a line, or the line above it, has a number with the unit cm."""
         text = " ".join(self._list_lines(line - 1, line))
         return bool(re.search(rf"\b{number}\s?cm\b", text))
 
@@ -76,7 +76,7 @@ class Remarks:
 
 @dataclass(frozen=True, slots=True)
 class Spin:
-    """Moves of the two wheels against each other, where the program says that it drives straight on."""
+    """Moves that turn the two wheels in opposite directions, where the program says that it drives straight on."""
 
     first_line: int
     last_line: int
@@ -105,7 +105,7 @@ def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[Spin]:
 
 
 def _list_speeds(statement: ast.stmt) -> list[float]:
-    """Return both speeds of a statement that moves two motors, as `tank.on(30, -30)`; empty for another one."""
+    """Return both speeds in a statement such as `tank.on(30, -30)` if they are opposite; else an empty list."""
     match statement:
         case ast.Expr(value=ast.Call(func=ast.Attribute(attr=method), args=[left, right, *_])):
             if method in ("on", "on_for_seconds", "on_for_rotations", "on_for_degrees"):
@@ -115,7 +115,7 @@ def _list_speeds(statement: ast.stmt) -> list[float]:
 
 
 def _list_speed(statement: ast.stmt) -> list[float]:
-    """Return the speed of a statement that starts one motor, as `motor.on(30)`; empty for another one."""
+    """Return the speed in a statement that starts one motor, such as `motor.on(30)`; else an empty list."""
     match statement:
         case ast.Expr(value=ast.Call(func=ast.Attribute(attr="on" | "run"), args=[speed])):
             return _list_numbers(speed)
@@ -135,23 +135,23 @@ def _list_numbers(node: ast.expr) -> list[float]:
 
 @dataclass(frozen=True, slots=True)
 class WrongUnit:
-    """A number in a call that is probably in another unit, or at another place, than the call has it."""
+    """A call whose numbers are probably meant in another unit or in another order."""
 
     line: int
     text: str
     is_endless: bool = False
-    """Whether it is only wrong if the run was cut off in this line."""
+    """Whether the call is only wrong if the run was cut off in its line."""
 
 
 _MIN_SLEEP = 100
-"""Who lets a robot sleep for so many seconds meant milliseconds."""
+"""A sleep of so many seconds was meant in milliseconds."""
 _MIN_SPEED = 15
 _MAX_TIME = 10
-"""Equal numbers from here on are speeds, one up to here before them is a time."""
+"""Equal numbers of at least `_MIN_SPEED` are speeds; a number of at most `_MAX_TIME` before them is a time."""
 
 
 def list_wrong_units(tree: ast.Module, remarks: Remarks) -> Iterator[WrongUnit]:
-    """Yield the calls with numbers in a unit, or an order, that is probably not meant."""
+    """Yield the calls whose numbers are probably meant in another unit or in another order."""
     for node in ast.walk(tree):
         match node:
             case ast.Call(func=ast.Attribute(attr="straight"), args=[number, *_]) if (
@@ -177,7 +177,7 @@ def _round(node: ast.expr) -> int:
 
 
 def _describe_order(numbers: Sequence[list[float]]) -> str:
-    """Return what is wrong with the numbers of `on_for_seconds`, if the time comes first; empty otherwise."""
+    """Return why the numbers of `on_for_seconds` are wrong if the time comes first; else an empty text."""
     match numbers:
         case [[seconds], [left], [right]] if (
             left == right >= _MIN_SPEED and 0 < seconds <= _MAX_TIME
@@ -191,7 +191,9 @@ def _describe_order(numbers: Sequence[list[float]]) -> str:
 
 
 def list_late_stops(tree: ast.Module, remarks: Remarks) -> Iterator[tuple[int, int, int]]:
-    """Yield the lines of loops, of the sleep after each that names a band, and of the stop of motors after that."""
+    """Yield the lines of a `while` loop, of the sleep after the loop, and of the stop of the motors after the sleep.
+
+    Only loops are yielded between whose end and whose sleep a band is named."""
     for node in ast.walk(tree):
         block = getattr(node, "body", None)
         statements = block if isinstance(block, list) else []

@@ -1,4 +1,4 @@
-"""How a program uses what it reads and sets: readings that it never renews, and names that are not those it means."""
+"""Mistakes in the use of values: readings that a program never renews, and assignments to the wrong name."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ _SPEEDS = "Speed"
 
 
 def list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoopEnd]:
-    """Yield the uses, in loops, of readings that were taken before the loop, and that nothing in it renews.
+    """Yield each use in a loop of a reading that was taken before the loop and that nothing in the loop renews.
 
-    A use is a comparison with a constant, or a move; that has no operator. Lines are those of the loop around it.
+    A use is a comparison with a constant or, without an operator, another test or a move. Its lines are those of the
+    loop.
 
     Args:
         tree: The program.
@@ -52,11 +53,11 @@ def _list_scopes(tree: ast.Module) -> Iterator[ast.Module | _Function]:
 
 
 def _list_reads_before(loop: _Loop, nodes: list[ast.AST]) -> dict[str, ast.Assign]:
-    """Return the last assignment of each name before a loop that does not assign it, if that reads an attribute.
+    """Return the last assignment of each name before a loop that does not assign the name, if it reads an attribute.
 
     Args:
         loop: The loop.
-        nodes: The nodes of its scope.
+        nodes: The nodes of the scope that contains the loop.
     """
     reads: dict[str, ast.Assign] = {}
     for node in nodes:
@@ -108,7 +109,7 @@ def _list_uses(
 
 
 def _is_truth(test: ast.expr, name: str) -> bool:
-    """Return whether a test asks only whether a name is true, or that it is not."""
+    """Return whether a test is a name alone, or `not` and the name."""
     match test:
         case ast.Name(id=asked) | ast.UnaryOp(op=ast.Not(), operand=ast.Name(id=asked)):
             return asked == name
@@ -116,7 +117,7 @@ def _is_truth(test: ast.expr, name: str) -> bool:
 
 
 def _find_derived(loop: _Loop, name: str) -> set[str]:
-    """Return a name, and those names that the loop computes from nothing but it and values from before the loop."""
+    """Return a name, and the names that a loop computes only from this name and from values set before the loop."""
     stored = _list_stored(loop)
     derived = {name}
     assigns = [node for node in ast.walk(loop) if isinstance(node, ast.Assign)]
@@ -129,7 +130,7 @@ def _find_derived(loop: _Loop, name: str) -> set[str]:
 
 
 def _depends(node: ast.expr, stale: set[str], fresh: set[str]) -> bool:
-    """Return whether an expression depends on stale names, and on no fresh ones or further readings."""
+    """Return whether an expression depends on a stale name, but on no fresh name and no further reading."""
     names = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
     reads = any(
         isinstance(part, ast.Attribute) or (isinstance(part, ast.Call) and not _is_pure(part))
@@ -147,21 +148,21 @@ def _is_pure(call: ast.Call) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class LoneStop:
-    """A stop of motors that depends on one reading after their start, outside of a loop that would read again."""
+    """An `if`, outside of `while` loops, that stops motors after a single reading."""
 
     line: int
-    """That of the `if`."""
+    """The line of the `if`."""
     read_line: int
     stop_line: int
     start_line: int
     is_direct: bool
-    """Whether nothing waits between the start and the reading."""
+    """Whether the program does not wait between the start of the motors and the reading."""
     test: LoopEnd | None
     """The comparison; None for another test, such as whether a button is pressed."""
 
 
 def list_lone_stops(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoneStop]:
-    """Yield each `if` that stops motors that the same block has just started, and that no `while` runs again.
+    """Yield each `if` outside of `while` loops that stops motors which the same block has just started.
 
     Args:
         tree: The program.
@@ -201,7 +202,7 @@ def _list_blocks(tree: ast.AST) -> Iterator[list[ast.stmt]]:
 
 
 def _find_call(statement: ast.stmt, names: tuple[str, ...]) -> str:
-    """Return the function that a statement calls if its last part is one of some names; empty otherwise."""
+    """Return the name of the function or method that a statement calls, if it is one of `names`; else an empty text."""
     match statement:
         case ast.Expr(value=ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name))):
             return name if name in names else ""
@@ -209,7 +210,7 @@ def _find_call(statement: ast.stmt, names: tuple[str, ...]) -> str:
 
 
 def _find_read_line(test: ast.expr, read: ast.Assign | None) -> int:
-    """Return the line that reads what a test asks: its own or, for a name that was just assigned, that line."""
+    """Return the line with the reading of a test: the line of `read` if the test uses its name, else its own line."""
     names = {part.id for part in ast.walk(test) if isinstance(part, ast.Name)}
     is_named = read is not None and names & _list_stored(read)
     return read.lineno if is_named and read else test.lineno
@@ -218,7 +219,7 @@ def _find_read_line(test: ast.expr, read: ast.Assign | None) -> int:
 def _read_test(
     test: ast.expr, read: ast.Assign | None, constants: Mapping[str, Word]
 ) -> LoopEnd | None:
-    """Return the comparison of a reading with a constant that a test is; None for another test."""
+    """Return a test as a comparison of a reading with a constant; None if the test is something else."""
     comparison = read_comparison(test, constants, is_break=True)
     if comparison is None:
         return None
@@ -231,23 +232,23 @@ def _read_test(
 
 @dataclass(frozen=True, slots=True)
 class LostValue:
-    """A value that a function gives to a name of its own, where the program's name of the same text seems meant."""
+    """A value that a function assigns to a local name, although it probably means the same name of the program."""
 
     line: int
     name: str
     function: str
     lines: tuple[int, int]
-    """The first and the last of the function."""
+    """The first and the last line of the function."""
     call_line: int
     """The first line of the program itself, outside of functions, that calls the function; 0 for none."""
     set_line: int
-    """That which sets the program's name."""
+    """The line that sets the program's name."""
 
 
 def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
-    """Yield each value that a function assigns but never uses, to a name that the program itself sets and uses.
+    """Yield each value that a function assigns to a local name and never uses, if the program uses this name, too.
 
-    To print it is no use, nor to return it where no call takes what the function returns.
+    A `print` of the value is no use, and neither is a `return` if no call uses the result of the function.
     """
     functions = [node for node in tree.body if isinstance(node, _Function)]
     outside = [*walk_scope(tree)]
@@ -276,7 +277,7 @@ def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
 def _is_meant(
     name: str, call_line: int, outside: list[ast.AST], functions: list[_Function]
 ) -> bool:
-    """Return whether a program uses a name of its own after the first call of a function, in a loop or in functions.
+    """Return whether a program uses a global name after the first call of a function, in a loop, or in functions.
 
     Args:
         name: The name.
@@ -292,7 +293,7 @@ def _is_meant(
 
 
 def _walk_used(node: ast.AST, *, has_result: bool) -> Iterator[ast.AST]:
-    """Yield the nodes of a function without those that it prints and, if no call takes it, those that it returns."""
+    """Yield the nodes of a function without those that it prints and, without `has_result`, those that it returns."""
     for part in ast.iter_child_nodes(node):
         is_returned = isinstance(part, ast.Return) and not has_result
         if not is_returned and not _is_call(part, "print"):
@@ -323,15 +324,15 @@ def _is_loaded(name: str, nodes: Iterable[ast.AST]) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class UnwaitedMove:
-    """A move with an end for which the program does not wait."""
+    """A call that begins a move with an end, for which the program does not wait."""
 
     line: int
     last_line: int
     method: str
     option: str
-    """The argument because of which it does not wait, such as `block=False`."""
+    """The argument because of which the program does not wait, such as `block=False`."""
     next_line: int
-    """That of the next move in its block, if only calls come before it; 0 for none."""
+    """The line of the next move in the same block, if only calls are in between; 0 for none."""
 
 
 _OPTIONS = ("block", "wait")
@@ -361,7 +362,7 @@ def list_unwaited_moves(tree: ast.Module) -> Iterator[UnwaitedMove]:
 
 
 def _find_option(statement: ast.stmt) -> str:
-    """Return the argument because of which a statement does not wait for its move; empty for other statements."""
+    """Return the argument because of which a move does not block, such as `block=False`; empty for other statements."""
     match statement:
         case ast.Expr(value=ast.Call(keywords=keywords)) if _find_call(statement, _ANY_MOVE):
             for keyword in keywords:
@@ -371,7 +372,9 @@ def _find_option(statement: ast.stmt) -> str:
 
 
 def _find_next_move(move: ast.Call, rest: list[ast.stmt]) -> int:
-    """Return the line of the next move of the same object, else of another one, in the calls after a move; else 0."""
+    """Return the line of the next move of the same object or, without one, of any object, in the calls after a move.
+
+    The line is 0 if there is no such move."""
     owner = _name_object(move.func)
     lines: list[tuple[bool, int]] = []
     for statement in rest:

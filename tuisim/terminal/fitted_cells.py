@@ -134,7 +134,7 @@ def _find_best_glyphs(lab: npt.NDArray[np.float32], glyphs: GlyphSet) -> npt.NDA
     the variance that the split explains.
     """
     size = lab.shape[1]
-    # There is one product for each channel: they are too small for the library to start threads.
+    # One product for each channel is so small that the library does not start threads for it.
     sums = np.matmul(glyphs.covered, lab - lab.mean(axis=1, keepdims=True))
     count = glyphs.covered.sum(axis=1)[:, None]
     explained = np.square(sums, out=sums).sum(axis=0) * (1 / count + 1 / (size - count))

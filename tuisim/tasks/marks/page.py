@@ -115,7 +115,7 @@ def _classify_points(points: float, max_points: float) -> str:
 
 
 def _mark(cell: Cell, column: Goal, runs: int) -> _Mark:
-    # The level depends on the number of runs, as goals can have no points.
+    # The level depends on the runs that met the goal, not on its points, as goals can have no points.
     if runs and cell.met == runs:
         level = "met"
     elif cell.met:

@@ -44,7 +44,7 @@ _AT_ONCE_S = 0.1
 _DONE_SHARE = 0.8
 """A move of which this share is done is not cut off."""
 _MAX_COMMANDS = 10_000
-"""More commands are not looked at."""
+"""The number of commands that are examined; further commands are ignored."""
 _MAX_HARDLY = 2
 """Ticks after which a motor has not yet moved."""
 _SIDES = ("left", "right")
@@ -54,7 +54,7 @@ _MIN_MOVE_S = 0.3
 
 @dataclass(frozen=True, slots=True)
 class _Move:
-    """A command that moves a part, and the tick at which that gets its next one."""
+    """A command that moves a motor or a drive base, and the next command to the same part."""
 
     tick: int
     end: int
@@ -66,7 +66,7 @@ class _Move:
 
 
 def find_cut_move(data: RunData) -> Unmet | None:
-    """Return the first move that the next one to the same part, or the end of the program, cut off; None for none.
+    """Return the first move that the next command to the same part, or the end of the program, cut off; else None.
 
     Args:
         data: The run.
@@ -88,7 +88,9 @@ def find_cut_move(data: RunData) -> Unmet | None:
 
 
 def _list_moves(data: RunData) -> Iterator[_Move]:
-    """Yield the commands that move a part to an end, with the next command to the same part, in order of the end."""
+    """Yield the commands with an aim that the next one to the same part, or the end of the program, has ended.
+
+    They are in the order of their ends."""
     aims = [call for call, words in CALL_WORDS.items() if words.aim is not Aim.NONE]
     is_aim = np.isin(data.commands["call"], aims)
     rows, ticks = (part[is_aim][:_MAX_COMMANDS] for part in (data.commands, data.command_ticks))
@@ -108,7 +110,7 @@ def _list_moves(data: RunData) -> Iterator[_Move]:
 
 
 def _find_call(data: RunData, move: _Move, fitting: list[UnwaitedMove]) -> UnwaitedMove | None:
-    """Return the call in the text that gave a command; None if that is not clear, or if it may have meant to cut it.
+    """Return the call in the text that gave a command; None if it is not clear, or if the cut may be intended.
 
     Args:
         data: The run.
@@ -131,14 +133,14 @@ def _find_call(data: RunData, move: _Move, fitting: list[UnwaitedMove]) -> Unwai
 
 
 def _turns_as_asked(data: RunData, move: _Move, call: UnwaitedMove) -> bool:
-    """Return whether a call in the text turns the motor by as much as a command does."""
+    """Return whether a call in the text turns the motor by the same angle as a command."""
     turns = data.facts.find_turns(call.line)
     unit_deg = 360.0 if turns and turns[1] == "rotations" else 1.0
     return turns is not None and abs(turns[0]) * unit_deg == abs(move.values[1])
 
 
 def _has_looked(data: RunData, move: _Move) -> bool:
-    """Return whether the program read something during a move, or then only stopped it."""
+    """Return whether the program read a sensor or motor during a move, or ended the move by a speed or a stop."""
     aim = CALL_WORDS[move.next_call].aim if move.next_call else Aim.NONE
     ticks = data.reading_ticks
     has_read = ((ticks >= move.tick) & (ticks <= move.end)).any()
@@ -150,7 +152,7 @@ def _has_looked(data: RunData, move: _Move) -> bool:
 
 
 def _describe_share(data: RunData, move: _Move) -> str:
-    """Return how much of a move was done at its end; empty if most was, for a short one, or if that is not known."""
+    """Return how much of a move was done when it was cut off; empty for most of it, for short moves, or if unknown."""
     values = move.values
     way = data.records[move.tick : move.end + 1]
     match move.call:

@@ -1,4 +1,4 @@
-"""What a program reads once and uses again and again, asks only once, or sets without an effect."""
+"""Readings that a program takes once and uses again and again, tests that it makes only once, and lost values."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ if TYPE_CHECKING:
 _MAX_READINGS = 64
 """A line that reads more often does not read once."""
 _MIN_STALE_S = 0.5
-"""A loop that goes on for less time with an old reading may mean it."""
+"""A loop that uses an old reading for less time may do so on purpose."""
 _OTHER_SHARE = 0.3
-"""Moves by a reading are wrong if it changes by this share of it."""
+"""Moves that depend on a reading are wrong if the reading changes by this share."""
 _MIN_OTHER = 10.0
-"""And by at least so much."""
+"""The change of the reading must also be at least so large."""
 _SOON_S = 0.3
-"""A program that reads again so soon asks again."""
+"""A program that reads again so soon repeats its test."""
 _MIN_WAY_MM = 20.0
 _MIN_TURN_DEG = 10.0
-"""A robot that moved less after it was not stopped did no harm."""
+"""A missing stop does no harm if the robot moves by less than this."""
 
 
 def find_misuses(data: RunData) -> Iterator[Unmet]:
-    """Yield what a program misused: a reading, a test, a name; the first of each kind.
+    """Yield the first misuse of each kind in a run: of a reading, of a test, and of a name.
 
     Args:
         data: The run.
@@ -52,7 +52,7 @@ def find_misuses(data: RunData) -> Iterator[Unmet]:
             continue
 
 
-# A reading that was taken once and used many times
+# The following functions find readings that were taken once and used many times.
 
 
 def _find_stale_reads(data: RunData) -> Iterator[Unmet]:
@@ -73,14 +73,14 @@ def _list_ticks(data: RunData, line: int) -> list[int]:
 
 
 def _was_in_vain(data: RunData, use: LoopEnd) -> bool:
-    """Return whether the run ended in the loop, so that it is told that it waited in vain."""
+    """Return whether the run was ended in the loop of a use: another reason then tells that it waited in vain."""
     line = data.records["line"][-1]
     is_over = data.run.end is not None and data.run.end.end is End.FINISHED
     return use.first_line <= line <= use.last_line and not is_over
 
 
 def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
-    """Return that a reading was used after the sensor saw something else; None if it was right all the time."""
+    """Return the first use of a reading after the sensor saw something else; None if the reading stayed right."""
     lines = data.records["line"]
     until = _find_next_reading(data, use.read_line, read_tick)
     is_inside = (lines >= use.first_line) & (lines <= use.last_line)
@@ -112,7 +112,7 @@ def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
 
 
 def _find_next_reading(data: RunData, line: int, tick: int) -> int:
-    """Return the tick of the next reading of what a line read, by any line; without one, that of the end."""
+    """Return the tick of the next reading of a port that a line reads; without one, the number of ticks."""
     ports = np.unique(data.readings["port"][data.readings["line"] == line])
     ticks = data.reading_ticks[np.isin(data.readings["port"], ports)]
     later = ticks[ticks > tick]
@@ -123,11 +123,11 @@ def _name(series: Series, value: float) -> str:
     return f"{round_value(value)}{series.unit}"
 
 
-# An `if` where a loop was meant
+# The following functions find each `if` where a loop was meant.
 
 
 def _find_lone_stops(data: RunData) -> Iterator[Unmet]:
-    """Yield stops that never came, since the program asked only once for what was not yet there."""
+    """Yield each stop that never came, since the program tested only once, and too early."""
     for stop in data.facts.lone_stops:
         for read_tick in _list_ticks(data, stop.read_line):
             # The last reading may lie in the tick that the end of the program cut off.
@@ -138,7 +138,7 @@ def _find_lone_stops(data: RunData) -> Iterator[Unmet]:
 
 
 def _is_unstopped(data: RunData, stop: LoneStop, tick: int) -> bool:
-    """Return whether the robot drove on after a reading that should have stopped it, and the program asked no more."""
+    """Return whether the robot drove on after a reading that should have stopped it, without another reading."""
     soon = min(tick + round(_SOON_S * data.hz), len(data.records) - 1)
     next_tick = _find_next_reading(data, stop.read_line, tick)
     stops = data.command_ticks[select_stops(data)]
@@ -191,11 +191,11 @@ def _describe_lone(data: RunData, stop: LoneStop, tick: int) -> str:
     )
 
 
-# A name that is not the one that is meant
+# The following functions find assignments to a name that was not meant.
 
 
 def _find_lost_values(data: RunData) -> Iterator[Unmet]:
-    """Yield the values that a function gave to names of its own, when it ran."""
+    """Yield the values that a function of the program assigned to local names by mistake, if the function ran."""
     for lost in data.facts.lost_values:
         tick = _find_tick(data, *lost.lines)
         if tick is None and lost.call_line:
@@ -209,7 +209,7 @@ def _find_lost_values(data: RunData) -> Iterator[Unmet]:
 
 
 def _find_tick(data: RunData, first_line: int, last_line: int) -> int | None:
-    """Return the first tick at which the program was in some lines, or read there; None if it never was."""
+    """Return the first tick at which the program was in some lines, or read something there; None if there is none."""
     ticks = []
     for lines, when in (
         (data.records["line"], np.arange(len(data.records))),

@@ -1,4 +1,4 @@
-"""What a program says that it means, in its comments, prints and names, where its run did something else."""
+"""Intentions that a program tells in its comments, prints and names, where its run did something else."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ _LIMITS = {"black": (15.0, "<"), "white": (85.0, ">")}
 _AHEAD_MM = 1500
 _STEP_MM = 4
 _RIM_MM = 60
-"""So near to the edge of the mat, a sensor may not be on it."""
+"""A sensor of a robot so near to the edge may be off the mat."""
 _MIN_ON_MM = 200.0
-"""Who drives so far after the light that a loop waited for is not where it was."""
+"""A robot that drives so far after a loop has ended has left the place whose light ended the loop."""
 _MIN_CHANGE_PC = 20.0
 _SOON_S = 0.6
 _MIN_SPIN_DEG = 60.0
@@ -40,7 +40,7 @@ _MAX_SPOT_MM = 20.0
 
 
 def find_missed_aims(data: RunData) -> Iterator[Unmet]:
-    """Yield what a run did otherwise than the words of its program say; the first of each kind.
+    """Yield the first instant of each kind at which a run did something else than the words of its program say.
 
     Args:
         data: The run.
@@ -56,7 +56,7 @@ def find_missed_aims(data: RunData) -> Iterator[Unmet]:
 
 
 def _find_wrong_bands(data: RunData) -> Iterator[Unmet]:
-    """Yield loops that wait for black or white, and that another band ended before."""
+    """Yield each loop that, by its words, waits for black or white, but was ended by another band before."""
     for loop in data.facts.loop_ends:
         color = data.facts.remarks.find_color(loop.first_line, loop.last_line)
         if not color or isinstance(loop.limit, str) or loop.operator[0] != _LIMITS[color][1]:
@@ -85,7 +85,7 @@ def _find_wrong_bands(data: RunData) -> Iterator[Unmet]:
 
 
 def _measure_light(data: RunData, loop: LoopEnd, records: Array) -> Array:
-    """Return the light in % that the sensor of a loop sees in some records, those of them that are on the mat."""
+    """Return the light in % that the sensor of a loop sees in those records in which the robot is on the mat."""
     is_on = (records["x_mm"] > _RIM_MM) & (records["x_mm"] < FIELD_WIDTH_MM - _RIM_MM)
     is_on &= (records["y_mm"] > _RIM_MM) & (records["y_mm"] < FIELD_HEIGHT_MM - _RIM_MM)
     percent = replace(loop, attribute="reflected_light_intensity_pc")
@@ -94,7 +94,7 @@ def _measure_light(data: RunData, loop: LoopEnd, records: Array) -> Array:
 
 
 def _extend_way(record: Array) -> Array:
-    """Return records of a robot that drives straight on from where it is in one record."""
+    """Return records of a robot that drives straight on from its pose in a record."""
     way_mm = np.arange(_STEP_MM, _AHEAD_MM, _STEP_MM)
     records = np.repeat(record[None], len(way_mm))
     heading = np.deg2rad(record["heading_deg"])
@@ -104,7 +104,7 @@ def _extend_way(record: Array) -> Array:
 
 
 def _find_late_stops(data: RunData) -> Iterator[Unmet]:
-    """Yield stops that came long after the light that they are for, at the end of a run."""
+    """Yield each stop at the end of a run that came long after the light for which the program had waited."""
     loops = {loop.first_line: loop for loop in data.facts.loop_ends}
     for loop_line, sleep_line, stop_line in data.facts.late_stops:
         loop = loops.get(loop_line)
@@ -147,7 +147,7 @@ def _find_spins(data: RunData) -> Iterator[Unmet]:
 
 
 def _find_wrong_units(data: RunData) -> Iterator[Unmet]:
-    """Yield calls with numbers in a unit that is probably not meant, when they ran."""
+    """Yield each call that ran and whose numbers were probably meant in another unit or order."""
     lines = data.records["line"]
     is_cut_off = data.run.end is None or data.run.end.end is not End.FINISHED
     for wrong in data.facts.wrong_units:

@@ -1,4 +1,4 @@
-"""What a run recorded, read once for all who look for reasons why it went wrong."""
+"""The recording of a run, read once for all searches for the reasons why the run went wrong."""
 
 from __future__ import annotations
 
@@ -64,11 +64,11 @@ class RunData:
     """A run with its telemetry, readings, commands and mat, each read when it is first needed.
 
     Args:
-        run: The run; it may still be running, and is seen as it is at the first look.
-        mat: Its mat; None opens it.
+        run: The run; if it is still running, each part is read as it is at its first use.
+        mat: The mat of the run; None opens the mat at its first use.
 
     Raises:
-        LogError, ConfigError: on a look at a recording that is damaged, or at a mat that no longer exists.
+        LogError, ConfigError: at the use of a damaged recording, or of a mat that no longer exists.
     """
 
     def __init__(self, run: StoredRun, mat: Field | None = None) -> None:
@@ -78,7 +78,7 @@ class RunData:
 
     @cached_property
     def facts(self) -> ProgramFacts:
-        """What the text of the program says."""
+        """The facts that the text of the program shows."""
         return read_facts(self.run.program)
 
     @cached_property
@@ -151,7 +151,7 @@ class RunData:
 
         Args:
             loop: The loop, or another comparison.
-            stay: The first tick to look at, and the one after the last.
+            stay: The first tick to read, and the tick after the last one.
             is_between: Whether to measure from the first reading to the last at every tick.
         """
         import numpy as np
@@ -245,9 +245,9 @@ class RunData:
         return values
 
     def _find_wheel(self, ports: list[str]) -> str:
-        """Return `left` or `right` if the only port is that of the wheel's motor.
+        """Return `left` or `right` if there is one port, and it is that of the left or the right wheel's motor.
 
-        The result is empty otherwise, or if the wheels have gears.
+        The result is empty for other ports, or if the wheels have gears.
         """
         robot = self.run.spec.robot
         wheels = {robot.left_port: "left", robot.right_port: "right"}
