@@ -23,7 +23,7 @@ FOUND = {
 
 
 @cases("text, events", FOUND)
-def test_where_variables_cross_a_value(
+def test_find_events_lists_each_crossing_with_its_time_direction_and_row(
     text: str, events: list[tuple[str, bool, float, int]]
 ) -> None:
     log = long_log()

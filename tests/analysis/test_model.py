@@ -55,7 +55,9 @@ def test_zoom_keeps_the_cursor_and_pan_stays_inside() -> None:
     [("time", 18.0), ("distance", 900.0), ("Colour < 45", 9.0)],
     ids=["time", "distance", "event"],
 )
-def test_runs_are_laid_over_each_other(way: str, place: float) -> None:
+def test_aligning_two_runs_moves_the_cursor_and_keeps_the_selected_row(
+    way: str, place: float
+) -> None:
     model = model_of(long_log(runs=2))
     model.go_to_row(38)
     model.align(way)
@@ -67,12 +69,12 @@ def test_runs_are_laid_over_each_other(way: str, place: float) -> None:
 
 
 @pytest.mark.parametrize("way", ["speed", "Colour < -5", "Nothing > 1"])
-def test_what_runs_cannot_be_aligned_by_is_said(way: str) -> None:
+def test_aligning_runs_by_an_unusable_word_says_why(way: str) -> None:
     with pytest.raises(LogError):
         model_of(long_log(runs=2)).align(way)
 
 
-def test_a_variable_along_another() -> None:
+def test_sample_variable_gives_one_value_per_sample_and_refuses_unknown_names() -> None:
     model = model_of(long_log())
     assert model.sample_variable("x_mm").tolist() == [100.0 * at for at in range(10)]
     assert model.sample_variable("Left").tolist() == [float(at) for at in range(10)]
@@ -86,7 +88,7 @@ def test_a_log_without_numbers_is_refused() -> None:
         model_of(Log("test", table, Layout()))
 
 
-def test_bands_are_those_of_the_variables_in_view() -> None:
+def test_bands_are_searched_for_only_the_variables_asked_for() -> None:
     model = model_of(long_log())
     assert (model.list_unsearched(), list(model.bands())) == (["Colour", "Left"], [])
     model.find_bands(["Colour"], lambda _: [Plateau(0, 5, 2.0, 0.0, 0.0)])
@@ -117,7 +119,9 @@ def test_the_view_follows_the_cursor(time_s: float, moves: bool) -> None:
     ],
     ids=["lines", "steps", "a path"],
 )
-def test_a_chart_shows_what_is_in_view(view: View, xs: list[float], ys: list[float]) -> None:
+def test_a_zoomed_chart_has_only_the_points_inside_its_limits(
+    view: View, xs: list[float], ys: list[float]
+) -> None:
     model = model_of(long_log())
     model.limits = 2.5, 6.5
     chart = build_chart(model, view, 400, 100)
@@ -129,7 +133,7 @@ def test_a_chart_shows_what_is_in_view(view: View, xs: list[float], ys: list[flo
             build_chart(model, view, 400, 100)
 
 
-def test_derived_variables_go_where_the_log_goes() -> None:
+def test_a_reopened_log_keeps_derived_variables_cursor_mark_zoom_and_sorting() -> None:
     model = model_of(long_log())
     other = model_of(long_log())
     model.derive("Twice = Colour * 2")
@@ -155,7 +159,7 @@ def test_derived_variables_go_where_the_log_goes() -> None:
         other.derive("Twice =")
 
 
-def test_figures_are_those_between_the_cursors() -> None:
+def test_statistics_are_computed_from_samples_between_the_cursors() -> None:
     model = model_of(long_log())
     assert model.list_unsummed() == ["Colour", "Left"]
     assert (model.build_summary("Colour").mean, model.list_unsummed()) == (45.0, ["Left"])

@@ -106,7 +106,7 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Driven:
     return Driven(run, page_of(target))
 
 
-def test_a_run_is_told_whole(driven: Driven) -> None:
+def test_a_report_of_a_run_has_its_facts_and_all_its_sections(driven: Driven) -> None:
     facts = driven.page.section["Facts"]
     run = driven.run
     told = dict(zip(facts[::2], facts[1::2], strict=True))
@@ -133,7 +133,7 @@ def test_a_run_is_told_whole(driven: Driven) -> None:
     assert {"Colour", "Way_mm (mm)", "time (s)", "86.27"} <= set(driven.page.section["Chart"])
 
 
-def test_an_end_is_said_once(driven: Driven) -> None:
+def test_a_report_whose_end_equals_its_summary_says_stopped_only_once(driven: Driven) -> None:
     assert driven.run.end is not None
     stopped = replace(driven.run.end, end=End.STOPPED, summary="stopped")
     assert ("end", "stopped") in list_run_facts([replace(driven.run, end=stopped)])
@@ -170,14 +170,14 @@ def test_the_report_names_each_setting_that_changes_a_run(driven: Driven) -> Non
     assert ("answers", "'left'") in list_run_facts([replace(driven.run, options=answers)])
 
 
-def test_the_program_has_its_line_numbers(driven: Driven) -> None:
+def test_the_program_in_a_report_has_line_numbers(driven: Driven) -> None:
     cells = driven.page.section["Program greys.py"]
     lines = PROGRAM.replace("\x0c", "\ufffd").split("\n")
     numbered = dict(zip(cells[::2], cells[1::2], strict=False))
     assert [numbered[str(at)] for at in range(1, 11)] == lines[:10]
 
 
-def test_a_page_needs_nothing_from_elsewhere(driven: Driven) -> None:
+def test_a_report_page_loads_nothing_from_other_files_or_sites(driven: Driven) -> None:
     assert not {"script", "link", "iframe", "object", "i", "b"} & set(driven.page.tags)
     for name, value in driven.page.attributes:
         assert not name.startswith("on")
@@ -186,7 +186,7 @@ def test_a_page_needs_nothing_from_elsewhere(driven: Driven) -> None:
         )
 
 
-def test_the_world_shows_the_way(driven: Driven) -> None:
+def test_the_reports_picture_of_the_world_draws_the_robots_path(driven: Driven) -> None:
     source, _ = (value for name, value in driven.page.attributes if name == "src")
     with Image.open(io.BytesIO(base64.b64decode(source.partition(",")[2]))) as picture:
         colors = {color: count for count, color in picture.convert("RGB").getcolors(1 << 20) or ()}
@@ -263,7 +263,7 @@ def test_a_mat_that_is_gone_costs_only_its_picture(
     assert "Bands" in page.section
 
 
-def test_a_file_is_told_without_program_and_world(
+def test_a_report_of_a_log_file_has_no_program_and_no_world_section(
     here: Command, home: Path, tmp_path: Path
 ) -> None:
     log = tmp_path / "some.csv"
@@ -307,7 +307,9 @@ def test_statistics_of_too_many_variables_are_those_of_the_drawn_ones_and_of_the
     assert f"v{MAX_STATISTICS - 1}" not in section
 
 
-def test_an_export_tells_of_its_runs(here: Command, tmp_path: Path, driven: Driven) -> None:
+def test_a_report_of_an_exported_run_names_the_runs_program_and_mat(
+    here: Command, tmp_path: Path, driven: Driven
+) -> None:
     here("runs", "export", driven.run.id, "--out", "x.parquet")
     here("log", "report", "x.parquet", "--variable", "Colour")
     facts = page_of(tmp_path / "x-report.html").section["Facts"]

@@ -24,7 +24,7 @@ def file(tmp_path: Path, home: Path) -> Path:
     return path
 
 
-def test_choices_are_found_by_any_path_of_the_file_and_kept_in_the_home(
+def test_choices_for_a_log_file_are_stored_in_the_home_and_found_by_any_path(
     file: Path, home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert find_choices(str(file)) is None
@@ -36,7 +36,7 @@ def test_choices_are_found_by_any_path_of_the_file_and_kept_in_the_home(
     assert find_choices(str(file)) == NO_CHOICES
 
 
-def test_a_changed_file_is_another_one(file: Path) -> None:
+def test_choices_for_a_log_file_are_forgotten_once_the_file_changes(file: Path) -> None:
     remember_choices(str(file), CHOICES)
     status = file.stat()
     os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns + 1))
@@ -51,7 +51,7 @@ def test_a_changed_file_is_another_one(file: Path) -> None:
     assert find_choices(str(file)) is None
 
 
-def test_the_oldest_files_are_forgotten(
+def test_choices_for_the_oldest_log_files_are_forgotten_first(
     file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(source, "MAX_FILES", 2)
@@ -74,7 +74,7 @@ def test_the_oldest_files_are_forgotten(
         ' "choices": {"header": "x"}}]}',
     },
 )
-def test_damaged_memory_is_no_error(text: str, file: Path) -> None:
+def test_a_damaged_file_of_remembered_choices_raises_no_error(text: str, file: Path) -> None:
     keep("logs", [])
     status = file.stat()
     text = text.replace("FILE", str(file)).replace("SIZE", str(status.st_size))
@@ -84,7 +84,7 @@ def test_damaged_memory_is_no_error(text: str, file: Path) -> None:
     assert find_choices(str(file)) == CHOICES
 
 
-def test_what_is_remembered_counts_without_choices_and_is_said(file: Path) -> None:
+def test_remembered_choices_apply_when_none_are_given_and_a_note_says_so(file: Path) -> None:
     remember_choices(str(file), CHOICES)
     *_, opened = request_file(str(file)).open_pieces()
     assert opened.log.series("light").time_s[-1] == pytest.approx(0.16)
@@ -117,5 +117,5 @@ def test_a_file_read_by_guesses_is_shown_first_until_choices_are_kept(
     assert read_doubtful(request_file(str(file))) is None
 
 
-def test_runs_and_pipes_are_not_asked_about() -> None:
+def test_how_to_read_stored_runs_and_pipes_is_not_asked() -> None:
     assert read_doubtful(LogRequest(runs=("last",))) is read_doubtful(LogRequest("-")) is None

@@ -35,7 +35,7 @@ def test_angles_and_places_have_their_own_scales() -> None:
 @pytest.mark.parametrize(
     "values, alike", [([0.0, 90.0], True), ([0.0, 1.0], False), ([0.0, 9000.0], False)]
 )
-def test_what_would_be_flat_beside_the_others_is_not_like_them(
+def test_a_trace_that_would_look_flat_beside_another_is_not_legible_with_it(
     values: list[float], alike: bool
 ) -> None:
     traces = LogTraces(log_of(light=[0.0, 100.0], new=values))
@@ -59,7 +59,7 @@ def test_a_single_instant_has_room_around_it(times: list[float], span: tuple[flo
     assert LogTraces(Log("test", table, guess_columns(table))).find_span_s() == span
 
 
-def test_what_is_not_shown_has_no_span() -> None:
+def test_a_trace_that_is_not_shown_has_no_span() -> None:
     traces = LogTraces(log_of(light=[1.0, 2.0]))
     traces.find_trace("light").on = False
     assert traces.find_span_s() == (0.0, 1.0)

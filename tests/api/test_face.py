@@ -44,7 +44,7 @@ def test_a_run_has_samples_telemetry_output_and_a_picture() -> None:
     }
 
 
-def test_same_seed_same_frames() -> None:
+def test_the_same_seed_gives_equal_sample_frames_and_another_seed_others() -> None:
     noisy = "for _ in range(20):\n    print('Colour:', colorLeft.reflected_light_intensity_pc)\n"
     first, second, other = (
         tuisim.simulate(noisy, background="Grey_bands", x=300, sensornoise=20, seed=seed).samples
@@ -78,7 +78,9 @@ def test_an_error_of_the_program_is_in_the_run() -> None:
         "no time": ({"timeout_s": 0}, "timeout_s: must be a number above 0"),
     },
 )
-def test_bad_choices_are_refused(choices: dict[str, Any], expected: str) -> None:
+def test_simulate_refuses_wrong_arguments_with_a_reason(
+    choices: dict[str, Any], expected: str
+) -> None:
     with pytest.raises(ConfigError, match=expected):
         tuisim.simulate(LOGGER, **choices)
 
@@ -100,7 +102,7 @@ def test_import_loads_next_to_nothing() -> None:
     } & set(done.stdout.split())
 
 
-def test_the_guides_example_does_as_it_says(
+def test_the_guides_example_of_simulate_runs_and_saves_its_picture(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -202,7 +204,7 @@ def test_a_pybricks_program_drives_as_far_as_it_asks_for() -> None:
     assert last.heading_deg - first.heading_deg == pytest.approx(-90, abs=1)
 
 
-def test_a_pybricks_program_in_an_experiment() -> None:
+def test_an_experiment_with_a_pybricks_program_measures_the_distance_driven() -> None:
     frame = tuisim.experiment(PYBRICKS, seeds=[1, 2], jobs=1)
     assert frame["Distance_last"].tolist() == [100, 100]
 
@@ -220,7 +222,7 @@ def test_an_experiment_takes_place_in_a_world_file_instead_of_that_of_its_goals(
     assert (frame["x_mm"].tolist(), frame["goal_done"].tolist()) == ([400, 400], [True, True])
 
 
-def test_a_call_is_a_program() -> None:
+def test_simulate_takes_a_single_call_as_the_text_of_a_program() -> None:
     assert tuisim.simulate("print(1 + 1)").output == "2\n"
 
 
@@ -231,14 +233,14 @@ def test_a_call_is_a_program() -> None:
         "hub": (lambda: tuisim.Robot(hub="PrimeHub"), "hub: needs a robot with its ports"),
     },
 )
-def test_a_description_is_checked_where_it_is_written(
+def test_a_robot_or_world_with_a_wrong_value_is_refused_when_it_is_created(
     describe: Callable[[], object], words: str
 ) -> None:
     with pytest.raises(ConfigError, match=words):
         describe()
 
 
-def test_a_wrong_world_is_refused(tmp_path: Path) -> None:
+def test_simulate_refuses_a_world_file_that_does_not_exist(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"nowhere\.toml: there is no such file"):
         tuisim.simulate(POSE, world=tmp_path / "nowhere.toml")
 
@@ -275,7 +277,9 @@ def test_load_run_refuses_words_that_name_no_run(run: Any, words: str) -> None:
         "jobs": ({"jobs": -1}, "jobs: must be a whole number from 0 to 1000, got -1"),
     },
 )
-def test_a_wrong_experiment_is_refused(given: dict[str, Any], words: str) -> None:
+def test_experiment_refuses_wrong_arguments_with_a_reason(
+    given: dict[str, Any], words: str
+) -> None:
     with pytest.raises(ConfigError, match=words):
         tuisim.experiment("log_greys", **given)
 
@@ -284,7 +288,7 @@ def test_the_face_is_as_the_list_of_options_writes_it() -> None:
     assert FACE.read_text(encoding="utf-8") == write_face()
 
 
-def test_nothing_else_is_public() -> None:
+def test_the_package_has_no_other_public_names() -> None:
     assert set(dir(tuisim)) == {
         *(
             "Lab",
@@ -384,7 +388,7 @@ def test_the_example_of_further_parts_is_a_robot() -> None:
     assert tuisim.Robot(parts=ast.literal_eval(example[1])) != tuisim.Robot()
 
 
-def test_a_robot_and_a_world_are_those_of_a_run() -> None:
+def test_simulate_uses_the_given_robot_and_world() -> None:
     robot = tuisim.Robot(wheel_diameter_mm=40, parts={"pen": {"width_mm": 5}})
     world = tuisim.World(background="Loop", x=300, sensornoise=20)
     spec = tuisim.simulate("print(1)\n", robot=robot, world=world, x=310).stored.spec
@@ -452,7 +456,7 @@ def test_a_world_has_the_defaults_that_the_page_names(
     assert (FIELD_WIDTH_MM, FIELD_HEIGHT_MM) == (2362, 1143)
 
 
-def test_a_class_is_marked(tmp_path: Path) -> None:
+def test_mark_returns_the_points_of_each_student(tmp_path: Path) -> None:
     (tmp_path / "goals.toml").write_text(GOALS)
     for name, text in (("Ada", "print(1)\n"), ("Bob", "1 / 0\n")):
         (tmp_path / "class" / name).mkdir(parents=True)

@@ -47,7 +47,7 @@ def go_through(run: Run, period_s: float) -> tuple[list[int], list[list[float]]]
     return ends, rows
 
 
-def test_the_time_is_a_column() -> None:
+def test_a_lab_can_give_the_time_as_a_column() -> None:
     lab = tuisim.Lab(columns=["x_mm", "time"])
     assert [*lab.step(period_s=0.5).items()][1] == ("time", lab.time_s) == ("time", 0.5)
 
@@ -97,7 +97,7 @@ def test_sensors_of_a_lab_see_what_the_pen_draws() -> None:
 @pytest.mark.parametrize(
     "profile", ["robolab", "ev3", "nbev3devsim", "lego-micropython", "pybricks4"]
 )
-def test_wheels_turn_as_asked(profile: str) -> None:
+def test_a_labs_wheels_turn_at_the_speeds_given_to_step(profile: str) -> None:
     columns = ("left_speed_dps", "right_speed_dps", "x_mm")
     world = tuisim.World(x=300, angle=0)
     robot = tuisim.Robot(left_reversed=True)
@@ -147,7 +147,7 @@ def test_the_same_seed_gives_the_same_steps() -> None:
     assert (lab.spec.seed, lab.time_s) == (3, 0)
 
 
-def test_a_lab_is_one_line() -> None:
+def test_repr_of_a_lab_is_one_line_with_robot_mat_and_time() -> None:
     lab = tuisim.Lab(SMOOTH)
     lab.step(period_s=0.5)
     assert repr(lab) == "<lab with Default_Robot on Loop after 0.50 s>"

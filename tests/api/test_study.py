@@ -173,7 +173,7 @@ def test_an_experiment_with_a_mended_metric_begins_anew(tmp_path: Path) -> None:
     assert frame["y"].tolist() == [1, 1]
 
 
-def test_a_table_that_is_replaced_is_told(tmp_path: Path) -> None:
+def test_an_experiment_warns_when_it_replaces_another_table(tmp_path: Path) -> None:
     out = tmp_path / "runs.csv"
     how: dict[str, Any] = {"out": out, "jobs": 1}
     tuisim.experiment(PROGRAM, **how)
@@ -192,7 +192,7 @@ def test_an_experiment_varies_worlds(tmp_path: Path) -> None:
     assert frame["x_mm"].tolist() == [500, 300]
 
 
-def test_what_is_chosen_has_a_column_also_with_one_value() -> None:
+def test_an_option_given_as_a_list_has_a_column_even_with_a_single_value() -> None:
     how: dict[str, Any] = {"constants": {"A": 3}, "motornoise": [20], "background": "Loop"}
     program = "A = 1\nprint('A:', A)\n"
     frame = tuisim.experiment([program, f"{program}#"], **how, jobs=1)
@@ -211,13 +211,13 @@ base.turn(90)
 """
 
 
-def test_no_robot_is_built_to_fit_a_wrong_constant() -> None:
+def test_an_experiment_builds_the_same_robot_for_every_value_of_a_constant() -> None:
     frame = tuisim.experiment(TURNS, constants={"TRACK": [56, 112, 168]}, jobs=1)
     assert frame["heading_deg"].tolist() == pytest.approx([-45, -90, -135], abs=1)
 
 
 @pytest.mark.slow
-def test_a_mean_that_is_known_needs_no_further_seeds() -> None:
+def test_an_experiment_stops_adding_seeds_once_the_mean_is_precise_enough() -> None:
     how: dict[str, Any] = {"metrics": {"end_mm": lambda run: run.pose.x_mm}, "jobs": 2}
     with pytest.warns(UserWarning, match="1 mean known only to"):
         frame = tuisim.experiment(
@@ -258,7 +258,9 @@ def test_a_mean_that_is_known_needs_no_further_seeds() -> None:
         "seeds": ({"seeds": "0..4"}, "seeds: must be several"),
     },
 )
-def test_what_is_wrong_is_refused_before_anything_runs(given: dict[str, Any], words: str) -> None:
+def test_an_experiment_with_wrong_arguments_is_refused_before_anything_runs(
+    given: dict[str, Any], words: str
+) -> None:
     with pytest.raises(ConfigError, match=words):
         tuisim.experiment(**{"program": PROGRAM, **given})
 
