@@ -62,7 +62,7 @@ def test_each_size_shows_its_panels_at_first(size: tuple[int, int], expected: se
     assert not placed.left_out
 
 
-def test_the_most_wanted_panel_gets_the_room() -> None:
+def test_in_a_full_layout_the_readings_get_at_least_their_fewest_rows() -> None:
     placed = arrange(["arrays", "controls", "instrumentation", "world"], 80, 23)
     assert {"arrays", "controls", "instrumentation"} <= set(placed.boxes)
     assert placed.boxes["instrumentation"].height == PANELS["instrumentation"].min_rows
@@ -120,7 +120,7 @@ def test_of_two_roomy_panels_the_more_wanted_one_is_shown() -> None:
 
 
 @for_each(height=range(14, 23))
-def test_a_chart_finds_room_in_a_very_low_terminal(height: int) -> None:
+def test_a_chart_is_laid_out_from_16_rows_on(height: int) -> None:
     assert ("chart" in arrange(["world", "chart"], 80, height).boxes) is (height >= 16)
 
 

@@ -34,7 +34,9 @@ def layout_of(preset: Preset, width: int, height: int) -> PanelLayout:
 
 
 @in_each_size_and_preset
-def test_a_preset_shows_what_it_is_made_for(preset: Preset, size: tuple[int, int]) -> None:
+def test_each_preset_shows_its_core_panels_and_fills_the_screen(
+    preset: Preset, size: tuple[int, int]
+) -> None:
     layout = layout_of(preset, *size)
     assert set(find_core_panels(preset, size[0], size[1] - 1)) <= set(layout.boxes)
     assert not layout.left_out

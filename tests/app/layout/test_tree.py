@@ -21,7 +21,7 @@ BESIDE = Split(Axis.COLUMNS, ("chart", "output"), (0.5, 0.5))
 ABOVE = Split(Axis.ROWS, ("world", BESIDE))
 
 
-def test_a_single_part_stays_as_it_is() -> None:
+def test_joining_a_single_layout_node_gives_that_node() -> None:
     assert join_nodes(Axis.ROWS, ["chart"]) == "chart"
 
 
@@ -44,7 +44,7 @@ def test_what_a_node_needs_is_added_along_its_axis() -> None:
     assert count_min_rows(ABOVE) == PANELS["world"].min_rows + deepest
 
 
-def test_fair_rows_count_the_worlds_ideal_rows_for_the_width() -> None:
+def test_the_fair_rows_of_a_column_count_the_worlds_ideal_rows_at_its_width() -> None:
     assert count_fair_rows(ABOVE, 80) == compute_ideal_rows(80) + max(
         PANELS["chart"].fair_rows, PANELS["output"].fair_rows
     )

@@ -68,7 +68,7 @@ async def test_the_means_of_the_rings_are_called_the_same_everywhere(size: tuple
     assert (await shown(size))[1].count("in→out") == 2
 
 
-async def test_a_threshold_is_on_the_scale_and_in_words() -> None:
+async def test_a_threshold_is_drawn_on_the_scale_and_named_with_its_line() -> None:
     _, text = await shown((60, 14), PROGRAM)
 
     assert (
@@ -142,7 +142,7 @@ async def test_discs_use_the_cells_of_the_app(cells: CellSet) -> None:
 
 
 @pytest.mark.parametrize("depth", [PALETTE_8, PALETTE_16])
-async def test_with_few_colours_what_is_around_a_disc_is_plain_and_darker(
+async def test_with_few_colours_the_surroundings_of_a_disc_are_plain_and_darker(
     depth: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(PixelView, "color_mode", ColorMode(depth))

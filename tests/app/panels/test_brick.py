@@ -147,7 +147,7 @@ async def test_a_digit_presses_a_force_sensor_whose_port_is_a_letter() -> None:
 
 
 @pytest.mark.slow
-async def test_a_former_instant_shows_the_brick_as_it_was() -> None:
+async def test_a_past_instant_shows_the_bricks_display_and_buttons_of_then() -> None:
     async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K", "R")
         await until(pilot, lambda: "ready" in printed(app))
@@ -284,7 +284,7 @@ while True:
 
 
 @pytest.mark.slow
-async def test_a_hand_presses_as_the_first_line_says(
+async def test_presses_planned_in_the_first_line_happen_in_the_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -72,7 +72,7 @@ async def test_the_chart_draws_logged_samples(size: tuple[int, int]) -> None:
     assert any("⠀" < char <= "⣿" for char in text)
 
 
-async def test_data_from_before_it_was_shown_is_kept() -> None:
+async def test_a_chart_shows_samples_that_came_before_it_was_opened() -> None:
     chart = Chart()
     fill(chart)
     app = PanelApp(chart)
@@ -82,7 +82,7 @@ async def test_data_from_before_it_was_shown_is_kept() -> None:
         assert "[x] Colour" in rows(app)[0]
 
 
-async def test_keys_show_and_hide_traces() -> None:
+async def test_keys_tick_and_untick_traces_of_the_chart() -> None:
     async with open_chart() as (pilot, app):
         await opened(app, pilot)
         seen = []
@@ -126,7 +126,7 @@ async def test_the_mouse_ticks_traces() -> None:
         assert rows(app)[0].startswith("[ ] Colour")
 
 
-async def test_the_cursor_walks_and_goes() -> None:
+async def test_arrow_keys_move_the_charts_cursor_and_escape_removes_it() -> None:
     async with open_chart() as (pilot, app):
         await opened(app, pilot)
         await pilot.press("left", "left", "shift+left")
@@ -144,7 +144,7 @@ async def test_the_cursor_walks_and_goes() -> None:
     assert last.split()[:3] == [f"{times[2]:.2f}", "s", "Colour"]
 
 
-async def test_the_mouse_puts_the_cursor() -> None:
+async def test_clicking_and_dragging_in_the_chart_moves_its_cursor() -> None:
     async with open_chart() as (pilot, app):
         rows(app)
         await pilot.mouse_down(app.panel, offset=(40, 5))
@@ -171,7 +171,7 @@ async def test_the_mouse_reads_values_without_a_press() -> None:
     assert not app.heard(Chart.CursorMoved)
 
 
-async def test_freezing_keeps_the_window() -> None:
+async def test_a_frozen_chart_keeps_its_time_window_when_samples_arrive() -> None:
     async with open_chart() as (pilot, app):
         await opened(app, pilot)
         rows(app)
@@ -187,7 +187,7 @@ async def test_freezing_keeps_the_window() -> None:
     assert not following[1]
 
 
-async def test_clearing_keeps_the_ticks() -> None:
+async def test_clearing_the_chart_keeps_which_traces_are_ticked() -> None:
     async with open_chart() as (pilot, app):
         await opened(app, pilot)
         await pilot.press("2", "delete")
@@ -225,7 +225,7 @@ async def test_the_chart_is_not_drawn_more_often_than_can_be_seen(
         assert not drawn
 
 
-async def test_bands_are_shown_while_the_run_stands_still() -> None:
+async def test_the_chart_names_bands_only_while_the_run_is_paused_or_ended() -> None:
     async with open_chart() as (pilot, app):
         shown = []
         for state in (RunPhase.RUNNING, RunPhase.PAUSED, RunPhase.RUNNING, RunPhase.ENDED):

@@ -36,7 +36,9 @@ async def test_code_says_no_program_only_once_that_is_known() -> None:
     ],
     ids=["save", "run", "while finding", "while typing", "not typing"],
 )
-async def test_keys_ask_the_app(keys: Keys, wanted: list[str]) -> None:
+async def test_keys_in_the_code_panel_ask_the_app_to_save_or_run(
+    keys: Keys, wanted: list[str]
+) -> None:
     app = CodeApp()
     async with app.run_test(size=(60, 12)) as pilot:
         await alone(pilot)

@@ -77,7 +77,7 @@ def test_a_heading_is_shown_within_half_a_turn(heading_deg: float, shown: str) -
     assert now.instant.pose.heading_deg == heading_deg
 
 
-def test_a_place_just_below_zero_has_no_minus_sign() -> None:
+def test_a_position_that_rounds_to_zero_has_no_minus_sign() -> None:
     assert "x 0 y 0 h 0°" in "\n".join(text(moment(Pose(-0.3, -0.4, -0.2)), 40, 7))
 
 
@@ -123,7 +123,7 @@ def test_extreme_values_fit_every_width() -> None:
         assert max(map(len, text(EXTREME, width, height))) <= width, (width, height)
 
 
-def test_a_word_and_its_value_have_a_space_between_them() -> None:
+def test_a_space_stands_between_each_label_and_its_value() -> None:
     on_white = moment(
         colors={"left": ColorReading(255.0, 255.0, 255.0), "right": ColorReading(0.0, 0.0, 255.0)}
     )
@@ -254,7 +254,7 @@ def test_a_motor_that_is_blocked_is_called_stalled() -> None:
     assert "".join(text(moment(stalled=(True, True)), 40, 11)).count("stalled") == 2
 
 
-def test_how_the_run_ended_is_said() -> None:
+def test_the_readings_say_how_the_run_ended() -> None:
     assert "output limit" in text(EXTREME, 40, 11)[-1]
 
 
@@ -266,7 +266,7 @@ def test_names_of_colors_take_a_row_that_is_free(height: int) -> None:
 
 
 @pytest.mark.parametrize("size", [(20, 6), (26, 9), (44, 14)], ids=str)
-async def test_the_panel_shows_the_words(size: tuple[int, int]) -> None:
+async def test_the_readings_panel_shows_its_text_at_every_size(size: tuple[int, int]) -> None:
     app = PanelApp(Instrumentation())
     async with app.run_test(size=size) as pilot:
         app.panel.show(moment())
@@ -277,7 +277,7 @@ async def test_the_panel_shows_the_words(size: tuple[int, int]) -> None:
         ]
 
 
-async def test_what_is_left_of_last_time_is_wiped() -> None:
+async def test_readings_of_an_earlier_moment_are_wiped_from_the_panel() -> None:
     app = PanelApp(Instrumentation())
     async with app.run_test(size=(40, 11)) as pilot:
         app.panel.show(EXTREME)
@@ -334,7 +334,7 @@ def test_readings_side_by_side_do_not_move_with_their_values() -> None:
     assert low == high
 
 
-def test_what_drivers_know_has_lines_of_its_own_if_they_fit() -> None:
+def test_states_of_motor_drivers_have_rows_of_their_own_if_they_fit() -> None:
     shown = text(HELD, 40, 14)
     assert shown[0] == "LeftMotor   tacho    1234   -304 °/s"
     assert shown[1] == "asked     0 °/s  duty  -96 %  holding   "

@@ -44,7 +44,7 @@ from tuisim.tasks.lessons.spec import SHOWABLE
 
 
 @pytest.mark.slow
-async def test_a_lesson_from_its_first_step_to_its_model_answer(tmp_path: Path) -> None:
+async def test_a_lesson_can_be_done_from_its_first_step_to_its_model_answer(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
         assert "On a real robot: It matters." in shown(app)
@@ -62,7 +62,7 @@ async def test_a_lesson_from_its_first_step_to_its_model_answer(tmp_path: Path) 
 
 
 @pytest.mark.slow
-async def test_lesson_that_found_no_room_is_drawn_later(tmp_path: Path) -> None:
+async def test_a_lesson_whose_panel_had_no_room_is_drawn_once_it_has(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
         assert app.panel_area.lesson is not None
@@ -72,7 +72,7 @@ async def test_lesson_that_found_no_room_is_drawn_later(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
+async def test_a_lessons_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         await until(pilot, lambda: "Y shows hint 1 of 2." in shown(app))
         await pilot.press("Y")
@@ -85,7 +85,7 @@ async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_a_run_is_judged_after_skip_and_start_over(tmp_path: Path) -> None:
+async def test_a_lesson_judges_a_run_after_skip_and_start_over(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
         app.lesson.skip_step()
@@ -102,7 +102,7 @@ async def test_a_run_is_judged_after_skip_and_start_over(tmp_path: Path) -> None
 
 
 @pytest.mark.slow
-async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
+async def test_the_menu_of_a_lesson_opens_another_lesson(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
         app.lesson.skip_step()
@@ -174,7 +174,7 @@ DONE: dict[str, tuple[str, Callable[[Pilot[Any], LabApp], Awaitable[None]]]] = {
 
 @pytest.mark.quick_cases("breakpoint")
 @pytest.mark.parametrize("name", DONE)
-async def test_step_is_done_by_doing_it(
+async def test_a_lessons_step_is_done_once_the_user_does_what_it_checks(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -247,7 +247,7 @@ async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Pat
 
 
 @pytest.mark.slow
-async def test_menu_shows_the_step_before_again(tmp_path: Path) -> None:
+async def test_the_menu_of_a_lesson_shows_the_step_before_again(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
         app.lesson.skip_step()

@@ -58,7 +58,7 @@ async def drag(pilot: Pilot[Any], start: tuple[int, int], end: tuple[int, int]) 
 
 @pytest.mark.quick_cases("80x24")
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
-async def test_an_empty_list_says_how_to_begin(size: tuple[int, int]) -> None:
+async def test_an_empty_list_of_obstacles_says_how_to_add_one(size: tuple[int, int]) -> None:
     async with open_obstacles(size=size) as (_, app):
         assert "none: + or drag adds one" in screen_text(app)
         assert "drag to draw or move an obstacle" in screen_text(app)
@@ -66,7 +66,7 @@ async def test_an_empty_list_says_how_to_begin(size: tuple[int, int]) -> None:
 
 
 @pytest.mark.slow
-async def test_add_type_and_remove() -> None:
+async def test_obstacles_are_added_edited_and_removed_by_keys() -> None:
     async with open_obstacles(size=(80, 24)) as (pilot, app):
         await pilot.press("plus", "plus")
         await until(pilot, lambda: len(boxes(app)) == 2)
@@ -88,7 +88,7 @@ async def test_add_type_and_remove() -> None:
 
 
 @pytest.mark.slow
-async def test_a_wrong_number_is_refused() -> None:
+async def test_a_wrong_number_for_an_obstacle_is_refused() -> None:
     async with open_obstacles() as (pilot, app):
         await pilot.press("plus")
         await until(pilot, lambda: len(boxes(app)) == 1)
@@ -118,7 +118,7 @@ async def refused(pilot: Pilot[Any], said: str) -> None:
 
 
 @pytest.mark.slow
-async def test_one_is_drawn_and_moved_with_the_mouse() -> None:
+async def test_an_obstacle_is_drawn_and_moved_with_the_mouse() -> None:
     async with open_obstacles() as (pilot, app):
         start, end = cell(app, 1000, 900), cell(app, 1300, 600)
         await drag(pilot, start, end)
@@ -149,7 +149,7 @@ async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown
 
 
 @pytest.mark.slow
-async def test_the_box_at_hand_is_marked_in_the_world() -> None:
+async def test_the_selected_obstacle_is_marked_in_the_world() -> None:
     async with open_obstacles() as (pilot, app):
         app.loader.set_next_run(change_obstacles(app.run_controller.next_run, OBSTACLES["Wall"]))
         view = app.query_one(WorldView)
@@ -161,7 +161,9 @@ async def test_the_box_at_hand_is_marked_in_the_world() -> None:
 
 
 @pytest.mark.slow
-async def test_a_set_is_chosen_and_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_set_of_obstacles_can_be_chosen_and_saved_to_a_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     async with open_lab(LOGS) as (pilot, app):
         await pilot.press("k")
@@ -187,7 +189,9 @@ BOXES = (Obstacle(100, 100, 200, 200), Obstacle(200, 200, 200, 200), Obstacle(90
     [((150, 150), 0), ((250, 250), 1), ((350, 350), 1), ((910, 200), 2), ((600, 600), None)],
     ids=["one", "the upper of two", "beside the lower", "a thin one nearby", "none"],
 )
-def test_which_box_is_under_the_mouse(point: tuple[float, float], index: int | None) -> None:
+def test_the_topmost_obstacle_under_the_mouse_is_found(
+    point: tuple[float, float], index: int | None
+) -> None:
     assert find_box(BOXES, *point, slack_mm=15) == index
 
 

@@ -67,7 +67,9 @@ def lines(app: App[None]) -> list[str]:
         "wide",
     ],
 )
-def test_a_row_as_lines(text: str, stream: Stream, width: int, expected: list[str]) -> None:
+def test_each_printed_row_is_wrapped_to_the_width_of_the_panel(
+    text: str, stream: Stream, width: int, expected: list[str]
+) -> None:
     assert split_row(row(text, stream), width) == expected
 
 

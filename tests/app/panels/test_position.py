@@ -11,7 +11,7 @@ from tuisim.engine.core.geometry import Pose
 
 
 @pytest.mark.parametrize("text", ["1", " -2.5 ", "3,5", "+4e2"])
-def test_numbers_that_may_be_typed(text: str) -> None:
+def test_position_fields_read_signs_spaces_exponents_and_decimal_commas(text: str) -> None:
     assert parse_field("x", text) == float(text.replace(",", "."))
 
 

@@ -56,7 +56,7 @@ async def enter(pilot: Pilot[Any], field: str, text: str) -> None:
 @pytest.mark.parametrize(
     "size", [(80, 24), (120, 40), (200, 60)], ids=["80x24", "120x40", "200x60"]
 )
-async def test_the_form_opens_with_the_robots_values(size: tuple[int, int]) -> None:
+async def test_the_settings_form_opens_with_the_robots_values(size: tuple[int, int]) -> None:
     async with open_settings(size=size) as (pilot, app):
         assert "‹ Default_Robot ›" in screen_text(app)
         assert row(app, "wheel_spacing_mm").entry.value == "180"
@@ -73,7 +73,7 @@ async def test_the_form_opens_with_the_robots_values(size: tuple[int, int]) -> N
 
 
 @pytest.mark.slow
-async def test_a_value_is_taken_at_once() -> None:
+async def test_a_value_typed_into_the_robots_form_changes_the_next_run_at_once() -> None:
     async with open_settings() as (pilot, app):
         await enter(pilot, "left.x_mm", "-100")
         assert app.run_controller.spec.robot.color_sensors[0].x_mm == -100

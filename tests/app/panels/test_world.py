@@ -102,7 +102,9 @@ async def test_the_world_is_blank_until_the_mat_is_there() -> None:
         assert view(app.panel)._cells.size
 
 
-async def test_a_moment_like_the_last_one_costs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_world_is_not_painted_again_while_nothing_in_it_has_changed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     async with open_world(size=(40, 12)) as (_, app):
         painted: list[object] = []
         monkeypatch.setattr(
@@ -162,7 +164,7 @@ async def test_where_the_robot_is_now_is_a_ghost_in_the_past() -> None:
         assert (before == view(app.panel)._cells).all()
 
 
-async def test_zoom_goes_round_and_says_so() -> None:
+async def test_zoom_of_the_world_cycles_through_its_steps_and_the_title_names_it() -> None:
     async with open_world() as (_, app):
         seen = []
         for _ in range(3):
@@ -205,7 +207,7 @@ async def test_dragging_with_shift_turns_the_robot() -> None:
     assert 45 < pose.heading_deg < 135
 
 
-async def test_pressing_elsewhere_moves_nothing() -> None:
+async def test_dragging_beside_the_robot_does_not_move_it() -> None:
     async with open_world(moment(POSE), size=(120, 30)) as (pilot, app):
         await pilot.mouse_down(view(app.panel), offset=(2, 2))
         await pilot.hover(view(app.panel), offset=(20, 5))
@@ -250,7 +252,7 @@ async def test_the_wheel_turns_the_robot_that_it_is_over(
 
 
 @pytest.mark.slow
-async def test_a_file_would_show_what_the_panel_shows() -> None:
+async def test_the_world_panel_shows_the_scene_that_a_picture_file_would_show() -> None:
     async with open_lab(LOGS, "Obstacles_Test", size=(80, 24)) as (pilot, app):
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)

@@ -41,7 +41,9 @@ def _where_installed(name: str, *further: str) -> pytest.MarkDecorator:
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=_where_installed(name)) for name in WINDOWS]
 )
-def test_the_world_is_seen(name: str, tmp_path: Path) -> None:
+def test_each_terminal_program_shows_the_world_without_stray_colours(
+    name: str, tmp_path: Path
+) -> None:
     with shown_in(WINDOWS[name], ["log_greys"], tmp_path) as display:
         display.until(_is_world)
         # It may be drawn in other ways until the terminal has answered all questions, and on until every cell is fine.

@@ -33,7 +33,7 @@ def text_of(face: BrickState, width: int, height: int) -> list[str]:
 
 
 @pytest.mark.parametrize("width, height", SIZES)
-def test_nothing_is_wider_or_higher_than_the_panel(width: int, height: int) -> None:
+def test_the_drawn_brick_is_no_wider_or_higher_than_its_panel(width: int, height: int) -> None:
     face = BrickState(
         picture=picture((slice(0, 60), slice(0, 90))), text=TextScreen(14, 5, ("x" * 14,) * 5)
     )
@@ -72,7 +72,7 @@ def test_a_smaller_screen_shows_the_mean_of_its_pixels() -> None:
     assert shrink_pixels(ink, 2, 2).tolist() == [[1.0, 0.0], [0.0, 0.25]]
 
 
-def test_text_screen_is_text() -> None:
+def test_the_bricks_text_screen_is_shown_as_text() -> None:
     screen = TextScreen(14, 5, ("Mission 1", "", "go", "", ""), ((0, 0, 7),))
     lines = text_of(BrickState(text=screen, shows_text=True), 40, 14)
     assert [line.strip() for line in lines if line.strip() in ("Mission 1", "go")] == [
@@ -116,13 +116,13 @@ def test_a_pressed_button_stands_out() -> None:
         (25, 255, "yellow"),
     ],
 )
-def test_lamps_are_named_by_their_colour(red: int, green: int, name: str) -> None:
+def test_the_bricks_lights_are_named_by_their_colour(red: int, green: int, name: str) -> None:
     assert name_led(red, green) == name
     leds = {"left red": red, "left green": green, "right red": 0, "right green": 0}
     assert any(name in line for line in text_of(BrickState(leds=leds), 60, 20))
 
 
-def test_untouched_lamps_are_green() -> None:
+def test_the_bricks_lights_are_green_until_a_program_changes_them() -> None:
     assert sum(line.count("green") for line in text_of(BrickState(), 60, 20)) == 2
 
 
@@ -135,7 +135,7 @@ def test_untouched_lamps_are_green() -> None:
         ("", ""),
     ],
 )
-def test_the_last_sound_stands_below(sound: str, shown: str) -> None:
+def test_the_last_sound_is_named_below_the_brick(sound: str, shown: str) -> None:
     assert text_of(BrickState(sound=sound), 60, 20)[-1].strip() == shown
 
 

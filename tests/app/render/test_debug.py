@@ -15,7 +15,7 @@ def text(view: DebugView, width: int) -> list[str]:
 
 @pytest.mark.parametrize("width", [26, 38])
 @pytest.mark.parametrize("state", list(RunPhase))
-def test_all_keys_are_told_in_a_narrow_panel_too(state: RunPhase, width: int) -> None:
+def test_the_debug_panel_names_all_its_keys_also_when_narrow(state: RunPhase, width: int) -> None:
     narrow = text(DebugView(state), width)
     wide = text(DebugView(state), 80)
     assert max(map(len, narrow)) <= width
@@ -27,7 +27,7 @@ def test_a_program_that_runs_is_not_said_not_to_have_started() -> None:
     assert without == [state for state in RunPhase if state is not RunPhase.IDLE]
 
 
-def test_what_is_known_of_another_instant_has_the_time_that_is_looked_at() -> None:
+def test_the_debug_panel_shows_the_time_looked_at_until_its_variables_arrive() -> None:
     looked = Inspected(
         469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ()
     )

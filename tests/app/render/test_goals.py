@@ -85,7 +85,7 @@ def texts(lines: Sequence[Line]) -> list[str]:
 
 
 @pytest.mark.parametrize("name", TEXTS)
-def test_a_goal_as_lines(name: str) -> None:
+def test_a_goal_is_listed_with_its_state_and_its_details_below(name: str) -> None:
     judgement, listed, detail = TEXTS[name]
     view = GoalsView("A task", (judgement.goal,), (judgement,))
     lines = texts(draw_goals(view, view.states(None), 0, 0, 31, 12).lines)

@@ -22,7 +22,7 @@ def _lesson_view(tmp_path: Path, **changes: Any) -> LessonView:
     return replace(LessonView(opened_lesson, open_steps, 0), **changes)
 
 
-def test_pages_of_a_lesson(tmp_path: Path) -> None:
+def test_each_page_of_a_lesson_shows_its_steps_story_and_reasons(tmp_path: Path) -> None:
     view = _lesson_view(tmp_path, states=(StepState.DONE, StepState.SKIPPED, StepState.OPEN), at=2)
     lesson = view.lesson
     assert lesson is not None
