@@ -77,7 +77,7 @@ async def test_results_and_errors_of_work_reach_the_app_unless_it_has_ended(
     assert app.heard == heard
 
 
-async def test_an_app_is_left_while_work_goes_on() -> None:
+async def test_leaving_the_app_does_not_wait_for_background_work() -> None:
     may_end, began, app = Event(), Event(), Worker()
 
     def work() -> None:
@@ -135,7 +135,7 @@ def test_a_file_that_is_nearly_written_is_finished_at_the_end(
     assert path.read_bytes() == b"movie"
 
 
-def test_what_takes_longer_is_dropped_and_said(
+def test_a_file_not_written_in_time_at_the_end_is_dropped_and_named(
     work_that_writes: tuple[Path, Event],
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -148,6 +148,8 @@ def test_what_takes_longer_is_dropped_and_said(
     assert f"{path} was not written" in capsys.readouterr().err
 
 
-def test_an_app_without_work_is_left_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_leaving_an_app_without_background_work_keeps_its_exit_code(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(background, "_threads", [])
     assert background.leave(3) == 3

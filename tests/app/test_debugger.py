@@ -92,7 +92,7 @@ def drawn(app: LabApp) -> str:
 
 
 @pytest.mark.slow
-async def test_steps_from_the_first_line() -> None:
+async def test_stepping_starts_at_the_first_line_and_shows_line_and_variables() -> None:
     async with open_lab(COUNTS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 3, 4, 5)
         assert values(app) == {"total": "0", "i": "0"}
@@ -179,7 +179,7 @@ async def test_going_on_from_the_past_ends_at_now(home: object, key: str) -> Non
 
 
 @pytest.mark.slow
-async def test_into_and_out_of_calls() -> None:
+async def test_steps_go_into_calls_and_out_of_them() -> None:
     async with open_lab(CALLS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 7, 11)
         await press(pilot, app, "s", 3, 4, 8)
@@ -270,7 +270,7 @@ async def test_breaks_and_watches_are_listed_added_switched_and_deleted() -> Non
 
 
 @pytest.mark.slow
-async def test_the_variables_of_any_former_instant() -> None:
+async def test_variables_of_any_past_instant_are_shown() -> None:
     async with open_lab(COUNTS, speed=0.0) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.state == "ended")

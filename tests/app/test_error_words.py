@@ -64,7 +64,7 @@ def test_the_cause_of_an_error_comes_first_in_a_short_row(
         ("ValueError: no", "{went-wrong} goes there"),
     ],
 )
-def test_the_remedy_is_told(words: str, told: str) -> None:
+def test_the_row_of_an_error_says_how_to_remedy_it(words: str, told: str) -> None:
     assert find_remedy(words) == told
 
 
@@ -80,5 +80,5 @@ def test_the_remedy_is_told(words: str, told: str) -> None:
         ("at most 10 mm", "no mat 'lop' (at most 10 mm)"),
     ],
 )
-def test_below_a_list_its_names_are_not_told(hint: str, told: str) -> None:
+def test_an_error_shown_below_a_list_does_not_repeat_the_lists_names(hint: str, told: str) -> None:
     assert shorten_error(TuisimError("no mat 'lop'", hint)) == told

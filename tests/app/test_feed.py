@@ -103,19 +103,19 @@ def test_a_chart_gets_telemetry_as_often_as_it_is_drawn(
     assert len(panels.got) == 4
 
 
-def test_samples_are_at_the_time_that_they_carry() -> None:
+def test_samples_are_charted_at_the_time_that_they_print() -> None:
     assert sample_series([row("A: 1", 5 * 10**8), row("A: 2 0.25"), row("B: 3")]) == {
         "A": ([0.5, 0.25], [1.0, 2.0]),
         "B": ([0.0], [3.0]),
     }
 
 
-def test_a_long_stretch_is_thinned_and_keeps_its_end() -> None:
+def test_long_telemetry_is_thinned_for_the_chart_and_keeps_its_last_point() -> None:
     assert _thin_positions(3, 6, 5) == [3, 4, 5]
     assert _thin_positions(0, 10, 4) == [1, 4, 6, 9]
 
 
-def test_a_placement_leaves_a_gap_in_the_trace() -> None:
+def test_a_trace_in_the_chart_has_a_gap_where_the_robot_was_placed() -> None:
     xs, ys = _insert_gaps(np.array([1.0, 2.0, 9.0]), np.array([0.0, 0.0, 0.0]), np.array([0, 0, 1]))
     np.testing.assert_array_equal(xs, [1.0, 2.0, np.nan, 9.0])
     assert len(ys) == 4

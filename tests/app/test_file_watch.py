@@ -21,7 +21,7 @@ def test_a_changed_file_is_reported_once(tmp_path: Path) -> None:
     assert watch.changed() == []
 
 
-def test_a_file_of_the_same_size_and_time_put_in_its_place_is_another(tmp_path: Path) -> None:
+def test_a_file_replaced_by_one_of_equal_size_and_time_counts_as_changed(tmp_path: Path) -> None:
     path = tmp_path / "a.py"
     other = tmp_path / "b.py"
     path.write_text("1")
@@ -33,7 +33,7 @@ def test_a_file_of_the_same_size_and_time_put_in_its_place_is_another(tmp_path: 
     assert watch.changed() == [path]
 
 
-def test_a_file_that_is_gone_for_a_while_is_no_change(tmp_path: Path) -> None:
+def test_a_file_that_is_missing_for_a_while_does_not_count_as_changed(tmp_path: Path) -> None:
     path = tmp_path / "a.py"
     path.write_text("1")
     watch = FileWatch()
@@ -45,7 +45,7 @@ def test_a_file_that_is_gone_for_a_while_is_no_change(tmp_path: Path) -> None:
     assert watch.changed() == []
 
 
-def test_what_is_written_from_here_is_no_change(tmp_path: Path) -> None:
+def test_a_file_that_the_app_itself_writes_does_not_count_as_changed(tmp_path: Path) -> None:
     path = tmp_path / "a.py"
     path.write_text("1")
     watch = FileWatch()

@@ -34,7 +34,9 @@ class Frame(App[None]):
     ],
     ids=["one", "not below 0", "ten", "not above the end", "ends"],
 )
-async def test_keys_move_the_slider(keys: list[str], expected: list[int]) -> None:
+async def test_arrow_and_page_keys_move_the_slider_by_1_or_10(
+    keys: list[str], expected: list[int]
+) -> None:
     async with Frame().run_test(size=(40, 3)) as pilot:
         app = pilot.app
         assert isinstance(app, Frame)
@@ -44,7 +46,7 @@ async def test_keys_move_the_slider(keys: list[str], expected: list[int]) -> Non
         assert app.values == expected
 
 
-async def test_a_click_and_a_drag_past_the_end() -> None:
+async def test_a_click_or_drag_sets_the_slider_and_stops_at_its_ends() -> None:
     async with Frame().run_test(size=(41, 3)) as pilot:
         app = pilot.app
         assert isinstance(app, Frame)
@@ -59,7 +61,7 @@ async def test_a_click_and_a_drag_past_the_end() -> None:
         assert app.values == [64, 64, 128, 128]
 
 
-async def test_setting_it_tells_nobody_and_keeps_to_the_ends() -> None:
+async def test_setting_a_sliders_value_in_code_sends_no_message_and_is_clamped() -> None:
     async with Frame().run_test(size=(40, 3)) as pilot:
         app = pilot.app
         assert isinstance(app, Frame)

@@ -250,7 +250,7 @@ async def test_goals_that_change_on_disk_are_read_again(task: Path, is_world: bo
 
 
 @pytest.mark.slow
-async def test_nothing_is_judged_while_the_panel_is_closed(
+async def test_no_goal_is_judged_while_the_panel_of_goals_is_closed(
     task: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     judged = []
@@ -273,7 +273,7 @@ async def test_nothing_is_judged_while_the_panel_is_closed(
 
 
 @pytest.mark.slow
-async def test_an_error_in_judging_is_told_once(task: Path) -> None:
+async def test_an_error_while_judging_goals_is_told_once(task: Path) -> None:
     async with open_lab(with_goals(task, DRIVES, panels_on=frozenset()), size=SIZE) as (pilot, app):
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)
@@ -302,7 +302,7 @@ STARTS = {
 
 
 @pytest.mark.parametrize("name", STARTS)
-def test_goals_on_the_command_line(
+def test_open_loads_goals_world_and_program_of_the_command_line(
     name: str, task: Path, here: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     words, (x_mm, program, count) = STARTS[name]
@@ -325,7 +325,7 @@ def test_goals_on_the_command_line(
     assert ("goals" in made.panels_on) is bool(count)
 
 
-def test_wrong_goals_on_the_command_line(task: Path, here: Command) -> None:
+def test_open_refuses_faulty_goals_with_file_line_and_key(task: Path, here: Command) -> None:
     task.write_text(GOALS.replace("points = 2", "points = -2000"))
     done = here("open", "--goals", task.name)
     assert done.returncode == 2

@@ -26,7 +26,7 @@ from tuisim.settings.user_config import UserConfig
         "another letter": ({"zoom": ("ä",)}, {"zoom": "ä"}),
     },
 )
-def test_keys_are_those_of_the_user(
+def test_keys_that_the_user_assigns_replace_those_of_the_actions(
     keys: dict[str, tuple[str, ...]], written: dict[str, str]
 ) -> None:
     found = apply_keys(ACTIONS, UserConfig(Path("config.toml"), keys=keys))
@@ -36,7 +36,9 @@ def test_keys_are_those_of_the_user(
 
 
 @pytest.mark.slow
-async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_path: Path) -> None:
+async def test_a_reassigned_key_works_and_is_shown_and_the_old_one_does_nothing(
+    tmp_path: Path,
+) -> None:
     (tmp_path / "config.toml").write_text("[keys]\npen = '%'\nzoom = 'p'\nmats = '$'\n")
     async with open_lab(LOGS, size=(200, 170)) as (pilot, app):
         await until_shown(pilot, " $ mats")
@@ -55,7 +57,7 @@ async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_p
 
 
 @pytest.mark.parametrize("panel", ["controls", "code"])
-async def test_notices_and_panels_name_the_new_key(panel: str, tmp_path: Path) -> None:
+async def test_notices_and_panels_name_a_reassigned_key(panel: str, tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text("[keys]\nopen = '%'\nrun = 'ctrl+k'\n")
     async with open_lab(panels_on=frozenset({panel})) as (pilot, app):
         await until_shown(pilot, "% opens one")
@@ -67,7 +69,7 @@ async def test_notices_and_panels_name_the_new_key(panel: str, tmp_path: Path) -
 
 
 @pytest.mark.slow
-async def test_the_welcome_obeys_the_new_key(tmp_path: Path) -> None:
+async def test_the_welcome_obeys_a_reassigned_key(tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text("[keys]\nhelp = '%'\n")
     async with open_lab(welcomes=True, size=(80, 24)) as (pilot, app):
         await until_shown(pilot, "% shows all keys")
@@ -76,7 +78,9 @@ async def test_the_welcome_obeys_the_new_key(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_a_wrong_file_is_told_and_the_app_works_with_what_is_right(tmp_path: Path) -> None:
+async def test_a_faulty_config_file_is_told_and_its_valid_settings_still_apply(
+    tmp_path: Path,
+) -> None:
     (tmp_path / "config.toml").write_text(
         "[app]\ntheme = 'light'\nfps = 0\n[keys]\npen = 'R'\nzoom = 'ctrl+k'\n"
     )

@@ -57,7 +57,9 @@ async def test_a_question_is_answered_by_its_key_while_the_panel_of_the_place_is
 
 
 @pytest.mark.slow
-async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:
+async def test_an_answer_given_while_the_robot_is_elsewhere_does_not_count_as_wrong(
+    tmp_path: Path,
+) -> None:
     async with open_lab(opened(tmp_path, PLACED), size=SMALL) as (pilot, app):
         app.lesson.skip_step()
         app.lesson.skip_step()
@@ -72,7 +74,7 @@ async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
+async def test_a_step_about_a_panel_during_a_pause_needs_a_paused_program(tmp_path: Path) -> None:
     async with open_lab(
         opened(tmp_path, "show = { panel = 'debug', paused = true }"), size=SMALL
     ) as (pilot, app):
@@ -105,7 +107,7 @@ show = 'arrays'"""
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size, has_world", [(SMALL, False), (LARGE, True)], ids=["80", "120"])
-async def test_lesson_is_beside_the_log(
+async def test_a_lesson_stays_beside_the_analyser(
     size: tuple[int, int], has_world: bool, tmp_path: Path
 ) -> None:
     async with open_lab(opened(tmp_path, PLACED), size=size) as (pilot, app):
@@ -126,7 +128,7 @@ async def test_lesson_is_beside_the_log(
 
 
 @pytest.mark.slow
-async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
+async def test_a_lesson_tries_the_program_from_another_start(tmp_path: Path) -> None:
     made = opened(tmp_path)
     text = (tmp_path / "lessons" / "try.md").read_text()
     # 20 mm of tolerance, and a start 40 mm farther back.

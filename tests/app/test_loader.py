@@ -84,7 +84,9 @@ def look(app: LabApp) -> None:
 
 
 @pytest.mark.slow
-async def test_a_world_is_opened_whole(folder: Path) -> None:
+async def test_opening_a_world_file_sets_mat_start_noise_robot_seed_and_program(
+    folder: Path,
+) -> None:
     async with open_lab(LOGS) as (pilot, app):
         app.run_controller.set_noise(NoiseSpec(1, 99))
         await open_path(pilot, "lab.toml")
@@ -109,7 +111,7 @@ async def test_worlds_of_the_folder_are_offered_and_robots_are_not(folder: Path)
 
 
 @pytest.mark.slow
-async def test_a_wrong_world_changes_nothing(folder: Path) -> None:
+async def test_opening_a_faulty_world_file_changes_nothing(folder: Path) -> None:
     (folder / "lab.toml").write_text(LAB + "[pen]\nwidth_mm = 'thick'\n")
     async with open_lab(LOGS) as (pilot, app):
         before = app.run_controller.next_run, app.run_controller.program
@@ -220,7 +222,7 @@ async def test_a_changed_program_is_reloaded_at_once(folder: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_the_timer_looks_by_itself(folder: Path) -> None:
+async def test_a_program_changed_on_disk_is_reloaded_by_the_apps_timer(folder: Path) -> None:
     path = folder / "mine.py"
     async with open_lab(with_file(path)) as (pilot, _):
         path.write_text("print('By itself: 2')\n")
@@ -279,7 +281,7 @@ WRONG = [
 
 @pytest.mark.quick_cases("mine.toml")
 @pytest.mark.parametrize("name, text, said", WRONG, ids=[name for name, _, _ in WRONG])
-async def test_a_file_that_became_wrong_is_told_and_the_former_stays(
+async def test_a_file_that_becomes_faulty_on_disk_is_told_and_the_former_one_stays(
     name: str, text: str, said: str, folder: Path
 ) -> None:
     async with LabApp(settings()).run_test(size=(120, 40)) as pilot:

@@ -57,7 +57,9 @@ async def test_a_robot_built_for_a_program_is_announced_and_listed_with_its_port
         assert entries.highlighted_option.id == "*program"
 
 
-async def test_what_the_brick_would_refuse_is_told(claw: Path) -> None:
+async def test_opening_a_program_names_lines_that_the_bricks_python_would_refuse(
+    claw: Path,
+) -> None:
     claw.write_text("from pybricks.tools import wait\nprint(f'{1}')\n")
     async with open_lab(opened(claw)) as (pilot, app):
         await until(
@@ -69,7 +71,7 @@ async def test_what_the_brick_would_refuse_is_told(claw: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_another_robot_is_chosen_and_the_program_s_again(claw: Path) -> None:
+async def test_the_user_can_choose_another_robot_and_the_programs_own_again(claw: Path) -> None:
     async with open_lab(opened(claw)) as (pilot, app):
         for key, ports in (("down", []), ("up", ["outA"])):
             await pilot.press("r")

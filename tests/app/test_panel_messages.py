@@ -24,12 +24,14 @@ DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"
         ("from pybricks.parameters import Button\n# ev3.buttons.pressed()\n", False),
     ],
 )
-def test_a_program_that_looks_at_the_buttons(text: str, expected: bool) -> None:
+def test_has_button_calls_finds_programs_that_read_the_bricks_buttons(
+    text: str, expected: bool
+) -> None:
     assert has_button_calls(text) == expected
 
 
 @pytest.mark.slow
-async def test_the_panel_is_named_once_while_it_is_hidden() -> None:
+async def test_a_notice_names_the_hidden_brick_panel_once_when_a_program_draws() -> None:
     async with open_lab(DRAWS, speed=0.0, size=(80, 24)) as (pilot, app):
         for _ in range(2):
             await pilot.press("R")

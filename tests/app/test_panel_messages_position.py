@@ -10,7 +10,7 @@ from tuisim.engine.core.geometry import Pose
 
 
 @pytest.mark.slow
-async def test_bad_position_is_refused_with_a_reason() -> None:
+async def test_an_invalid_position_typed_is_refused_with_a_reason() -> None:
     async with open_lab(LOGS, panels_on=frozenset({"positioning"})) as (pilot, app):
         await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
         for field, typed, message in (
@@ -30,7 +30,7 @@ async def test_bad_position_is_refused_with_a_reason() -> None:
             assert app.run_controller.pose == Pose(150, 500, 0)
 
 
-async def test_good_position_is_applied() -> None:
+async def test_a_valid_position_typed_moves_the_robot() -> None:
     async with open_lab(LOGS, panels_on=frozenset({"positioning"})) as (pilot, app):
         await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
         app.query_one("#x", Input).focus()
@@ -43,7 +43,7 @@ async def test_good_position_is_applied() -> None:
     "panel, field, words",
     [("positioning", "x", "not '999999'"), ("noise", "seed", "Seed")],
 )
-async def test_what_was_said_of_a_value_goes_once_another_one_is_typed(
+async def test_a_message_about_a_refused_value_goes_when_the_user_types_again(
     panel: str, field: str, words: str
 ) -> None:
     async with open_lab(LOGS, panels_on=frozenset({panel})) as (pilot, app):

@@ -76,7 +76,7 @@ async def test_the_end_says_that_the_robot_stood_at_a_wall() -> None:
 
 
 @pytest.mark.slow
-async def test_pause_one_tick_go_on_and_stop() -> None:
+async def test_keys_pause_a_run_step_one_tick_resume_and_stop_it() -> None:
     async with open_lab(ENDLESS, autorun=True) as (pilot, app):
         await until(
             pilot,
@@ -187,7 +187,7 @@ async def test_quit_during_a_run_asks_and_leaves_no_child() -> None:
     assert run.ended is not None
 
 
-async def test_a_mat_that_failed_is_prepared_again_for_a_run(
+async def test_a_mat_whose_preparation_failed_is_prepared_again_for_a_run(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     open_field = mat_cache.FieldFiles.open_field
@@ -208,7 +208,7 @@ async def test_a_mat_that_failed_is_prepared_again_for_a_run(
 
 
 @pytest.mark.slow
-async def test_no_words_say_that_the_robot_stands_before_it_does() -> None:
+async def test_the_state_says_stopped_only_when_the_drawn_robot_has_stopped() -> None:
     async with open_lab(ENDLESS, autorun=True) as (pilot, app):
         await until(
             pilot,
@@ -226,7 +226,7 @@ async def test_no_words_say_that_the_robot_stands_before_it_does() -> None:
 
 
 @pytest.mark.slow
-async def test_what_stands_still_is_drawn_finely_at_once_on_a_slow_link() -> None:
+async def test_on_a_slow_link_a_paused_or_stopped_world_is_drawn_finely_at_once() -> None:
     setup = settings(ENDLESS, autorun=True)
     mode = PictureMode(CellSet.QUADRANT, CellSet.QUADRANT, is_slow=lambda: True)
     async with LabApp(setup, picture_mode=mode).run_test(size=(120, 40)) as pilot:

@@ -36,7 +36,7 @@ def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLORTERM", "truecolor")
 
 
-async def test_a_key_saves_the_screen_and_names_the_files(tmp_path: Path) -> None:
+async def test_the_screenshot_key_saves_the_screen_and_names_the_files(tmp_path: Path) -> None:
     async with open_lab(size=(100, 30)) as (pilot, app):
         await until(
             pilot, lambda: any(look.ink == GREY for row in collect_cells(app) for _, look in row)
@@ -53,7 +53,7 @@ async def test_a_key_saves_the_screen_and_names_the_files(tmp_path: Path) -> Non
 
 
 @pytest.mark.slow
-async def test_a_dialog_and_the_screen_below_it(tmp_path: Path) -> None:
+async def test_a_screenshot_shows_a_dialog_and_the_screen_below_it(tmp_path: Path) -> None:
     async with open_lab(size=(100, 30)) as (pilot, app):
         await pilot.press("b")
         await until(pilot, lambda: len(app.screen_stack) == 2)
@@ -71,7 +71,9 @@ async def test_a_dialog_and_the_screen_below_it(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_from_the_palette_the_palette_is_not_shown(tmp_path: Path) -> None:
+async def test_a_screenshot_taken_from_the_palette_does_not_show_the_palette(
+    tmp_path: Path,
+) -> None:
     async with open_lab(size=(100, 30)) as (pilot, app):
         await pilot.press("ctrl+p", *"screenshot")
         await until(pilot, lambda: len(app.screen_stack) == 2)
@@ -81,7 +83,7 @@ async def test_from_the_palette_the_palette_is_not_shown(tmp_path: Path) -> None
 
 
 @pytest.mark.slow
-async def test_a_folder_that_cannot_be_written(
+async def test_a_screenshot_that_cannot_be_written_says_why(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     gone = tmp_path / "gone"

@@ -31,7 +31,7 @@ def test_a_tone_has_its_length_pitch_and_pause() -> None:
 
 
 @pytest.mark.slow
-def test_silence_and_the_longest_sound() -> None:
+def test_silent_tones_are_silent_and_sounds_end_at_the_longest_allowed() -> None:
     assert not any(samples(build_wav([[0.0, 100.0, 0.0]])))
     assert len(samples(build_wav([[100.0, 1e9, 1e9], [100.0, 1e9, 0.0]]))) == int(
         MAX_SOUND_S * RATE_HZ
@@ -93,7 +93,9 @@ def test_a_quiet_app_and_one_without_players_make_no_sound(
     voice.stop()
 
 
-def test_nothing_to_play_with(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_any_player_installed_no_sound_is_started(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     voice = Voice(environment={})
     voice.play(Spoke("hello", 0))
@@ -101,7 +103,7 @@ def test_nothing_to_play_with(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert voice._sounding is None
 
 
-def test_file_that_is_gone(players: Path) -> None:
+def test_a_sound_file_that_is_gone_is_not_played(players: Path) -> None:
     voice = Voice(environment={})
     voice.play(Spoke("[plays x.wav]", 0, "[[0, 10, 0]]", "/nowhere/x.wav"))
     assert voice._sounding is None

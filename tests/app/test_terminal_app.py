@@ -21,7 +21,7 @@ SIZES = [
 ]
 
 
-def test_the_message_fits_in_every_size() -> None:
+def test_the_message_that_the_terminal_is_too_small_fits_every_size() -> None:
     for size in filter(is_too_small, SIZES):
         lines = build_message(size)
         assert len(lines) <= size.height and max(map(len, lines)) <= size.width, size
@@ -40,7 +40,9 @@ def test_the_message_fits_in_every_size() -> None:
     ],
     ids=["20x5", "39x40", "12x3", "9x1"],
 )
-def test_the_message_says_as_much_as_fits(size: Size, expected: str) -> None:
+def test_the_message_that_the_terminal_is_too_small_says_as_much_as_fits(
+    size: Size, expected: str
+) -> None:
     assert " ".join(build_message(size)) == expected
 
 
@@ -61,7 +63,7 @@ async def test_a_terminal_that_shrinks_and_grows_again_shows_what_it_showed(
         assert (app.too_small, app.focused) == (None, focused)
 
 
-async def test_what_is_not_seen_is_not_clicked_on() -> None:
+async def test_in_a_terminal_that_is_too_small_clicks_do_nothing() -> None:
     async with open_lab(LOGS, size=(20, 5)) as (pilot, app):
         # The words of the keys are in the last row that is laid out.
         for x in range(20):
@@ -88,7 +90,7 @@ async def test_a_click_on_what_is_not_drawn_yet_does_no_harm() -> None:
 
 @pytest.mark.tmux
 @pytest.mark.slow
-def test_a_small_terminal_says_so_and_grows(terminal: Terminal) -> None:
+def test_a_too_small_terminal_says_so_and_shows_the_app_once_it_grows(terminal: Terminal) -> None:
     terminal.start(["log_greys"], 20, 5)
     shown = terminal.until(lambda text: "Too small" in text)
     assert "this terminal has 20×5." in " ".join(shown.split())

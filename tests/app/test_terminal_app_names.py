@@ -20,5 +20,7 @@ APPS: dict[str, Callable[[], App[None]]] = {
 
 
 @cases("make", APPS)
-async def test_all_that_is_drawn_goes_through_it(make: Callable[[], App[None]]) -> None:
+async def test_every_app_filters_drawn_lines_through_the_sanitizer(
+    make: Callable[[], App[None]],
+) -> None:
     assert any(isinstance(one, Sanitize) for one in make().get_line_filters())

@@ -167,7 +167,7 @@ def lab_of(light: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 
 @pytest.mark.parametrize("eyes", SEEN_BY)
-def test_traces_stay_apart_for_everybody(eyes: str) -> None:
+def test_colours_of_traces_stay_apart_also_for_colour_blind_eyes(eyes: str) -> None:
     value = np.array(TRACE_COLORS) / 255
     light = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
     seen = np.clip(light @ np.array(SEEN_BY[eyes]).T, 0, 1)

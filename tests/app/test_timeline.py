@@ -184,7 +184,7 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
 
 
 @pytest.mark.slow
-async def test_a_click_on_the_bar_or_a_panel_leaves_no_instant() -> None:
+async def test_clicking_a_panel_while_looking_at_the_past_keeps_the_instant() -> None:
     async with a_run() as (pilot, app):
         world = app.panel_area.world
         assert world is not None
@@ -202,7 +202,7 @@ async def test_a_click_on_the_bar_or_a_panel_leaves_no_instant() -> None:
         assert app.run_controller.timeline.at == at
 
 
-async def test_words_that_are_no_place_are_answered() -> None:
+async def test_go_to_explains_words_that_name_no_instant() -> None:
     table = {
         "": "no instant",
         "tomorrow": "not an instant",
@@ -231,7 +231,7 @@ async def test_words_that_are_no_place_are_answered() -> None:
 
 
 @pytest.mark.slow
-async def test_words_find_their_instants() -> None:
+async def test_go_to_finds_the_instant_that_its_words_name() -> None:
     async with a_run(PEN) as (_, app):
         timeline = app.run_controller.timeline
         recording = app.run_controller.timeline.recording
@@ -289,7 +289,7 @@ async def test_words_find_their_instants() -> None:
 
 
 @pytest.mark.slow
-async def test_commands_are_marked_and_found_and_told() -> None:
+async def test_commands_to_motors_are_marked_on_the_timeline_found_and_described() -> None:
     async with a_run() as (pilot, app):
         timeline = app.run_controller.timeline
         commands = recording_of(app).commands

@@ -67,7 +67,7 @@ async def test_a_panel_without_room_takes_the_place_of_another() -> None:
 
 
 @pytest.mark.slow
-async def test_switched_off_stays_off_in_every_size() -> None:
+async def test_a_panel_that_is_switched_off_stays_off_when_the_terminal_grows() -> None:
     off = settings(
         LOGS, panels_off=frozenset({"world"}), panels_on=frozenset({"arrays", "no such panel"})
     )

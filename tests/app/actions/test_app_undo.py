@@ -9,7 +9,7 @@ from tuisim.engine.protocol import End
 
 
 @pytest.mark.slow
-async def test_a_move_is_taken_back() -> None:
+async def test_backspace_undoes_a_move_of_the_robot() -> None:
     async with open_lab(LOGS) as (pilot, app):
         await pilot.press("right")
         await until(pilot, lambda: app.run_controller.pose.x_mm == 160)

@@ -35,7 +35,9 @@ with open(sys.argv[1], "a") as file:
         "quoted": ({"EDITOR": "'my editor' -n"}, ["my editor", "-n"]),
     },
 )
-def test_the_environment_names_the_editor(environment: dict[str, str], command: list[str]) -> None:
+def test_the_external_editor_is_named_by_environment_variables(
+    environment: dict[str, str], command: list[str]
+) -> None:
     assert own_editor(environment) == command
 
 
@@ -43,12 +45,14 @@ def test_the_environment_names_the_editor(environment: dict[str, str], command: 
     "environment, problem",
     [({}, "VISUAL and EDITOR are not set"), ({"EDITOR": "'nano"}, "EDITOR='nano: ")],
 )
-def test_without_an_editor_that_is_said(environment: dict[str, str], problem: str) -> None:
+def test_without_a_usable_editor_variable_an_error_names_it(
+    environment: dict[str, str], problem: str
+) -> None:
     with pytest.raises(TuisimError, match=problem):
         own_editor(environment)
 
 
-async def test_without_a_terminal_to_give_that_is_said(
+async def test_where_no_terminal_can_be_lent_a_notice_says_that_the_editor_needs_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("VISUAL", "nano")
@@ -60,7 +64,7 @@ async def test_without_a_terminal_to_give_that_is_said(
 
 
 @pytest.mark.slow
-async def test_unsaved_changes_are_saved_before(
+async def test_unsaved_changes_are_saved_before_the_external_editor_opens(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path, opened = tmp_path / "prog.py", list[str]()
@@ -76,7 +80,9 @@ async def test_unsaved_changes_are_saved_before(
 
 
 @pytest.mark.slow
-async def test_of_an_example_a_copy_is_saved_first(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_opening_an_example_in_the_external_editor_asks_for_a_copy_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     opened = list[str]()
     monkeypatch.setenv("VISUAL", "nano")
     monkeypatch.setattr(

@@ -11,7 +11,7 @@ from tuisim.app.analyser.app import Analyser
 from tuisim.app.analyser.preview import PreviewDialog
 
 
-async def test_a_program_that_is_not_there_is_a_notice(tmp_path: Path) -> None:
+async def test_opening_a_program_that_does_not_exist_shows_a_notice(tmp_path: Path) -> None:
     async with open_lab() as (pilot, app):
         app.loader.open_file(str(tmp_path / "none.py"))
         await pilot.pause()

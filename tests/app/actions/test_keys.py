@@ -58,7 +58,7 @@ async def test_readings_follow_the_robot_at_rest() -> None:
         assert app.run_controller.build_snapshot().colors["left"].red == 220
 
 
-async def test_speed_steps_and_ends() -> None:
+async def test_speed_keys_change_the_speed_by_steps_and_stop_at_the_slowest() -> None:
     async with open_lab(LOGS) as (pilot, app):
         await pilot.press("left_square_bracket", "left_square_bracket")
         assert app.run_controller.speed == 0.25

@@ -96,7 +96,9 @@ PAUSE_WORDS = {
 
 
 @cases("now, playing, word", PAUSE_WORDS)
-def test_the_pause_key_says_what_it_does_now(now: Situation, playing: bool, word: str) -> None:
+def test_the_footer_names_what_the_pause_key_would_do_now(
+    now: Situation, playing: bool, word: str
+) -> None:
     (pause,) = [
         one
         for one in list_footer_actions(ACTIONS, list_working(now), now, playing)

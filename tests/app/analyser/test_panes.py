@@ -105,7 +105,7 @@ def text_of(model: AnalysisModel, pane: str = "table", width: int = 100, height:
 
 
 @for_each(width=range(1, 12))
-def test_a_pane_narrower_than_its_first_column_shows_that(width: int) -> None:
+def test_a_pane_narrower_than_its_first_column_is_not_blank(width: int) -> None:
     table = stepped(80, 10)
     model = model_of(Log("test", table, guess_columns(table)))
     model.find_bands(model.list_unsearched())
@@ -113,7 +113,7 @@ def test_a_pane_narrower_than_its_first_column_shows_that(width: int) -> None:
         assert text_of(model, pane, width, 9)
 
 
-def test_a_row_without_the_name_of_its_variable_is_shown_all_the_same() -> None:
+def test_a_row_whose_variable_name_is_empty_is_still_shown() -> None:
     table = pa.table(
         {"variable": ["A", None, "A"], "value": [1.0, 2.0, 3.0], "time": [0.0, 1.0, 2.0]}
     )
@@ -149,7 +149,7 @@ def test_every_pane_fits_its_size(pane: str, words: str, size: tuple[int, int]) 
         assert words in text
 
 
-def test_points_of_numbers_stand_below_each_other() -> None:
+def test_decimal_points_of_a_column_stand_below_each_other() -> None:
     table = pa.table({"time": [0.08, 0.1, 0.125], "Colour": [100, 86, 50]})
     lines = text_of(model_of(Log("test", table, guess_columns(table)))).splitlines()[1:4]
     assert len({line.index(".") for line in lines}) == 1

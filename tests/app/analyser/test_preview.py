@@ -73,7 +73,7 @@ async def choose(pilot: Pilot[Any], dialog: PreviewDialog, key: str, downs: int)
         "time": ("time", "t", 1, "found: row numbers", "Time boot", ReadChoices(time="boot")),
     },
 )
-async def test_each_choice_changes_the_first_rows_and_opens_the_file(
+async def test_each_choice_in_the_preview_changes_its_rows_and_how_the_file_opens(
     name: str, key: str, downs: int, before: str, after: str, choices: ReadChoices, tmp_path: Path
 ) -> None:
     file = tmp_path / f"{name}.csv"
@@ -91,7 +91,9 @@ async def test_each_choice_changes_the_first_rows_and_opens_the_file(
 
 
 @pytest.mark.slow
-async def test_what_is_found_opens_with_one_key_and_is_not_asked_again(tmp_path: Path) -> None:
+async def test_accepting_the_guess_opens_the_file_and_no_preview_comes_again(
+    tmp_path: Path,
+) -> None:
     file = tmp_path / "time.csv"
     file.write_text(FILES["time"])
     async with previewed(file) as (pilot, _):
@@ -101,7 +103,7 @@ async def test_what_is_found_opens_with_one_key_and_is_not_asked_again(tmp_path:
     assert await open_again(file) == ()
 
 
-async def test_escape_goes_back_and_remembers_nothing(tmp_path: Path) -> None:
+async def test_escape_in_the_preview_remembers_no_choices(tmp_path: Path) -> None:
     file = tmp_path / "time.csv"
     file.write_text(FILES["time"])
     async with previewed(file) as (pilot, dialog):
@@ -123,7 +125,9 @@ async def shown_again(pilot: Pilot[Any]) -> PreviewDialog:
 
 
 @pytest.mark.slow
-async def test_an_open_file_is_read_in_another_way_and_back(tmp_path: Path) -> None:
+async def test_an_open_file_can_be_read_with_other_choices_and_with_the_former_again(
+    tmp_path: Path,
+) -> None:
     file = tmp_path / "time.csv"
     file.write_text(FILES["time"])
     async with previewed(file) as (pilot, _):
@@ -143,7 +147,9 @@ async def test_an_open_file_is_read_in_another_way_and_back(tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-async def test_what_cannot_be_read_is_said_and_does_not_open(tmp_path: Path) -> None:
+async def test_the_preview_opens_no_file_with_choices_by_which_it_cannot_be_read(
+    tmp_path: Path,
+) -> None:
     file = tmp_path / "end.csv"
     file.write_text("boot;far\n0;0\n20;1\n40;2\nend;all\n")
     async with previewed(file) as (pilot, dialog):

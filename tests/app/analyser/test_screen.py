@@ -54,7 +54,9 @@ def text_of(pilot: Pilot[Any]) -> str:
 
 @pytest.mark.slow_cases("(200, 60)")
 @pytest.mark.parametrize("size", SIZES, ids=str)
-async def test_everything_is_on_the_first_screen(run: StoredRun, size: tuple[int, int]) -> None:
+async def test_the_first_screen_of_the_analyser_shows_all_its_parts(
+    run: StoredRun, size: tuple[int, int]
+) -> None:
     async with open_analyser(runs=(run.id,), size=size) as (pilot, _, _):
         await until(pilot, lambda: "print('Colour" in text_of(pilot))
         text = text_of(pilot)
@@ -73,7 +75,7 @@ async def test_a_high_and_narrow_screen_has_all_columns_for_each_view(run: Store
 
 
 @pytest.mark.slow
-async def test_the_bands_are_found_and_noted_by_keys(run: StoredRun) -> None:
+async def test_keys_of_the_analyser_find_bands_and_write_notes_about_them(run: StoredRun) -> None:
     async with open_analyser(runs=(run.id,)) as (pilot, screen, model):
         await pilot.press("b", "down")
         text = text_of(pilot)
@@ -187,7 +189,7 @@ async def test_the_source_shows_a_magic_line_that_is_no_comment() -> None:
 
 
 @pytest.mark.slow
-async def test_the_cursor_moves_every_pane(run: StoredRun) -> None:
+async def test_moving_the_cursor_moves_every_pane_of_the_analyser(run: StoredRun) -> None:
     async with open_analyser(runs=(run.id,)) as (pilot, _, model):
         await until(pilot, lambda: "print('Colour" in text_of(pilot))
         before = text_of(pilot)
@@ -260,7 +262,7 @@ async def test_each_key_of_the_analyser_does_its_action(run: StoredRun) -> None:
 
 
 @pytest.mark.slow
-async def test_every_action_does_no_harm_to_an_empty_log(
+async def test_no_action_of_the_analyser_fails_on_an_empty_log(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # A screenshot is saved where one is.
@@ -307,7 +309,7 @@ async def test_a_file_is_read_on_when_it_grows(tmp_path: Path) -> None:
         assert screen.model.log.series("v").values.tolist() == [2.0, 3.0, 4.0]
 
 
-async def test_how_a_file_was_read_is_said_once(tmp_path: Path) -> None:
+async def test_a_notice_says_once_how_a_log_file_was_read(tmp_path: Path) -> None:
     file = tmp_path / "log.txt"
     file.write_text("Colour: 5\nColour: 6\nEnd\n")
     async with open_analyser(file=str(file), size=(80, 24)) as (pilot, screen, _):
@@ -317,7 +319,7 @@ async def test_how_a_file_was_read_is_said_once(tmp_path: Path) -> None:
         assert said == [*screen.model.log.notes] == ["1 line is not a sample (row 3)"]
 
 
-async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path) -> None:
+async def test_a_log_that_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path) -> None:
     app = AnalyserApp(LogRequest(file=str(tmp_path / "none.csv")))
     async with app.run_test() as pilot:
         await until(pilot, lambda: app.failure is not None)
@@ -325,7 +327,7 @@ async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path
 
 
 @pytest.mark.slow
-async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
+async def test_a_key_pressed_in_the_analyser_does_not_reach_the_lab_below(run: StoredRun) -> None:
     async with open_lab(LOGS) as (pilot, lab):
         below, pose = lab.screen, lab.run_controller.build_snapshot().instant.pose
         analyser = Analyser(LogRequest(runs=(run.id,)))

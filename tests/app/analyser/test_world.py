@@ -55,12 +55,12 @@ def run(home: Path) -> StoredRun:
     ],
     ids=["poses", "as exported", "no heading", "damaged", "nothing known"],
 )
-def test_a_file_has_a_world_if_it_says_which(log: OpenedLog, has: bool) -> None:
+def test_a_log_file_shows_a_world_only_if_it_describes_its_run(log: OpenedLog, has: bool) -> None:
     assert has_poses(log) is has
     assert (load_world(log, 0) is not None) is has
 
 
-def test_the_pose_of_a_file_is_that_of_its_row(home: Path) -> None:
+def test_the_world_beside_a_log_file_has_the_pose_of_the_selected_row(home: Path) -> None:
     world = load_world(opened({"runs": [dump_run(SPEC)]}, **POSES), 0)
     assert world is not None
     assert [world.find_snapshot(float(row), row).instant.pose for row in (0, 1)] == [
@@ -69,7 +69,7 @@ def test_the_pose_of_a_file_is_that_of_its_row(home: Path) -> None:
     ]
 
 
-def test_of_a_stored_run_every_instant_is_known(run: StoredRun) -> None:
+def test_the_world_beside_a_stored_run_can_show_any_instant_between_samples(run: StoredRun) -> None:
     table = pa.table({"time": [0.0], "light": [1.0]})
     log = OpenedLog(
         LogRequest(runs=(run.id,)), Log("run", table, guess_columns(table)), runs=(run,)

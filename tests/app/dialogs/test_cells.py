@@ -33,7 +33,9 @@ def glyphs(view: PixelView) -> set[str]:
 
 @pytest.mark.quick_cases("80x24")
 @pytest.mark.parametrize("size", [(80, 24), (60, 18), (120, 40)], ids=["80x24", "60x18", "120x40"])
-async def test_a_set_is_chosen_by_eye_and_kept(size: tuple[int, int]) -> None:
+async def test_the_dialog_for_glyph_sets_shows_each_set_and_stores_the_chosen_one(
+    size: tuple[int, int],
+) -> None:
     async with LabApp(settings(LOGS), started(None)).run_test(size=size) as pilot:
         app = await ready(pilot)
         assert app.picture_mode.cells is CellSet.SEXTANT

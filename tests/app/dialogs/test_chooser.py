@@ -39,7 +39,7 @@ def no_file(word: str) -> None:
     ],
     ids=["name", "words", "path", "nothing"],
 )
-async def test_what_is_typed_searches_the_list_or_is_a_path(
+async def test_typing_in_a_chooser_searches_its_list_or_gives_a_path(
     typed: str, listed: list[str], result: str | None
 ) -> None:
     chosen: list[str | None] = []
@@ -113,7 +113,7 @@ async def test_tab_says_when_several_names_go_on_in_other_ways(tmp_path: Path) -
         assert str(message.content) == ""
 
 
-async def test_a_path_to_nothing_is_told_at_once() -> None:
+async def test_typing_a_path_that_does_not_exist_says_so_at_once() -> None:
     app: App[None] = App()
     async with app.run_test() as pilot:
         app.push_screen(Chooser("Open", GROUPS, path_hint="path", read=no_file, suffixes=[".py"]))
@@ -134,7 +134,7 @@ async def test_the_arrows_move_in_the_list_while_one_types() -> None:
     assert chosen == ["/e/data_log.py"]
 
 
-async def test_enter_without_typing_takes_the_list() -> None:
+async def test_enter_without_typing_chooses_the_selected_row() -> None:
     chosen: list[str | None] = []
     app: App[None] = App()
     async with app.run_test() as pilot:
@@ -158,7 +158,7 @@ def test_the_second_file_of_an_export_is_not_listed(
     assert [name for _, name, _ in list_files([".json"]).entries] == ["my.robot.json", "robot.json"]
 
 
-async def test_what_was_said_before_covers_no_row_of_it() -> None:
+async def test_an_earlier_notice_covers_no_row_of_a_chooser() -> None:
     app = TerminalApp()
     async with app.run_test(notifications=True) as pilot:
         app.notify("said before")

@@ -22,7 +22,9 @@ from tuisim.terminal.cell_view import PixelView
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
-async def test_the_mat_at_hand_is_shown(size: tuple[int, int]) -> None:
+async def test_the_dialog_for_mats_shows_a_picture_of_the_selected_mat(
+    size: tuple[int, int],
+) -> None:
     async with open_lab(LOGS, size=size) as (pilot, app):
         await pilot.press("b")
         view = app.screen.query_one(PixelView)
@@ -57,7 +59,7 @@ async def test_the_field_is_above_the_list_as_in_other_dialogs(key: str) -> None
         assert app.screen.query_one(Input).region.y < listed.region.y
 
 
-async def test_no_picture_stands_beside_the_title_of_another(
+async def test_the_dialog_for_mats_never_shows_the_picture_of_a_mat_selected_before(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     go_on = Event()

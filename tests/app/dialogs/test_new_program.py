@@ -31,7 +31,7 @@ CHOSEN = {
 
 @pytest.mark.quick_cases("letters")
 @cases("keys, wanted", CHOSEN)
-async def test_a_new_program_is_chosen_by_keys(
+async def test_keys_choose_mat_sensor_and_kind_of_a_new_program(
     keys: list[str], wanted: tuple[str, str, Skeleton]
 ) -> None:
     plain = AppSettings(spec=build_run_spec(Settings()), settings=Settings())
@@ -57,7 +57,7 @@ def test_a_pybricks_program_logs_each_sensor(
     assert done.stdout.count(f"{READINGS[sensor].sample}: ") == 2
 
 
-async def test_each_list_has_a_heading() -> None:
+async def test_each_list_in_the_dialog_for_a_new_program_has_a_heading() -> None:
     plain = AppSettings(spec=build_run_spec(Settings()), settings=Settings())
     async with open_lab(plain, size=(80, 24)) as (pilot, _):
         await pilot.press("ctrl+t")
@@ -67,7 +67,7 @@ async def test_each_list_has_a_heading() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("answer", ["w", "enter", "escape"])
-async def test_another_mat_is_written_into_the_file_if_one_agrees(
+async def test_another_mat_is_written_into_the_program_file_only_if_the_user_agrees(
     answer: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "mine.py"

@@ -11,7 +11,7 @@ from tuisim.programs.program_file import parse_program
 
 @pytest.mark.parametrize("skeleton", Skeleton)
 @pytest.mark.parametrize("sensor", READINGS)
-def test_each_text_names_its_mat_and_compiles(sensor: str, skeleton: Skeleton) -> None:
+def test_each_new_program_text_compiles_and_names_its_mat(sensor: str, skeleton: Skeleton) -> None:
     source = parse_program(build_program_text("my mats/a b.png", sensor, skeleton), "new.py")
     compile(source.program.text, "new.py", "exec")
     assert source.options["background"] == "my mats/a b.png"

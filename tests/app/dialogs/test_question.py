@@ -10,7 +10,7 @@ from textual.app import App
 from tuisim.app.dialogs.question import BRANCH, RESTART, BranchQuestion, LinePrompt, complete_line
 
 
-def test_the_word_that_is_typed_is_ended() -> None:
+def test_tab_completes_the_last_word_of_a_line() -> None:
     words = ("Colour", "Left", "slope(", "`a b`")
     lines = {
         "slope(Co": "slope(Colour",
@@ -23,9 +23,7 @@ def test_the_word_that_is_typed_is_ended() -> None:
 
 
 @pytest.mark.parametrize("rows, is_brief", [(24, True), (40, False)], ids=["low", "high"])
-async def test_a_prompt_is_brief_where_the_screen_below_should_stay_in_sight(
-    rows: int, is_brief: bool
-) -> None:
+async def test_a_prompt_lists_fewer_forms_in_a_low_terminal(rows: int, is_brief: bool) -> None:
     forms = [("3.5", "a time"), *((f"line {number}", "that line") for number in range(8))]
     async with App[None]().run_test(size=(80, rows)) as pilot:
         prompt = LinePrompt("Go to", print, forms=forms, sees_below=True)

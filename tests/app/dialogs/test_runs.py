@@ -140,7 +140,7 @@ async def test_keys_count_where_the_list_of_runs_is_too_low_for_a_path() -> None
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("real_mats")
-async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
+async def test_a_stored_run_opens_after_its_mat_and_program_were_deleted(tmp_path: Path) -> None:
     from PIL import Image
 
     own = tmp_path / "own.png"
@@ -269,7 +269,7 @@ def test_the_note_of_a_run_does_not_repeat_its_end(
         ("3 1", [3, 1, 2]),
     ],
 )
-def test_a_search_is_for_words_anywhere(search: str, numbers: list[int]) -> None:
+def test_a_search_for_runs_finds_words_in_any_column(search: str, numbers: list[int]) -> None:
     runs = [info(1), info(2, program="maze.py", end=End.RAISED), info(3, tags="best branch")]
     assert [run.number for run in find_runs(runs, search)] == numbers
 
@@ -278,7 +278,7 @@ def test_a_run_that_marked_a_student_names_the_student_at_80_columns() -> None:
     assert " ada/main.py " in run_line(info(1, program="main.py", tags="student:ada"), 80).plain
 
 
-def test_the_namespace_of_the_command_has_the_run() -> None:
+def test_replay_in_the_shell_prepares_the_stored_run_with_its_program() -> None:
     from tuisim.commands.resolve import NO_CONFIG, prepare_replay
 
     run_id = stored("print('A: 1')\n")

@@ -74,7 +74,7 @@ async def change(pilot: Pilot[Any], app: LabApp, path: str) -> None:
 
 
 @pytest.mark.slow
-async def test_a_change_is_written_and_applies() -> None:
+async def test_each_changed_setting_is_written_and_takes_effect() -> None:
     async with open_settings() as (pilot, app):
         for path in APPLIED:
             await change(pilot, app, path)
@@ -101,7 +101,9 @@ async def test_a_wrong_value_is_told_and_can_be_corrected() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (40, 12)], ids=str)
-async def test_every_setting_can_be_reached_and_says_what_it_is(size: tuple[int, int]) -> None:
+async def test_arrow_keys_reach_every_setting_and_each_has_its_own_explanation(
+    size: tuple[int, int],
+) -> None:
     async with open_settings(size) as (pilot, app):
         listed = app.screen.query_one(OptionList)
         seen = []

@@ -89,7 +89,9 @@ CHOICES: dict[str, tuple[list[str], Any]] = {
 
 @pytest.mark.quick_cases("new", "open")
 @cases("keys, is_done", CHOICES)
-async def test_each_choice_of_the_welcome_begins(keys: list[str], is_done: Any, home: Path) -> None:
+async def test_each_choice_of_the_welcome_does_what_it_offers(
+    keys: list[str], is_done: Any, home: Path
+) -> None:
     async with open_lab(FIRST, size=(80, 24)) as (pilot, _):
         await pilot.press(*keys)
         await until(pilot, lambda: is_done(pilot.app))
@@ -211,6 +213,6 @@ async def test_a_program_with_a_syntax_error_opens_at_its_line(size: tuple[int, 
         await until(pilot, lambda: "line 61" in str(code.border_subtitle))
 
 
-async def test_a_right_program_opens_as_before() -> None:
+async def test_a_program_without_errors_opens_without_a_notice() -> None:
     async with LabApp(settings("print('A: 1')\n")).run_test(size=(80, 24)) as pilot:
         assert notices(await ready(pilot)) == []

@@ -47,7 +47,7 @@ Keys = list[str]
         "cut and paste",
     ],
 )
-async def test_keys_change_the_text(keys: Keys, after: str) -> None:
+async def test_keys_edit_the_programs_text_only_while_typing(keys: Keys, after: str) -> None:
     async with CodeApp().run_test(size=(60, 12)) as pilot:
         _, area = await alone(pilot)
         await pilot.press(*keys)
@@ -55,7 +55,7 @@ async def test_keys_change_the_text(keys: Keys, after: str) -> None:
 
 
 @pytest.mark.slow
-async def test_the_start_of_the_lines_returns_once_the_cursor_fits_beside_it() -> None:
+async def test_the_editor_scrolls_back_to_the_left_once_the_cursor_fits_in_view() -> None:
     async with CodeApp().run_test(size=(40, 12)) as pilot:
         _, area = await alone(pilot)
         await pilot.press("enter", *"x" * 40)
@@ -120,7 +120,7 @@ async def test_the_gutter_shows_marks_and_tells_of_clicks() -> None:
         assert code.cursor_line == 3
 
 
-async def test_a_line_is_lit_only_while_it_is_the_one_that_runs() -> None:
+async def test_the_running_line_is_not_marked_once_the_text_differs_from_the_run() -> None:
     app = CodeApp()
     async with app.run_test(size=(60, 12)) as pilot:
         code, area = await alone(pilot)
@@ -136,7 +136,7 @@ async def test_a_line_is_lit_only_while_it_is_the_one_that_runs() -> None:
         assert "differs" not in str(code.border_subtitle)
 
 
-async def test_finding_goes_round_and_says_where_it_is() -> None:
+async def test_search_in_the_editor_wraps_around_and_counts_its_matches() -> None:
     app = CodeApp()
     async with app.run_test(size=(60, 12)) as pilot:
         code, area = await alone(pilot)

@@ -23,7 +23,7 @@ async def click_into_text(pilot: Pilot[None], app: LabApp) -> CodeArea:
 
 
 @pytest.mark.slow
-async def test_a_click_and_letters_edit() -> None:
+async def test_after_a_click_into_the_text_letters_are_typed_into_it() -> None:
     async with open_lab(TEXT) as (pilot, app):
         area = await click_into_text(pilot, app)
         await until(pilot, lambda: "letters edit" in screen_text(app).splitlines()[-1])
@@ -32,7 +32,7 @@ async def test_a_click_and_letters_edit() -> None:
         assert area.typing and app.run_controller.timeline.recording is None
 
 
-async def test_escape_makes_letters_keys_again() -> None:
+async def test_after_escape_letters_are_keys_of_the_app_again() -> None:
     async with open_lab(TEXT) as (pilot, app):
         area = await click_into_text(pilot, app)
         await pilot.press("escape")

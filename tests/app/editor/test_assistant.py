@@ -43,7 +43,9 @@ async def listed(pilot: Pilot[Any], text: str) -> tuple[Code, CodeArea]:
 
 
 @pytest.mark.slow
-async def test_the_library_is_read_when_typing_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_completion_library_is_loaded_only_when_typing_begins(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     is_warm = Event()
     monkeypatch.setattr(completion, "preload", is_warm.set)
     monkeypatch.setattr(completion, "is_ready", lambda: False)
@@ -56,7 +58,7 @@ async def test_the_library_is_read_when_typing_begins(monkeypatch: pytest.Monkey
 
 
 @pytest.mark.slow
-async def test_the_only_name_is_put_in(home: Path) -> None:
+async def test_tab_inserts_the_name_if_only_one_completes_the_word(home: Path) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
         _, area = await typed(pilot, "tank_drive.of")
         await pilot.press("tab")
@@ -92,7 +94,9 @@ async def test_the_only_name_is_put_in(home: Path) -> None:
         "no such name",
     ],
 )
-async def test_keys_of_the_list(home: Path, keys: list[str], text: str) -> None:
+async def test_arrows_with_tab_or_enter_insert_the_chosen_name_of_the_completion_list(
+    home: Path, keys: list[str], text: str
+) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
         _, area = await listed(pilot, "tank_drive.o")
         await pilot.press(*keys)
@@ -270,7 +274,7 @@ async def test_a_program_is_checked_when_it_is_opened() -> None:
         assert [one.name for one in area.unknown] == ["prnt"]
 
 
-async def test_in_a_narrow_panel_the_hint_is_what_stays() -> None:
+async def test_a_narrow_code_panel_shows_the_hint_for_a_misspelt_name() -> None:
     async with CodeApp().run_test(size=(40, 12)) as pilot:
         code, _ = await alone(pilot, "tank_drve.on(1)\n")
         await until(pilot, lambda: str(code.border_subtitle) == "did you mean `tank_drive`?")
@@ -305,7 +309,7 @@ async def test_a_dot_lists_what_may_follow(home: Path) -> None:
     ],
     ids=["another name", "a whole name", "a part of a name"],
 )
-async def test_a_list_that_nobody_asked_for_changes_no_name(
+async def test_typing_on_with_an_automatic_completion_list_open_inserts_no_name(
     home: Path, keys: list[str], text: str
 ) -> None:
     completion.preload()

@@ -18,7 +18,7 @@ def rows(chosen: int, width: int = 40) -> list[str]:
     return ["".join(text for text, _ in line) for line in list_lines(MANY, chosen, width)]
 
 
-def test_eight_names_around_the_chosen_one_and_its_help() -> None:
+def test_a_completion_list_shows_eight_names_around_the_chosen_one_and_its_help() -> None:
     lines = rows(10)
     assert [line[:8] for line in lines[:-1]] == [
         f"{'▸' if n == 10 else ' '}name_{n:02}"[:8] for n in range(6, 14)
@@ -40,7 +40,9 @@ def test_the_last_name_of_a_long_list_is_reached() -> None:
     "longest, room, width",
     [("on", 78, 24), ("n" * 40, 78, 59), ("n" * 200, 118, 76), ("n" * 200, 58, 58)],
 )
-def test_width_of_a_list(longest: str, room: int, width: int) -> None:
+def test_a_completion_list_is_as_wide_as_its_names_need_and_the_room_allows(
+    longest: str, room: int, width: int
+) -> None:
     assert measure_width([Candidate("a"), Candidate(longest, "(speed, seconds)")], room) == width
 
 
@@ -76,5 +78,5 @@ def test_a_signature_is_shortened_around_its_present_parameter(width: int, text:
     )
 
 
-def test_a_signature_without_parameters() -> None:
+def test_a_signature_without_parameters_has_empty_parentheses() -> None:
     assert format_signature(Signature("beep", (), None), 40).plain == "beep()"

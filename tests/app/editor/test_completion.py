@@ -66,7 +66,7 @@ def names(text: str) -> list[str]:
         ("import time\ntime.", ["sleep"]),
     ],
 )
-def test_what_programs_use_comes_first_and_what_is_inherited_or_internal_last(
+def test_completion_lists_names_used_by_programs_first_and_inherited_ones_last(
     text: str, first: list[str]
 ) -> None:
     found = names(text)
@@ -116,7 +116,9 @@ def test_what_programs_use_comes_first_and_what_is_inherited_or_internal_last(
         "broken text",
     ],
 )
-def test_names_that_may_follow(home: Path, text: str, found: list[str]) -> None:
+def test_completion_lists_exactly_the_names_that_begin_like_the_word(
+    home: Path, text: str, found: list[str]
+) -> None:
     assert names(text) == found
 
 
@@ -178,7 +180,9 @@ def test_a_module_beside_the_program_is_read_and_not_run(home: Path, tmp_path: P
     ],
     ids=["method", "second", "inner", "own function", "unknown"],
 )
-def test_signature_of_a_call(home: Path, text: str, found: Signature | None) -> None:
+def test_find_signature_gives_the_called_function_and_its_current_parameter(
+    home: Path, text: str, found: Signature | None
+) -> None:
     assert find_signature(text, "prog.py", *place(text)) == found
 
 
@@ -201,7 +205,9 @@ def test_signature_of_a_call(home: Path, text: str, found: Signature | None) -> 
         ("a..", 3, None),
     ],
 )
-def test_the_word_that_is_typed(line: str, column: int, word: str | None) -> None:
+def test_find_word_gives_the_name_before_the_cursor(
+    line: str, column: int, word: str | None
+) -> None:
     assert find_word(line, column) == word
 
 
@@ -220,7 +226,9 @@ def test_the_word_that_is_typed(line: str, column: int, word: str | None) -> Non
         (["f(g(1)"], True),
     ],
 )
-def test_whether_a_place_is_in_a_call(lines: Sequence[str], is_in: bool) -> None:
+def test_is_in_call_is_true_only_between_a_calls_parentheses(
+    lines: Sequence[str], is_in: bool
+) -> None:
     assert is_in_call(lines, len(lines) - 1, len(lines[-1])) == is_in
 
 

@@ -99,7 +99,7 @@ async def test_a_mistake_is_saved_and_marked(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_where_it_went_wrong_is_the_line_that_cannot_run(tmp_path: Path) -> None:
+async def test_the_key_for_errors_goes_to_the_line_that_does_not_compile(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     async with open_code(own(path)) as (pilot, app, code):
         await pilot.press("exclamation_mark")
@@ -282,7 +282,7 @@ async def test_unsaved_text_is_kept_soon_and_forgotten_when_undone(tmp_path: Pat
 @pytest.mark.parametrize(
     "answer, shown", [("k", "x" + TEXT), ("t", "other = 1\n")], ids=["mine", "file"]
 )
-async def test_a_file_that_changes_under_unsaved_edits(
+async def test_a_file_changed_on_disk_under_unsaved_edits_is_asked_about(
     answer: str, shown: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "prog.py"
@@ -298,7 +298,7 @@ async def test_a_file_that_changes_under_unsaved_edits(
 
 
 @pytest.mark.slow
-async def test_a_change_of_the_plan_leaves_edits_alone(tmp_path: Path) -> None:
+async def test_changing_the_mat_keeps_unsaved_edits(tmp_path: Path) -> None:
     async with open_code(own(tmp_path / "prog.py")) as (pilot, app, code):
         await typed(pilot, code, "x", "escape")
         app.loader.change_mat("Grey_bands")

@@ -42,7 +42,7 @@ from tuisim.programs.program_file import list_programs
         "empty",
     ],
 )
-def test_parts_of_a_line_and_the_state_after_it(
+def test_each_part_of_a_line_has_its_kind_and_open_strings_go_on(
     line: str, before: str, parts: list[tuple[str, str]], after: str
 ) -> None:
     found, state = find_spans(line, before)

@@ -39,7 +39,9 @@ from tuisim.programs.program_file import list_programs
     ],
     ids=["plain", "windows", "mac", "mark", "latin", "odd breaks", "empty"],
 )
-def test_a_file_is_written_back_as_it_was(data: bytes, form: TextFormat, tmp_path: Path) -> None:
+def test_saving_a_program_keeps_its_encoding_line_ends_and_permissions(
+    data: bytes, form: TextFormat, tmp_path: Path
+) -> None:
     path = tmp_path / "p.py"
     path.write_bytes(data)
     path.chmod(0o640)
@@ -50,7 +52,7 @@ def test_a_file_is_written_back_as_it_was(data: bytes, form: TextFormat, tmp_pat
     assert stat.S_IMODE(path.stat().st_mode) == 0o640
 
 
-def test_what_the_encoding_lacks_leaves_the_file_alone(tmp_path: Path) -> None:
+def test_text_that_the_files_encoding_lacks_leaves_the_file_unchanged(tmp_path: Path) -> None:
     path = tmp_path / "p.py"
     path.write_bytes(b"# coding: latin-1\n")
     text, form = read_text(path)
@@ -60,7 +62,7 @@ def test_what_the_encoding_lacks_leaves_the_file_alone(tmp_path: Path) -> None:
     assert os.listdir(tmp_path) == ["p.py"]
 
 
-def test_a_link_stays_a_link(tmp_path: Path) -> None:
+def test_saving_a_program_through_a_link_keeps_the_link(tmp_path: Path) -> None:
     path = tmp_path / "p.py"
     link = tmp_path / "link.py"
     path.write_text("1\n")

@@ -33,7 +33,7 @@ from tuisim.app.editor.text_lines import MAX_COMPARED, LineMap
         "all new",
     ],
 )
-def test_lines_of_the_run_are_found_in_the_edited_text(
+def test_each_line_of_the_running_text_is_found_in_the_edited_text(
     run: str, shown: str, to_shown: list[int]
 ) -> None:
     lines = LineMap(run, shown)
@@ -49,7 +49,7 @@ def test_lines_of_the_run_are_found_in_the_edited_text(
     )
 
 
-def test_of_a_text_that_is_all_new_only_its_ends_are_compared() -> None:
+def test_lines_of_a_long_rewritten_text_are_matched_only_at_its_ends() -> None:
     many = [str(number) for number in range(MAX_COMPARED + 1)]
     lines = LineMap(["first", *many, "last"], ["first", "new", *many[::-1], "last"])
     assert (lines.find_shown_line(1), lines.find_shown_line(len(many) + 2)) == (1, len(many) + 3)
@@ -69,7 +69,7 @@ def test_of_a_text_that_is_all_new_only_its_ends_are_compared() -> None:
         ("", ""),
     ],
 )
-def test_the_indentation_after_a_line(line: str, indent: str) -> None:
+def test_a_new_line_is_indented_by_what_the_line_before_it_needs(line: str, indent: str) -> None:
     assert text_lines.compute_indent(line) == indent
 
 
@@ -89,7 +89,7 @@ def test_the_indentation_after_a_line(line: str, indent: str) -> None:
     ],
     ids=["in", "out", "comment", "code", "mixed", "empty"],
 )
-def test_lines_are_indented_and_commented_as_asked(
+def test_lines_are_indented_outdented_and_commented(
     change: Callable[[list[str]], list[str]], before: list[str], after: list[str]
 ) -> None:
     assert change(before) == after
@@ -99,7 +99,9 @@ def test_lines_are_indented_and_commented_as_asked(
     "wanted, found",
     [("speed", [(0, 0), (1, 4)]), ("Speed", [(1, 4)]), ("(", [(1, 9)]), ("", []), ("nothing", [])],
 )
-def test_places_of_a_text(wanted: str, found: list[tuple[int, int]]) -> None:
+def test_find_matches_gives_each_place_of_the_searched_text(
+    wanted: str, found: list[tuple[int, int]]
+) -> None:
     assert text_lines.find_matches(["speed = 3", "x = Speed(1)"], wanted) == found
 
 
@@ -108,5 +110,7 @@ def test_places_of_a_text(wanted: str, found: list[tuple[int, int]]) -> None:
     [("a\nb\nc", "a\nb\nc", 0), ("a\nb\nc", "a\nx\nc", 1), ("a", "a\nb\nc", 2), ("", "a", 1)],
     ids=["same", "changed", "added", "from nothing"],
 )
-def test_how_many_lines_differ(one: str, other: str, count: int) -> None:
+def test_count_differing_lines_counts_changed_and_added_lines(
+    one: str, other: str, count: int
+) -> None:
     assert text_lines.count_differing_lines(one, other) == count

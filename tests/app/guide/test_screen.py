@@ -68,14 +68,14 @@ async def open_guide(
         yield pilot, guide(pilot)
 
 
-def test_every_panel_has_a_topic() -> None:
+def test_every_panel_has_a_topic_of_the_guide() -> None:
     assert set(TOPICS) == set(PANELS)
     assert {topic.page for topic in TOPICS.values()} - {""} <= set(load_pages())
 
 
 @pytest.mark.quick_cases("small")
 @pytest.mark.parametrize("size", [SMALL, MEDIUM], ids=["small", "medium"])
-async def test_the_keys_come_first_and_enter_opens_a_page(size: tuple[int, int]) -> None:
+async def test_the_guide_begins_with_the_keys_and_enter_opens_a_page(size: tuple[int, int]) -> None:
     async with open_guide(size=size) as (pilot, screen):
         assert screen.place == KEYS
         await until_shown(pilot, "Run the program")
@@ -105,7 +105,7 @@ async def test_a_long_page_scrolls_and_starts_at_its_top_again() -> None:
         "settings": ("Z", "options", ("Options",)),
     },
 )
-async def test_the_page_of_the_panel_with_the_focus(
+async def test_the_guide_opens_at_the_page_of_the_panel_with_the_focus(
     panel: str, place: str, words: tuple[str, ...]
 ) -> None:
     async with open_guide(panel, text="print(1)", size=MEDIUM) as (pilot, screen):
@@ -174,7 +174,7 @@ async def test_escape_goes_from_a_page_to_the_answers_and_from_these_to_the_cont
 
 
 @pytest.mark.slow
-async def test_a_section_is_gone_to() -> None:
+async def test_choosing_a_section_in_the_guides_contents_scrolls_to_it() -> None:
     async with open_guide() as (pilot, screen):
         await pilot.press("tab", *DOWN_TO_PAGE, "space", "down", "down", "enter")
         second = list_headings(load_pages()["first-steps"])[1]
@@ -213,7 +213,9 @@ async def test_no_title_is_cut_off(size: tuple[int, int]) -> None:
         "fields": ("X", "Type the place", "Move the robot to its start pose"),
     },
 )
-async def test_the_keys_of_the_panel_come_first(panel: str, first: str, then: str) -> None:
+async def test_the_guide_lists_the_keys_of_the_focused_panel_first(
+    panel: str, first: str, then: str
+) -> None:
     async with open_guide(panel) as (pilot, _):
         await until_shown(pilot, first)
         await until_shown(pilot, then)
@@ -311,7 +313,7 @@ async def test_words_of_the_question_stand_out_and_a_section_is_named_once() -> 
         assert str(second).startswith("• ") == same
 
 
-async def test_a_letter_begins_a_question() -> None:
+async def test_typing_a_letter_in_the_guide_begins_a_search() -> None:
     async with open_lab("x = 1\n", size=SMALL) as (pilot, _):
         await pilot.press("question_mark")
         await until_shown(pilot, "Guide")

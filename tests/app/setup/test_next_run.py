@@ -76,7 +76,7 @@ WAYS: dict[str, tuple[list[Callable[[NextRun], NextRun]], list[float]]] = {
 
 
 @cases("steps, expected", WAYS)
-def test_sensor_places_never_leak(
+def test_sensor_positions_of_one_mat_or_robot_are_not_kept_for_the_next(
     steps: list[Callable[[NextRun], NextRun]], expected: list[float]
 ) -> None:
     plan = build_plan(Settings({"background": "Grey_bands"}))
@@ -86,7 +86,7 @@ def test_sensor_places_never_leak(
 
 
 @pytest.mark.parametrize("name", list(ROBOTS))
-def test_a_preset_leaves_nothing_behind(name: str) -> None:
+def test_choosing_a_preset_robot_and_the_default_again_restores_the_run(name: str) -> None:
     plan = plans.change_robot(build_plan(Settings()), name)
     assert plan.spec.robot == ROBOTS[name]
     assert plans.change_robot(plan, "Default_Robot").spec == build_plan(Settings()).spec
@@ -117,7 +117,7 @@ def test_a_profile_decides_again_what_is_solid() -> None:
     ],
     ids=["pose", "noise", "seed", "pen", "obstacles"],
 )
-def test_what_is_changed_quickly_is_what_would_be_built(
+def test_a_quick_change_of_the_next_run_equals_building_it_from_its_settings(
     change: Callable[[NextRun], NextRun],
 ) -> None:
     plan = change(build_plan(Settings({"background": "Radial_grey", "noise.light": 1})))
@@ -134,7 +134,7 @@ def test_a_robot_file_says_its_motor_noise_until_the_user_does(tmp_path: Path) -
     assert plans.change_robot(loud, "Small_Robot").spec.world.noise.motor == 80
 
 
-def test_no_later_change_reads_a_file_again(tmp_path: Path) -> None:
+def test_changing_the_mat_does_not_read_the_robots_file_again(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text("wheel_diameter_mm = 77\n")
     plan = plans.change_robot(build_plan(Settings()), str(path))
@@ -149,7 +149,7 @@ def test_a_saved_robot_is_not_as_the_mat_has_changed_it(tmp_path: Path) -> None:
     assert saved == replace(RobotSpec(), pen=replace(RobotSpec().pen, color="teal"))
 
 
-def test_a_plan_of_a_run_of_which_nothing_else_is_known() -> None:
+def test_a_plan_can_be_made_from_a_run_without_its_settings() -> None:
     spec = build_run_spec(
         Settings({"background": "Radial_grey", "start.x_mm": 5, "noise.light": 3})
     )
@@ -174,7 +174,9 @@ WRONG = [
 
 
 @pytest.mark.parametrize("field, typed, said", WRONG, ids=[f"{f} {t!r}" for f, t, _ in WRONG])
-def test_a_wrong_value_is_refused(field: str, typed: str, said: str) -> None:
+def test_a_wrong_value_in_the_settings_form_is_refused_with_the_reason(
+    field: str, typed: str, said: str
+) -> None:
     from tuisim.app.form import format_error
 
     with pytest.raises(ConfigError) as caught:
@@ -235,7 +237,7 @@ RIGHT: list[tuple[str, str, Callable[[NextRun], object], object]] = [
     RIGHT,
     ids=[f"{field} {entered}" for field, entered, _, _ in RIGHT],
 )
-def test_a_right_value_is_taken(
+def test_a_right_value_in_the_settings_form_changes_the_plan(
     field: str, entered: str, look: Callable[[NextRun], object], expected: object
 ) -> None:
     plan = edited(build_plan(Settings()), field, entered)
@@ -253,7 +255,7 @@ def test_a_sensor_switched_off_comes_back_as_it_was() -> None:
         assert edited(off, field, "on").spec == first.spec
 
 
-def test_labels_fit_beside_their_fields() -> None:
+def test_labels_of_the_settings_form_fit_beside_their_fields() -> None:
     from tuisim.app.setup.fields import MAX_LABEL, build_sections
 
     for section in build_sections(build_plan(Settings())):

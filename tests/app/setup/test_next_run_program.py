@@ -106,7 +106,7 @@ PLACES: Mapping[str, tuple[list[Step], tuple[float, float]]] = {
 
 
 @pytest.mark.parametrize("way", PLACES)
-def test_the_place_follows_until_the_robot_is_moved_or_a_mat_says_it(way: str) -> None:
+def test_the_start_follows_the_program_until_the_robot_is_moved_or_a_mat_sets_it(way: str) -> None:
     steps, (x_mm, y_mm) = PLACES[way]
     start = done(steps).spec.world.start
     assert (start.x_mm, start.y_mm) == (x_mm, y_mm)
@@ -127,13 +127,13 @@ GROUNDS: Mapping[str, tuple[list[Step], tuple[bool, bool]]] = {
 
 
 @pytest.mark.parametrize("way", GROUNDS)
-def test_floor_and_walls_follow_until_walls_are_chosen(way: str) -> None:
+def test_floor_and_walls_follow_the_program_until_walls_are_chosen(way: str) -> None:
     steps, ground = GROUNDS[way]
     world = done(steps).spec.world
     assert (world.floor, world.walls) == ground
 
 
-def test_nothing_follows_where_everything_was_chosen() -> None:
+def test_a_program_changes_nothing_that_the_user_has_chosen() -> None:
     spec = done([CLAW], free=()).spec
     assert (spec.robot.name, spec.profile.name, spec.world.start.x_mm) == (
         "Default_Robot",
@@ -142,7 +142,7 @@ def test_nothing_follows_where_everything_was_chosen() -> None:
     )
 
 
-def test_what_is_decided_is_told_only_if_it_is_new() -> None:
+def test_the_robot_for_a_program_is_announced_only_when_it_changes() -> None:
     plan = done([CLAW])
     again, same = plans.follow_program(plan, parse_program(CLAW + "# more\n", "p.py"))
     _, other = plans.follow_program(again, parse_program(LIFT, "p.py"))

@@ -48,7 +48,7 @@ POSTS = tuple(Obstacle(x, y, 150, 150) for x in range(200, 2300, 500) for y in (
         (Pose(1000, 500, 45), (Obstacle(830, 560, 120, 50),), True, False),
     ],
 )
-def test_where_the_outline_fits(
+def test_has_room_is_true_only_where_the_robot_touches_nothing_solid(
     pose: Pose, obstacles: tuple[Obstacle, ...], solid: bool, fit: bool
 ) -> None:
     spec = replace(SPEC, world=replace(SPEC.world, obstacles=obstacles, solid=solid))
@@ -56,21 +56,21 @@ def test_where_the_outline_fits(
 
 
 @for_each(seed=range(20))
-def test_a_random_place_is_a_free_one(seed: int) -> None:
+def test_a_random_pose_is_a_free_place(seed: int) -> None:
     spec = replace(SPEC, world=replace(SPEC.world, obstacles=POSTS, solid=True))
     pose = choose_random_pose(spec, random.Random(seed))
     assert pose is not None
     assert has_room(spec, pose)
 
 
-def test_no_free_place_is_told() -> None:
+def test_choose_random_pose_gives_none_if_the_field_is_full() -> None:
     spec = replace(
         SPEC, world=replace(SPEC.world, obstacles=(Obstacle(0, 0, 2362, 1143),), solid=True)
     )
     assert choose_random_pose(spec, random.Random(1)) is None
 
 
-def test_poses_are_kept_replaced_and_deleted() -> None:
+def test_saved_poses_are_stored_replaced_and_deleted() -> None:
     assert load_poses() == {}
     save_pose("by the wall", Pose(1, 2, -90))
     save_pose(' "odd" [name] = ü ', Pose(1.5, 2.25, 1e-3))
@@ -110,7 +110,9 @@ def test_a_pose_needs_a_name(name: str) -> None:
         ("[[[", "is not TOML"),
     ],
 )
-def test_a_wrong_file_of_poses_is_told_and_left_alone(text: str, said: str) -> None:
+def test_saving_a_pose_into_a_faulty_file_says_why_and_leaves_it_unchanged(
+    text: str, said: str
+) -> None:
     find_poses_file().write_text(text)
     with pytest.raises(ConfigError, match=said):
         save_pose("b", Pose(0, 0, 0))
@@ -118,7 +120,7 @@ def test_a_wrong_file_of_poses_is_told_and_left_alone(text: str, said: str) -> N
 
 
 @pytest.mark.slow
-async def test_saved_poses_in_the_app() -> None:
+async def test_a_pose_saved_in_the_app_can_be_chosen_again() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         app.run_controller.place(Pose(700, 300, 45))
         await pilot.press("P")

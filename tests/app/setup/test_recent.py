@@ -17,11 +17,11 @@ def kinds() -> list[tuple[Kind, str]]:
     return [(one.kind, one.name) for one in list_recent("new.py")]
 
 
-def test_a_new_home_has_nothing_to_go_on_with() -> None:
+def test_a_new_home_offers_no_recent_programs_or_runs() -> None:
     assert kinds() == []
 
 
-def test_the_likeliest_comes_first(tmp_path: Path) -> None:
+def test_a_start_offers_unsaved_texts_before_programs_and_runs(tmp_path: Path) -> None:
     path = tmp_path / "mine.py"
     path.write_text("import time\ntime.sleep(0.1)\n")
     spec = build_run_spec(Settings())
@@ -43,7 +43,7 @@ def test_an_unsaved_text_says_in_which_folder_it_belongs(tmp_path: Path) -> None
     assert [title.endswith(f", in {tmp_path}") for title in titles] == [True, False]
 
 
-def test_there_are_as_many_as_have_a_number_and_the_last_run_is_among_them(tmp_path: Path) -> None:
+def test_a_start_offers_five_recent_things_and_always_the_last_run(tmp_path: Path) -> None:
     for number in range(4):
         path = tmp_path / f"{number}.py"
         path.write_text("import time\ntime.sleep(0.1)\n")

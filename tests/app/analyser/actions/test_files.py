@@ -49,7 +49,9 @@ BAD = (
 
 
 @pytest.mark.slow
-async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) -> None:
+async def test_exports_of_the_analyser_hold_the_view_as_it_is_shown(
+    run: StoredRun, tmp_path: Path
+) -> None:
     svg, text, page, rows = (tmp_path / name for name in ("c.svg", "c.txt", "r.html", "rows.jsonl"))
     async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
         screen = await ready(pilot)
@@ -87,7 +89,7 @@ async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) 
 
 @pytest.mark.quick_cases("e")
 @pytest.mark.parametrize("key", ["e", "S"])
-async def test_a_file_that_is_there_is_replaced_only_on_a_second_enter(
+async def test_an_export_replaces_an_existing_file_only_on_a_second_enter(
     run: StoredRun, tmp_path: Path, key: str
 ) -> None:
     target = tmp_path / {"e": "rows.csv", "S": "chart.svg"}[key]

@@ -45,7 +45,9 @@ async def test_commands_to_motors_are_listed_as_events(run: StoredRun) -> None:
 
 
 @pytest.mark.slow
-async def test_events_and_differences_by_keys(run: StoredRun, noisy: StoredRun) -> None:
+async def test_keys_find_events_go_between_them_and_compare_with_another_run(
+    run: StoredRun, noisy: StoredRun
+) -> None:
     async with open_analyser(runs=(run.id,)) as (pilot, screen, model):
         await typed(pilot, "c", "=Colour < 60", "enter")
         events = model.events.list_events(model.log)
