@@ -28,7 +28,7 @@ def stored(name: str) -> Image.Image:
     "Grey_bands", "Lollipop", "MNIST_Digits", "Two_shapes", "Line_Following_Test"
 )
 @pytest.mark.parametrize("name", MATS)
-def test_picture_equals_a_fresh_drawing(name: str) -> None:
+def test_each_mats_stored_picture_equals_a_fresh_drawing(name: str) -> None:
     assert stored(name).mode == "RGB"
     assert np.array_equal(np.asarray(stored(name)), picture(name))
 
@@ -47,14 +47,14 @@ def test_the_picture_of_a_mat_is_a_small_file(name: str) -> None:
 
 
 @pytest.mark.slow
-def test_write_replaces_a_picture_and_leaves_nothing_else(tmp_path: Path) -> None:
+def test_writing_a_mats_picture_replaces_it_and_leaves_no_other_file(tmp_path: Path) -> None:
     (tmp_path / "Square.png").write_bytes(b"no picture")
     draw.write("Square", tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["Square.png"]
     assert draw.is_current("Square", tmp_path)
 
 
-def test_a_changed_pixel_is_found(tmp_path: Path) -> None:
+def test_a_mat_picture_with_a_changed_pixel_is_not_current(tmp_path: Path) -> None:
     with Image.open(FOLDER / "Square.png") as image:
         image.putpixel((3, 3), (254, 255, 255))
         image.save(tmp_path / "Square.png")
@@ -62,7 +62,9 @@ def test_a_changed_pixel_is_found(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", ["missing", "another size", "grey"])
-def test_other_pictures_are_found(kind: str, tmp_path: Path) -> None:
+def test_a_mat_picture_that_is_missing_or_of_another_kind_is_not_current(
+    kind: str, tmp_path: Path
+) -> None:
     match kind:
         case "another size":
             Image.new("RGB", (20, 10), "white").save(tmp_path / "Empty_Map.png")
@@ -71,7 +73,7 @@ def test_other_pictures_are_found(kind: str, tmp_path: Path) -> None:
     assert not draw.is_current("Empty_Map", tmp_path)
 
 
-def test_the_command_checks_names(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_drawing_command_refuses_unknown_mats(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         draw.main(["--check", "Gray_bands"])
     assert ended.value.code == 2

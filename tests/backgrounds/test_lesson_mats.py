@@ -17,5 +17,5 @@ def test_lesson_mat_is_current_and_used(name: str) -> None:
     assert any(f"../mats/{name}.png" in path.read_text() for path in find_shipped_paths().values())
 
 
-def test_no_other_lesson_mats() -> None:
+def test_every_lesson_mat_in_the_folder_is_one_of_the_drawn_ones() -> None:
     assert {path.stem for path in FOLDER.iterdir()} == set(BANDS)

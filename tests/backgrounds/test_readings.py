@@ -100,7 +100,7 @@ def allowed(name: str, kind: str) -> Allowed:
 
 @pytest.mark.slow_cases("Noisy_Lollipop", "Grey_and_black")
 @pytest.mark.parametrize("name", sorted({name for name, _ in READINGS}))
-def test_the_sensor_reads_what_it_must(name: str) -> None:
+def test_readings_on_each_mat_stay_near_the_recorded_ones(name: str) -> None:
     with Image.open(Path(draw.__file__).parent / f"{name}.png") as image:
         field = Field(image.width, image.height, memoryview(image.tobytes()), {})
     for kind in (kind for mat, kind in READINGS if mat == name):

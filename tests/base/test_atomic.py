@@ -15,7 +15,9 @@ def names(folder: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("durable", [True, False], ids=["durable", "quick"])
-def test_a_file_comes_whole_and_nothing_stays_beside_it(tmp_path: Path, durable: bool) -> None:
+def test_a_file_is_replaced_at_once_and_no_temporary_file_stays(
+    tmp_path: Path, durable: bool
+) -> None:
     path = tmp_path / "log.csv"
     path.write_bytes(b"old")
     with replacing(path, durable=durable) as handle:
@@ -24,7 +26,7 @@ def test_a_file_comes_whole_and_nothing_stays_beside_it(tmp_path: Path, durable:
     assert (path.read_bytes(), names(tmp_path)) == (b"new", ["log.csv"])
 
 
-def test_what_was_there_stays_if_the_writing_fails(tmp_path: Path) -> None:
+def test_the_old_file_stays_if_writing_the_new_one_fails(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_bytes(b"old")
     with pytest.raises(RuntimeError), replacing(path) as handle:
@@ -33,7 +35,7 @@ def test_what_was_there_stays_if_the_writing_fails(tmp_path: Path) -> None:
     assert (path.read_bytes(), names(tmp_path)) == (b"old", ["log.csv"])
 
 
-def test_a_link_stays_a_link(tmp_path: Path) -> None:
+def test_replacing_a_file_through_a_link_keeps_the_link(tmp_path: Path) -> None:
     (tmp_path / "there").mkdir()
     link = tmp_path / "lab.toml"
     link.symlink_to(tmp_path / "there" / "real.toml")
@@ -43,7 +45,7 @@ def test_a_link_stays_a_link(tmp_path: Path) -> None:
     assert (names(tmp_path / "there"), link.read_bytes()) == (["real.toml"], b"new")
 
 
-def test_the_users_mask_says_who_may_read(tmp_path: Path) -> None:
+def test_a_replaced_file_has_the_permissions_of_the_users_umask(tmp_path: Path) -> None:
     before = os.umask(0o027)
     try:
         with replacing(tmp_path / "log.csv") as handle:
@@ -53,7 +55,7 @@ def test_the_users_mask_says_who_may_read(tmp_path: Path) -> None:
     assert (tmp_path / "log.csv").stat().st_mode & 0o777 == 0o640
 
 
-def test_only_old_parts_of_the_name_are_swept(tmp_path: Path) -> None:
+def test_sweep_removes_only_old_temporary_files_of_the_given_name(tmp_path: Path) -> None:
     for name in (".log.old.tmp", ".log.new.tmp", ".other.old.tmp", "log.tmp"):
         (tmp_path / name).touch()
         if "new" not in name:

@@ -96,7 +96,9 @@ def outcome(call: Callable[..., object], /, *args: object, **by_name: object) ->
 
 
 @pytest.mark.parametrize("frozen, slots", KINDS)
-def test_objects_do_what_those_of_python_do(frozen: bool, slots: bool) -> None:
+def test_objects_of_our_data_classes_behave_like_those_of_dataclasses(
+    frozen: bool, slots: bool
+) -> None:
     def told(kinds: dict[str, type]) -> object:
         made = [
             outcome(kinds[name], *args, **by_name)
@@ -125,7 +127,9 @@ def test_objects_do_what_those_of_python_do(frozen: bool, slots: bool) -> None:
 
 
 @pytest.mark.parametrize("frozen, slots", KINDS)
-def test_classes_look_like_those_of_python(frozen: bool, slots: bool) -> None:
+def test_our_data_classes_have_the_signature_and_fields_of_dataclasses(
+    frozen: bool, slots: bool
+) -> None:
     def told(kind: type) -> object:
         return (
             kind.__doc__,
@@ -157,7 +161,7 @@ def test_a_data_class_without_options_counts_and_compares() -> None:
     )
 
 
-def test_objects_may_be_equal_to_themselves_only() -> None:
+def test_data_class_objects_without_eq_equal_only_themselves() -> None:
     @data_class.dataclass(eq=False, slots=True)
     class Scope:
         """A scope."""
@@ -230,7 +234,7 @@ def test_an_object_that_contains_itself_can_be_shown() -> None:
     assert repr(node).endswith("Node(next=...)")
 
 
-def test_what_is_compiled_late_can_be_compiled_at_once() -> None:
+def test_methods_of_a_data_class_compiled_late_can_be_compiled_at_once() -> None:
     @data_class.dataclass
     class Late:
         """Nobody has made one yet."""

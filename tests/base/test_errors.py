@@ -51,7 +51,9 @@ def test_control_characters_in_names_do_not_reach_the_terminal(
     assert not [part for part in ("\x1b[31m", "\x9b", "\x07") if part in said]
 
 
-def test_rows_for_a_program_are_as_they_are(log: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_rows_piped_to_a_program_keep_control_characters(
+    log: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     run_command(["log", "derive", log])
     assert EVIL in capsys.readouterr().out
 
@@ -61,11 +63,11 @@ def test_rows_for_a_program_are_as_they_are(log: str, capsys: pytest.CaptureFixt
     [("Größe 😀", "Größe 😀"), ("a\tb\nc", "a b c"), ("\ud800\u202e", "\ufffd\ufffd")],
     ids=["letters", "white space", "no letters"],
 )
-def test_control_characters_are_escaped(text: str, shown: str) -> None:
+def test_printable_replaces_control_characters(text: str, shown: str) -> None:
     assert printable(text) == shown
 
 
-def test_of_many_names_some_are_listed() -> None:
+def test_an_error_lists_only_some_of_many_names() -> None:
     assert listed(iter("ab")) == "a, b"
     assert listed(()) == "none"
     assert listed(map(str, range(10_000))).endswith(
@@ -109,7 +111,7 @@ STORED_CALLS = {
 
 @pytest.mark.slow
 @cases("words", STORED_CALLS)
-def test_stored_text_is_shown(
+def test_stored_text_is_shown_without_control_characters(
     stored: Path,
     words: tuple[str, ...],
     capfd: pytest.CaptureFixture[str],

@@ -54,7 +54,7 @@ def test_a_deep_folder_is_deleted_and_what_links_lead_to_is_not(
     remove_tree(folder)
 
 
-def test_what_cannot_be_deleted_is_left_or_told(
+def test_remove_tree_leaves_or_raises_on_folders_that_cannot_be_deleted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_: object, **__: object) -> None:

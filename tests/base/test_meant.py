@@ -37,5 +37,7 @@ MEANT = {
 
 
 @cases("wrong, names", MEANT)
-def test_names_that_were_meant(wrong: str, names: list[str]) -> None:
+def test_find_meant_names_gives_the_names_that_a_misspelt_one_is_near(
+    wrong: str, names: list[str]
+) -> None:
     assert find_meant_names(wrong, SENSOR) == names

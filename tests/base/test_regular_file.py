@@ -111,7 +111,7 @@ def without_waiting() -> Iterator[None]:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("file", FILES)
-def test_nothing_odd_in_the_place_of_a_file_is_waited_for(
+def test_no_command_waits_for_a_pipe_or_device_in_the_place_of_a_file(
     home: Path, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, file: str, kind: str
 ) -> None:
     if (file, kind) in MAY_WAIT:

@@ -12,7 +12,7 @@ def _file(path: Path) -> None:
     path.write_text("")
 
 
-def test_the_nearest_folder_of_the_repository_has_it(tmp_path: Path) -> None:
+def test_a_module_is_found_in_the_nearest_folder_of_the_repository(tmp_path: Path) -> None:
     (tmp_path / ".git").mkdir()
     for place in ("libs/my_robot.py", "old/deep/my_robot.py", "pack/claw/__init__.py"):
         _file(tmp_path / place)
@@ -23,7 +23,7 @@ def test_the_nearest_folder_of_the_repository_has_it(tmp_path: Path) -> None:
     assert find_module_folder("numpy", str(program)) == ""
 
 
-def test_without_a_repository_the_folder_above_is_searched(tmp_path: Path) -> None:
+def test_without_a_repository_a_module_is_searched_in_the_folder_above(tmp_path: Path) -> None:
     _file(tmp_path / "far" / "my_robot.py")
     _file(tmp_path / "project" / "libs" / "near.py")
     program = tmp_path / "project" / "prog"
@@ -33,7 +33,7 @@ def test_without_a_repository_the_folder_above_is_searched(tmp_path: Path) -> No
     assert find_module_folder("near", str(program / "no folder")) == ""
 
 
-def test_hidden_folders_and_links_are_left_out(tmp_path: Path) -> None:
+def test_searching_a_module_skips_hidden_folders_and_links(tmp_path: Path) -> None:
     _file(tmp_path / ".venv" / "my_robot.py")
     (tmp_path / "loop").symlink_to(tmp_path)
     program = tmp_path / "prog"

@@ -22,18 +22,20 @@ ODD = f"# \x0c\n\x0cx = '''{NO_ENDS}'''\nprint('A: 1')\nz = 1 / 0\n"
 @pytest.mark.parametrize(
     "text", ["", "\n", "a", "a\n", "a\n\n", "a\r\nb\rc\n", f"a{NO_ENDS}\nb", "\x0c\n"], ids=repr
 )
-def test_lines_are_those_of_python(text: str, tmp_path: Path) -> None:
+def test_source_lines_splits_a_text_as_python_does(text: str, tmp_path: Path) -> None:
     file = tmp_path / "a.py"
     file.write_bytes(text.encode())
     with file.open(encoding="utf-8") as lines:
         assert source_lines(text) == [line.removesuffix("\n") for line in lines]
 
 
-def test_an_error_shows_its_own_line(run: Run) -> None:
+def test_an_error_shows_its_own_line_despite_odd_line_ends(run: Run) -> None:
     assert run(ODD).errors[1:3] == ['  File "program.py", line 4, in <module>', "    z = 1 / 0"]
 
 
-def test_a_break_shows_its_own_line(here: Command, tmp_path: Path) -> None:
+def test_a_breakpoint_shows_its_own_line_despite_odd_line_ends(
+    here: Command, tmp_path: Path
+) -> None:
     (tmp_path / "odd.py").write_text(ODD)
     assert "    4 | z = 1 / 0\n" in here("run", "odd.py", "--break", "4").stderr
 
@@ -43,14 +45,16 @@ def test_a_magic_line_is_found_on_its_own_line() -> None:
         parse_program("# \x0c\n# %%sim_magic_none\n", "odd.py")
 
 
-def test_a_magic_line_leaves_the_others_alone() -> None:
+def test_commenting_out_a_magic_line_leaves_the_other_lines_unchanged() -> None:
     expected = f"# {NO_ENDS}\n# %%sim_magic -R\nx = 1\n"
     assert parse_program(f"# {NO_ENDS}\n%%sim_magic -R\nx = 1\n", "odd.py").program.text == expected
 
 
 @pytest.mark.parametrize("encoding", ["rot13", "hex", "zip", "undefined", "idna", "no-such"])
 @pytest.mark.parametrize("read", [read_program, read_text], ids=["run", "editor"])
-def test_an_encoding_that_is_none_is_told(tmp_path: Path, encoding: str, read: object) -> None:
+def test_a_program_that_declares_an_encoding_of_no_text_is_refused(
+    tmp_path: Path, encoding: str, read: object
+) -> None:
     assert callable(read)
     file = tmp_path / "coded.py"
     file.write_bytes(f"# coding: {encoding}\ncevag('\u00e4')\n".encode())

@@ -24,7 +24,7 @@ def _parse_deep(depth: int, parse: Callable[[], object]) -> object:
     [lambda: parse_module(TEXT), lambda: parse_expression(f"[{'(x, [y]), ' * 500}]")],
     ids=["module", "expression"],
 )
-def test_a_collection_of_garbage_that_parses_disturbs_no_tree(parse: Callable[[], object]) -> None:
+def test_parsing_survives_a_garbage_collection_that_parses_too(parse: Callable[[], object]) -> None:
     def parse_elsewhere(phase: str, info: dict[str, int]) -> None:
         gc.callbacks.remove(parse_elsewhere)
         _parse_deep(10, lambda: ast.parse("1 + 1"))

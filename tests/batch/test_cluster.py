@@ -98,7 +98,7 @@ def department(tmp_path: Path) -> Iterator[Department]:
         yield Department(tmp_path, stack)
 
 
-def test_a_cluster_gives_the_same_bits(department: Department) -> None:
+def test_a_cluster_gives_the_same_results_as_one_process(department: Department) -> None:
     department.add(2)
     tasks = [task(LOGS, index) for index in range(20)]
     expected = by_index(list(run_many(tasks, 1)))
@@ -125,7 +125,7 @@ def dask_here() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("dask_here")
-def test_a_cluster_on_this_machine() -> None:
+def test_a_cluster_of_local_workers_gives_the_same_results_as_one_process() -> None:
     tasks = [task(LOGS, index) for index in range(8)]
     assert by_index(list(run_on_cluster(tasks, workers=2))) == by_index(list(run_many(tasks, 1)))
 
@@ -174,7 +174,7 @@ def _check_told(folder: Path, address: str, message: str) -> None:
     assert message in done.stderr
 
 
-def test_what_greets_otherwise_is_told_in_one_line(tmp_path: Path) -> None:
+def test_an_address_where_another_server_answers_is_refused_in_one_line(tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as listens, ThreadPoolExecutor(1) as pool:
         greeted = pool.submit(lambda: listens.accept()[0])
         greeted.add_done_callback(lambda found: found.result().sendall(b"SSH-2.0-OpenSSH_9.6\r\n"))
@@ -208,7 +208,7 @@ BREAKS = {
 
 
 @cases("break_it, message", BREAKS)
-def test_a_cluster_that_breaks_is_told(
+def test_a_cluster_that_breaks_in_mid_batch_ends_with_the_reason(
     department: Department, break_it: Callable[[Department], None], message: str
 ) -> None:
     department.add(1)

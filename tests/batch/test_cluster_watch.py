@@ -122,7 +122,7 @@ def test_workers_that_do_not_answer_are_told(monkeypatch: pytest.MonkeyPatch) ->
         Cluster({"a": __version__, "b": __version__}).watch().wait_for_workers()
 
 
-def test_a_call_is_given_up_or_answered() -> None:
+def test_call_within_s_gives_the_result_the_error_or_a_timeout() -> None:
     over = threading.Event()
     with pytest.raises(TimeoutError, match="no answer within"):
         call_within_s(0.001, over.wait)

@@ -59,13 +59,13 @@ def test_values_of_a_parameter_are_parsed(text: str, expected: object) -> None:
         "a sample in a list": ("1,random(0, 1, 5)", "stands alone"),
     },
 )
-def test_wrong_values_are_explained(text: str, words: str) -> None:
+def test_wrong_values_of_a_parameter_are_explained(text: str, words: str) -> None:
     with pytest.raises(ConfigError, match=rf"^x: .*{words}"):
         parse_values(text, "x")
 
 
 @pytest.mark.parametrize("text", ["noise.motor", "=5", ""])
-def test_a_setting_has_a_name_and_values(text: str) -> None:
+def test_a_varied_setting_without_a_name_or_values_is_refused(text: str) -> None:
     with pytest.raises(ConfigError, match=r"must be NAME=VALUES.*noise.motor=0,20,50"):
         parse_set(text)
 
@@ -109,7 +109,7 @@ def test_the_last_parameter_varies_fastest() -> None:
     ]
 
 
-def test_random_numbers_lie_inside_and_repeat() -> None:
+def test_random_parameter_values_lie_in_their_range_and_repeat_by_seed() -> None:
     sample = SampleValues(RandomDraw.RANDOM, 54, 58, 200)
     values = sample.values("a", whole=False)
     assert all(54 <= value <= 58 for value in values)

@@ -63,7 +63,9 @@ def test_the_order_of_results_does_not_decide_what_runs(
     assert len(rounds.unknown) == 1 and rounds.unknown[0] > 1
 
 
-def test_a_value_that_no_run_has_is_never_known(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_margin_of_a_value_that_no_run_has_stays_infinite(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     runs, rounds = run_until("Nothing_last ± 1", 0, monkeypatch)
     assert (len(runs.rows), rounds.unknown) == (300, [inf] * 3)
 

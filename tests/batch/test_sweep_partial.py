@@ -20,14 +20,14 @@ def table(folder: Path, sha256: str = "a") -> PartialTable:
     return PartialTable(find_partial(folder / "out.csv"), {"sha256": sha256, "runs": 3})
 
 
-def test_rows_come_back_bit_for_bit(tmp_path: Path) -> None:
+def test_partial_rows_of_a_batch_are_read_back_bit_for_bit(tmp_path: Path) -> None:
     file = table(tmp_path).open({0: ROWS[0]})
     file.add(ROWS[2])
     file.close()
     assert repr(table(tmp_path).rows()) == repr(ROWS)
 
 
-def test_without_a_file_nothing_is_done(tmp_path: Path) -> None:
+def test_without_a_file_of_partial_rows_no_run_counts_as_done(tmp_path: Path) -> None:
     assert table(tmp_path).rows() == {}
 
 

@@ -61,7 +61,7 @@ def test_a_figure_that_is_not_possible_is_an_error(value: float) -> None:
         Figure("thing", 1.0, "ms", most=1.0, ratio=Ratio(value, "x something"))
 
 
-def test_nothing_may_be_sent() -> None:
+def test_a_figure_that_may_be_zero_meets_its_goal_at_zero() -> None:
     assert Figure("at rest", 0.0, "B/s", most=0.0, may_be_zero=True).verdict == "met"
 
 
@@ -71,7 +71,7 @@ def test_a_speed_that_no_program_can_have_is_an_error() -> None:
         tick_speed(600_000_000.0, 1e-6)
 
 
-def test_the_frozen_ticks_drive_along_the_bands() -> None:
+def test_the_frozen_ticks_of_a_bench_drive_along_the_bands() -> None:
     world = drive(1000)
     assert world.tick == 1000
     assert world.drive.x_mm > 1100
@@ -84,7 +84,7 @@ def test_the_frozen_ticks_drive_along_the_bands() -> None:
     [tick_cpu_s, start_cpu_s, start_wall_s, paint_cpu_s, paint_wall_s, fork_s],
     ids=lambda at: at.__name__,
 )
-def test_each_reference_costs_something(reference: Callable[[], float]) -> None:
+def test_each_reference_workload_takes_measurable_time(reference: Callable[[], float]) -> None:
     assert 0 < reference() < 60
 
 

@@ -38,7 +38,7 @@ SAME = function_of("tuisim.app.app", function_of("tuisim.app.app", STRANGER))
 
 
 @pytest.mark.usefixtures("clock")
-def test_a_call_from_another_module_enters_one(tmp_path: Path) -> None:
+def test_a_frame_counts_one_entry_for_a_call_from_another_module(tmp_path: Path) -> None:
     walks = FrameWalks(tmp_path / "counted.json", 2)
     for _ in range(3):
         walks.drawn()
@@ -54,7 +54,7 @@ def test_a_call_from_another_module_enters_one(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("clock")
-def test_a_frame_that_walks_more_is_seen(tmp_path: Path) -> None:
+def test_a_frame_with_ten_times_the_calls_counts_ten_times_the_entries(tmp_path: Path) -> None:
     counted = []
     for times in (1, 10):
         walks = FrameWalks(tmp_path / "counted.json", 1)

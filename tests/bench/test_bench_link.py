@@ -41,7 +41,9 @@ def echo_port() -> Iterator[int]:
         pytest.param(Line("long", round_trip_s=0.1), 0.1, id="there and back"),
     ],
 )
-def test_a_line_takes_its_time(line: Line, least_s: float, echo_port: int) -> None:
+def test_a_simulated_link_is_as_slow_as_its_bit_rate_and_loses_nothing(
+    line: Line, least_s: float, echo_port: int
+) -> None:
     said = bytes(range(200)) * (_HALF // 200)
     with (
         Link(line, echo_port) as link,
@@ -60,7 +62,9 @@ def test_a_line_takes_its_time(line: Line, least_s: float, echo_port: int) -> No
         assert (link.up_bytes, link.down_bytes) == (_HALF, _HALF)
 
 
-def test_where_there_is_no_server_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_bench_over_ssh_says_what_to_install_where_sshd_is_missing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr("shutil.which", lambda *_, **__: None)
 
     (figure,) = wire.wire(QUICK)

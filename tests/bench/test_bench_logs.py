@@ -17,7 +17,9 @@ NAMES = {
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_long_log_is_read_whole(tmp_path: Path, kind: str, suffix: str) -> None:
+def test_logs_drawn_for_the_bench_are_read_with_every_row(
+    tmp_path: Path, kind: str, suffix: str
+) -> None:
     table = KINDS[kind](2000)
     log = open_log(written(table, tmp_path / f"log{suffix}"))
     assert (log.rows, log.left_out, log.names[:4]) == (2000, 0, NAMES[kind])

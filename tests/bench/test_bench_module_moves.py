@@ -16,13 +16,13 @@ def walk_through(function: Callable[[], object]) -> Walk:
     return counter.stop()
 
 
-def test_calls_are_counted_also_where_the_module_stays() -> None:
+def test_counted_calls_include_those_within_a_module() -> None:
     walk = walk_through(SAME)
     assert walk == Walk(3, {"tuisim.app.app": 1, "tuisim.engine.core.geometry": 1})
     assert walk.moves == 2
 
 
-def test_what_an_import_executes_is_left_out() -> None:
+def test_counted_calls_leave_out_what_an_import_executes() -> None:
     body = compile("INNER()\n", "module.py", "exec")
     importing = function_of("importlib", lambda: exec(body, {"INNER": INNER}))
     assert walk_through(importing) == Walk(0, {})

@@ -66,12 +66,12 @@ def test_a_slow_down_makes_value_and_ratio_worse(slowdown: float) -> None:
 
 
 @pytest.mark.parametrize("took_s", [0.0, -0.5])
-def test_what_took_no_time_was_not_measured(took_s: float) -> None:
+def test_a_bench_that_took_no_time_is_an_error(took_s: float) -> None:
     ticks = count()
     with pytest.raises(MeasuringError, match="time that was measured is"):
         in_turns(lambda: took_s, lambda: 1.0, CHEAP, lambda: float(next(ticks)))
 
 
-def test_a_process_that_is_not_counted_is_an_error() -> None:
+def test_a_bench_whose_process_used_no_cpu_time_is_an_error() -> None:
     with pytest.raises(MeasuringError, match="CPU time that was measured is 0"):
         in_turns(lambda: 1.0, lambda: 1.0, CHEAP, lambda: 5.0)
