@@ -45,7 +45,7 @@ def write(tmp_path: Path) -> Any:
     return written
 
 
-def test_every_key_is_read(write: Any, tmp_path: Path) -> None:
+def test_every_key_of_a_batch_file_is_read(write: Any, tmp_path: Path) -> None:
     found = load_batch(write(WHOLE))
     assert found.programs == (str(tmp_path / "mine.py"), "log_greys", "lab.ipynb#2")
     assert found.choices == {
@@ -107,7 +107,7 @@ def test_a_batch_file_has_a_table_batch(write: Any, text: str, expected: bool) -
         ),
     },
 )
-def test_wrong_files_are_explained(write: Any, text: str, words: str) -> None:
+def test_faulty_batch_files_are_explained(write: Any, text: str, words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         load_batch(write(text))
 

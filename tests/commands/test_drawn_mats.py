@@ -26,7 +26,7 @@ def test_a_seed_draws_the_same_mat_and_another_one_another(kind: str) -> None:
     assert kind != "bands" or digests[0].startswith(BANDS_OF_0)
 
 
-def test_bands_are_where_and_as_grey_as_is_said() -> None:
+def test_bands_of_a_drawn_mat_have_the_stated_edges_and_greys() -> None:
     for seed in SEEDS:
         mat = generate_mat("bands", seed)
         row = mat.pixels[FIELD_HEIGHT_MM - 500, :, 0].astype(int)
@@ -60,7 +60,7 @@ def test_a_line_begins_at_the_robot_and_stays_on_the_mat() -> None:
 
 
 @pytest.mark.parametrize("kind", DRAWN_MATS)
-def test_the_lines_are_a_world_of_a_task(kind: str) -> None:
+def test_a_drawn_mats_printed_lines_are_a_valid_world_of_a_task(kind: str) -> None:
     lines = generate_mat(kind, 7).format_world_lines("m.png")
     (found,) = tomllib.loads("\n".join(lines))["also"]
     assert (found["background"], found["hidden"]) == ("m.png", True)

@@ -82,7 +82,9 @@ def test_a_progress_bar_shows_the_share_that_is_done(show: Show) -> None:
 
 
 @pytest.mark.parametrize("write", [echo, echo_error], ids=["stdout", "stderr"])
-def test_bar_makes_room_for_lines(show: Show, write: Callable[[str], None]) -> None:
+def test_a_progress_bar_makes_room_for_printed_lines(
+    show: Show, write: Callable[[str], None]
+) -> None:
     terminal = show()
     with Progress("working") as bar:
         terminal.until("working")
@@ -117,7 +119,7 @@ NOBODY: dict[str, Callable[[pytest.MonkeyPatch, Terminal], Any]] = {
 
 
 @cases("change", NOBODY)
-def test_nothing_is_drawn_for(
+def test_no_progress_is_drawn_where_nobody_would_see_it(
     show: Show,
     monkeypatch: pytest.MonkeyPatch,
     change: Callable[[pytest.MonkeyPatch, Terminal], Any],

@@ -75,7 +75,7 @@ def test_a_missed_goal_is_listed_with_exit_code_1(task: Path, here: Command) -> 
     ]
 
 
-def test_open_while_it_runs(task: Path, here: Command) -> None:
+def test_goals_check_of_a_running_run_calls_unmet_goals_open(task: Path, here: Command) -> None:
     _running = record(mm=100)
     done = here("goals", "check", task)
     assert done.returncode == 1
@@ -188,7 +188,7 @@ def test_run_of_another_world_and_by_hand_is_noted(task: Path, here: Command) ->
     ]
 
 
-def test_truncated_and_damaged_telemetry(task: Path, here: Command) -> None:
+def test_goals_check_notes_telemetry_that_is_cut_off_or_damaged(task: Path, here: Command) -> None:
     stored = record().end()
     path = stored.folder / TELEMETRY_FILE
     data = bytearray(path.read_bytes())
@@ -213,7 +213,9 @@ def test_a_run_without_telemetry_is_not_judged(lines: int, task: Path, here: Com
     assert "The robot was not simulated at that time." in done.stdout
 
 
-def test_program_that_does_not_compile(task: Path, here: Command) -> None:
+def test_goals_check_names_the_syntax_error_for_each_goal_about_the_program(
+    task: Path, here: Command
+) -> None:
     Path("broken.py").write_text("while True\n")
     here("run", "broken.py")
     task.write_text(
@@ -235,7 +237,7 @@ def test_rows_of_a_flood_are_limited(task: Path, monkeypatch: pytest.MonkeyPatch
 
 
 @pytest.mark.slow
-def test_examples_are_found_by_name(here: Command, home: Path) -> None:
+def test_goals_of_the_examples_are_found_by_name(here: Command, home: Path) -> None:
     record().end()
     for name in list_example_names():
         assert here("goals", "check", name).returncode == 1
@@ -262,7 +264,7 @@ WRONG_MATS = {
 
 
 @pytest.mark.parametrize("case", WRONG_MATS)
-def test_a_mat_that_cannot_be_drawn(case: str, here: Command) -> None:
+def test_goals_mat_refuses_wrong_words_in_one_line(case: str, here: Command) -> None:
     words, said = WRONG_MATS[case]
     done = here("goals", "mat", *words.split())
     assert (done.returncode, done.stdout) == (2, "")

@@ -50,7 +50,7 @@ def test_lessons_are_listed_with_those_of_a_folder(here: Command, own: Path) -> 
     assert any("half" in line and "Drive half a metre" in line and "new" in line for line in lines)
 
 
-def test_folder_of_the_environment(
+def test_lessons_in_the_folder_of_the_environment_variable_are_listed(
     here: Command, own: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TUISIM_LESSONS", str(own))
@@ -65,7 +65,7 @@ def test_without_a_terminal_a_lesson_is_plain_text(here: Command, own: Path) -> 
     assert "500 / (3.14159 * 56)" not in text
 
 
-def test_model_answer_appears_when_every_step_is_done(here: Command, own: Path) -> None:
+def test_a_lessons_model_answer_appears_once_every_step_is_done(here: Command, own: Path) -> None:
     done = LessonProgress()
     for name in ("turns", "drive"):
         done = done.update_step(name, state=StepState.DONE, at="2026-01-01T00:00:00+00:00")
@@ -73,7 +73,9 @@ def test_model_answer_appears_when_every_step_is_done(here: Command, own: Path) 
     assert "500 / (3.14159 * 56)" in here("learn", "half", "--folder", own).stdout
 
 
-def test_status_for_a_tutor(here: Command, own: Path) -> None:
+def test_learn_status_gives_a_tutor_each_steps_state_tries_and_hints(
+    here: Command, own: Path
+) -> None:
     at = "2026-01-01T00:00:00+00:00"
     save_progress(
         "half",
@@ -108,7 +110,7 @@ def test_status_for_a_tutor(here: Command, own: Path) -> None:
     assert "  – How many rotations? (2 hints)" in here("learn", "status", "--folder", own).stdout
 
 
-def test_new_lesson_is_in_order(here: Command, home: Path) -> None:
+def test_a_lesson_that_learn_new_writes_passes_learn_check(here: Command, home: Path) -> None:
     assert here("learn", "new", "mine.md").returncode == 0
     done = here("learn", "check", "mine.md")
     assert (done.returncode, done.stdout) == (
@@ -224,23 +226,27 @@ def test_wrong_words_for_learn_are_refused_in_one_line(
     assert (done.returncode, message in done.stderr) == (2, True), done.stderr
 
 
-def test_lesson_by_its_number(here: Command, home: Path) -> None:
+def test_a_lesson_is_found_by_its_number(here: Command, home: Path) -> None:
     assert here("learn", "2", "--text").stdout.startswith("What the sensors see\n")
 
 
-def test_lesson_in_the_telling_for_a_library(here: Command, home: Path) -> None:
+def test_learn_shows_the_version_of_a_lesson_for_the_chosen_library(
+    here: Command, home: Path
+) -> None:
     told = here("learn", "1", "--library", "pybricks", "--text").stdout
     assert told.startswith("The first run, with Pybricks\n")
     assert here("learn", "first-run-pybricks", "--library", "pybricks", "--text").stdout == told
     assert here("learn", "1", "--library", "ev3dev2", "--text").stdout.startswith("The first run\n")
 
 
-def test_a_lesson_that_is_for_a_library_itself_is_its_version(here: Command, home: Path) -> None:
+def test_a_lesson_written_for_pybricks_is_shown_with_library_pybricks(
+    here: Command, home: Path
+) -> None:
     told = here("learn", "prime-hub", "--library", "pybricks", "--text").stdout
     assert told.startswith("Drive, turn and follow a line, with a SPIKE Prime hub\n")
 
 
-def test_program_of_a_telling_runs_by_the_rules_of_its_library(
+def test_a_lessons_program_for_a_library_runs_by_the_rules_of_that_library(
     here: Command, home: Path, started: list[AppSettings]
 ) -> None:
     assert here("learn", "14", "--library", "pybricks").returncode == 0
@@ -263,7 +269,7 @@ def test_a_lesson_without_a_wrong_way_is_a_warning(here: Command, tmp_path: Path
     ) == (0, 1)
 
 
-def test_check_without_a_file_is_of_the_lessons_of_tuisim(here: Command) -> None:
+def test_learn_check_without_a_file_checks_all_built_in_lessons(here: Command) -> None:
     lines = here("learn", "check", "--no-runs", "--strict").stdout.splitlines()
     assert (len(lines), lines[0].partition(":")[0], lines[-1].partition(":")[0]) == (
         22,

@@ -26,7 +26,7 @@ ORDER = ("white", "pale grey", "white", "light grey", "white", "grey", "white", 
 
 
 @pytest.mark.parametrize("profile", ["robolab", "nbev3devsim"])
-def test_bands_of_the_greys(here: Command, profile: str) -> None:
+def test_log_bands_names_each_grey_with_its_level(here: Command, profile: str) -> None:
     here("run", "log_greys", "--profile", profile)
     found = json.loads(here("log", "bands", "last", "--json").stdout)
     assert tuple(band["grey"] for band in found) == ORDER
@@ -114,7 +114,7 @@ def test_integrals_resamples_and_crossings_are_printed(
     assert how[1](frame_of(here("log", action, str(log), *how[0]).stdout))
 
 
-def test_crossings_are_listed_with_their_times(here: Command, log: Path) -> None:
+def test_log_events_lists_crossings_with_their_times(here: Command, log: Path) -> None:
     found = json.loads(here("log", "events", str(log), "--at", "4.5", "--json").stdout)
     assert [(event["variable"], event["time_s"], event["crossing"]) for event in found] == [
         ("left", 2.25, "rises"),

@@ -102,7 +102,7 @@ def test_runs_come_back_from_the_log(
 @pytest.mark.quick_cases("*-samples")
 @each_table
 @each_format
-def test_files_become_each_other(
+def test_a_log_exported_to_one_format_can_be_exported_to_every_other(
     here: Command, tmp_path: Path, kept: dict[str, Kept], table: str, suffix: str
 ) -> None:
     for source in EXPORTERS:

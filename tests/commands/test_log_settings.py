@@ -33,7 +33,9 @@ drift = "typical"
 
 
 @pytest.mark.slow
-def test_nothing_follows_the_defaults_of_the_next_run(here: Command, home: Path) -> None:
+def test_log_commands_on_a_stored_run_ignore_the_users_defaults_for_new_runs(
+    here: Command, home: Path
+) -> None:
     assert here(*RUN).returncode == 0
 
     def collect() -> list[str | bytes]:

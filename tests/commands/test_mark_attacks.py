@@ -173,7 +173,7 @@ def port() -> Iterator[int]:
 
 
 @pytest.mark.slow
-def test_what_the_guide_says_that_only_isolation_prevents(
+def test_attacks_that_earn_points_without_isolation_earn_none_with_it(
     tmp_path: Path, isolation: str, port: int
 ) -> None:
     field = _field(tmp_path / "field", FINISH)

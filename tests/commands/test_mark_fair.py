@@ -24,7 +24,7 @@ def in_run(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Stored]:
 
 
 @pytest.mark.slow
-def test_each_has_an_end_of_its_own(in_run: dict[str, Stored]) -> None:
+def test_honest_programs_end_as_expected_when_run_alone(in_run: dict[str, Stored]) -> None:
     assert in_run.keys() == FAIR.keys()
     ends = {
         "raises": "raised",
@@ -42,7 +42,7 @@ def test_each_has_an_end_of_its_own(in_run: dict[str, Stored]) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("host, first", [("batch", 0), ("mark", 1), ("app", 0), ("notebook", 1)])
-def test_the_end_is_the_same_in_every_host(
+def test_honest_programs_end_the_same_in_batch_marking_app_and_notebook(
     host: str, first: int, in_run: dict[str, Stored], tmp_path: Path
 ) -> None:
     """Every program is run without anybody who looks on, by one of two commands, and live, in the app or a notebook."""
@@ -52,7 +52,9 @@ def test_the_end_is_the_same_in_every_host(
 
 
 @pytest.mark.parametrize("host", ["batch", "mark"])
-def test_a_few_end_the_same(host: str, tmp_path: Path) -> None:
+def test_a_few_honest_programs_end_the_same_in_run_batch_and_marking(
+    host: str, tmp_path: Path
+) -> None:
     few = {name: FAIR[name] for name in QUICK}
     assert hosted(host, few, tmp_path / "place").runs == hosted("run", few, tmp_path / "run").runs
 
@@ -69,7 +71,7 @@ def busy() -> Iterator[None]:
 
 
 @pytest.mark.slow
-def test_the_end_is_the_same_beside_four_busy_processes(
+def test_honest_programs_end_the_same_beside_four_busy_processes(
     in_run: dict[str, Stored], busy: None, tmp_path: Path
 ) -> None:
     programs = dict(islice(FAIR.items(), 0, None, 8))

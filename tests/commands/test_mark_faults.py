@@ -97,7 +97,7 @@ def _fail(where: Sequence[Any]) -> Callable[..., Any]:
     ],
     ids=lambda where: str(where[1]),
 )
-def test_a_fault_is_a_row(
+def test_a_fault_of_tuisim_while_marking_costs_one_students_row_only(
     mark: Any,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],

@@ -97,7 +97,7 @@ def test_colours_of_the_mat_are_exact_in_a_gif(here: Command, tmp_path: Path) ->
             assert (frame == grey).all(axis=2).sum() > 1000
 
 
-def test_a_part_at_another_speed(here: Command, tmp_path: Path) -> None:
+def test_a_movie_can_show_a_part_of_a_run_at_another_speed(here: Command, tmp_path: Path) -> None:
     words = (
         "--from",
         "0.8",
@@ -121,7 +121,9 @@ def test_a_part_at_another_speed(here: Command, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("at, value", [("0.2", "100"), ("0.7", "50")])
-def test_a_picture_shows_an_instant(here: Command, tmp_path: Path, at: str, value: str) -> None:
+def test_a_picture_of_a_run_shows_the_instant_asked_for(
+    here: Command, tmp_path: Path, at: str, value: str
+) -> None:
     here("runs", "picture", "last", "--at", at, "--out", "a.svg", "--panels", "world,chart,arrays")
     here("runs", "picture", "last", "--at", at, "--out", "a.png", "--panels", "world,chart,arrays")
     root = ElementTree.parse(tmp_path / "a.svg").getroot()
@@ -159,7 +161,9 @@ def test_a_small_picture_has_no_chart_unless_it_is_asked_for(
         assert ("time (s)" in (tmp_path / "a.svg").read_text()) == is_charted
 
 
-def test_without_a_file_it_is_named_after_the_program(here: Command, tmp_path: Path) -> None:
+def test_a_picture_without_a_given_file_is_named_after_the_program(
+    here: Command, tmp_path: Path
+) -> None:
     assert here("runs", "picture", "last").stderr == "written: log-picture.png\n"
     assert (tmp_path / "log-picture.png").is_file()
 
@@ -234,7 +238,9 @@ def test_a_movie_that_cannot_be_made_is_refused_in_one_line(
     assert set(tmp_path.iterdir()) == before
 
 
-def test_a_run_without_ticks(here: Command, run: StoredRun, tmp_path: Path) -> None:
+def test_a_movie_of_a_run_without_ticks_is_refused(
+    here: Command, run: StoredRun, tmp_path: Path
+) -> None:
     (run.folder / TELEMETRY_FILE).unlink()
     done = here("runs", "movie", "last")
     assert (done.returncode, [*tmp_path.glob("*.gif")]) == (2, [])
@@ -246,7 +252,7 @@ def test_a_run_without_ticks(here: Command, run: StoredRun, tmp_path: Path) -> N
     "field, value",
     [("x_mm", math.nan), ("y_mm", 1e30), ("heading_deg", math.inf), ("left_speed_dps", math.nan)],
 )
-def test_damaged_records_cost_only_their_frames(
+def test_damaged_records_leave_only_their_frames_out_of_a_movie(
     here: Command, run: StoredRun, tmp_path: Path, field: str, value: float
 ) -> None:
     path = run.folder / TELEMETRY_FILE
@@ -265,7 +271,7 @@ def test_damaged_records_cost_only_their_frames(
     assert len(frames_of(tmp_path / "a.gif")[0]) == 3
 
 
-def test_a_run_that_has_not_ended(here: Command, run: StoredRun) -> None:
+def test_a_movie_of_a_run_that_has_not_ended_is_refused(here: Command, run: StoredRun) -> None:
     RunStore().create_run(PROGRAM, run.spec)
     done = here("runs", "movie", "last")
     assert (
@@ -274,7 +280,7 @@ def test_a_run_that_has_not_ended(here: Command, run: StoredRun) -> None:
     ) == (2, True)
 
 
-def test_ctrl_c_leaves_nothing(
+def test_ctrl_c_while_a_movie_is_written_leaves_no_file(
     here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def interrupted(*_: object) -> None:

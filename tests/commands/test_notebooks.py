@@ -100,7 +100,7 @@ def test_the_worst_end_is_the_exit_code_and_json_tells_each(here: Command, tmp_p
         "telemetry": (LESSON, "--all --telemetry t.csv", "--telemetry: takes one program"),
     },
 )
-def test_what_is_wrong_with_the_folder_is_told(
+def test_a_folder_without_notebooks_to_run_is_refused_with_the_reason(
     cells: list[tuple[str, str]], words: str, told: str, here: Command, tmp_path: Path
 ) -> None:
     (tmp_path / "course").mkdir()
@@ -111,7 +111,9 @@ def test_what_is_wrong_with_the_folder_is_told(
     assert told in done.stderr
 
 
-def test_the_program_of_a_folder_is_named(here: Command, tmp_path: Path) -> None:
+def test_running_a_folder_with_one_program_says_how_to_name_it(
+    here: Command, tmp_path: Path
+) -> None:
     (tmp_path / "team").mkdir()
     (tmp_path / "team" / "main.py").write_text("print(1)\n")
     assert (

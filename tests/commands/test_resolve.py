@@ -98,7 +98,7 @@ def test_files_of_a_magic_line_are_looked_for_beside_the_program(
     ],
     ids=["no program", "missing program", "misspelt program", "program's type"],
 )
-def test_a_world_without_a_program_to_run(
+def test_running_a_world_file_without_a_program_says_so_in_one_line(
     text: str, said: str, folder: Path, here: Command
 ) -> None:
     (folder / "lab.toml").write_text(text)
@@ -179,7 +179,7 @@ def test_a_wrong_press_in_the_first_line_is_told_in_one_sentence(
         "a name without a suffix": ("mine", None),
     },
 )
-def test_a_python_file_that_does_not_exist_begins_a_program_in_the_app(
+def test_opening_a_python_file_that_does_not_exist_begins_a_new_program(
     word: str, is_new: bool | None, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(folder)

@@ -86,7 +86,7 @@ def test_the_program_finds_its_arguments(
         ),
     ],
 )
-def test_arguments_of_nobody_are_refused(
+def test_arguments_without_a_single_program_are_refused(
     folder: Path, here: Command, words: str, message: str
 ) -> None:
     done = here(*words.split())
@@ -101,7 +101,7 @@ def test_arguments_of_nobody_are_refused(
         ('["a", "b\\u0000"]', "arguments[2]: must be text without null characters"),
     ],
 )
-def test_wrong_arguments_in_a_world_file(
+def test_arguments_in_a_world_file_that_are_no_list_of_texts_are_refused(
     folder: Path, here: Command, value: str, message: str
 ) -> None:
     (folder / "lab.toml").write_text(f'program = "p.py"\narguments = {value}\n')
@@ -140,7 +140,7 @@ def test_a_world_is_saved_with_the_arguments(folder: Path) -> None:
     assert merge_settings(load_world(folder / "new.toml").settings)["arguments"] == ("A", "B 'C")
 
 
-def test_arguments_are_shown_with_the_run(folder: Path, here: Command) -> None:
+def test_arguments_of_a_program_are_shown_with_its_run(folder: Path, here: Command) -> None:
     assert json.loads(here("run", "p.py", "--json", "--", "A", "B C").stdout)["arguments"] == [
         "A",
         "B C",
@@ -296,7 +296,9 @@ ASKS = "# %%sim_magic\nwhile True:\n    print(input('? '))\n"
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["pipe", "file"])
-def test_what_is_on_stdin_answers_until_its_end(tmp_path: Path, here: Command, kind: str) -> None:
+def test_lines_on_stdin_answer_input_until_they_end(
+    tmp_path: Path, here: Command, kind: str
+) -> None:
     (tmp_path / "asks.py").write_text(ASKS)
     (tmp_path / "answers").write_text("one\n\nthree")
     command = [sys.executable, "-m", "tuisim", "run", "asks.py"]

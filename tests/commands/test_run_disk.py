@@ -190,7 +190,7 @@ def test_a_run_file_that_is_deleted_in_mid_run_is_written_again(
 
 
 @pytest.mark.parametrize("presses, rows", [(1, 3), (2, None)], ids=["once", "twice"])
-def test_ctrl_c_while_the_export_is_written(
+def test_ctrl_c_while_an_export_is_written_finishes_it_and_twice_cancels_it(
     short: Path,
     here: Command,
     tmp_path: Path,

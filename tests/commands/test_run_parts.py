@@ -51,7 +51,9 @@ until_s = 1.5
 """
 
 
-def test_beacon_and_remote_of_a_world_file(here: Command, tmp_path: Path) -> None:
+def test_a_program_reads_the_beacon_and_remote_of_a_world_file(
+    here: Command, tmp_path: Path
+) -> None:
     (tmp_path / "lab.toml").write_text(WORLD)
     (tmp_path / "prog.py").write_text(
         "# %%sim_magic_imports\nfrom time import sleep\nfrom ev3dev2.sensor.lego import InfraredSensor\n"
@@ -98,7 +100,9 @@ TEAM = (
     ],
     ids=["own module", "magic", "another part"],
 )
-def test_prelude_misses_nothing_that_is_not_used(here: Command, tmp_path: Path, text: str) -> None:
+def test_missing_parts_of_the_prelude_are_no_error_while_unused(
+    here: Command, tmp_path: Path, text: str
+) -> None:
     (tmp_path / "robot.toml").write_text(WITHOUT_WHEELS)
     (tmp_path / "lib.py").write_text(TEAM)
     (tmp_path / "prog.py").write_text(text)
@@ -154,7 +158,7 @@ except Exception as error:
     "profile, position",
     [("robolab", "720"), ("ev3", "738"), ("nbev3devsim", "809.6000000000001")],
 )
-def test_wheels_of_medium_motors(
+def test_wheels_of_medium_motors_are_read_as_medium_motors(
     here: Command, tmp_path: Path, profile: str, position: str
 ) -> None:
     (tmp_path / "robot.toml").write_text(MEDIUM_WHEELS)

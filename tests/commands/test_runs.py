@@ -60,7 +60,7 @@ def test_list_names_the_end_of_a_stopped_run_once(here: Command, home: Path) -> 
     assert here("runs").stdout.splitlines()[1].split().count("stopped") == 1
 
 
-def test_list_has_the_end_that_the_app_shows(make: Make, here: Command) -> None:
+def test_the_list_of_runs_rounds_times_down_as_the_app_does(make: Make, here: Command) -> None:
     run = make("a: 1")
     with (
         closing(sqlite3.connect(run.folder.parent.parent / CATALOGUE_FILE)) as connection,
@@ -74,7 +74,7 @@ def test_list_has_the_end_that_the_app_shows(make: Make, here: Command) -> None:
     "count, shown",
     [(0, "0.0 kB"), (1234, "1.2 kB"), (29_400_000, "29.4 MB"), (5e15, "5000.0 TB")],
 )
-def test_sizes_are_rounded_to_their_unit(count: int, shown: str) -> None:
+def test_sizes_of_runs_are_rounded_to_their_unit(count: int, shown: str) -> None:
     assert size(count) == shown
 
 
@@ -140,7 +140,7 @@ def test_of_a_link_only_the_link_is_removed(make: Make, here: Command, tmp_path:
 
 
 @pytest.mark.parametrize("form", [(), ("--json",)], ids=["text", "json"])
-def test_output_is_shown_while_it_is_read(
+def test_runs_show_prints_output_while_it_is_still_reading(
     make: Make, here: Command, monkeypatch: pytest.MonkeyPatch, form: tuple[str, ...]
 ) -> None:
     make("first", "second")

@@ -74,7 +74,7 @@ LIMITS = {
 
 
 @cases("words, limits", LIMITS)
-def test_the_server_is_limited(
+def test_options_of_serve_set_the_servers_limits(
     words: str,
     limits: tuple[ServerLimits, str, int],
     served: list[tuple[list[str], ServerLimits, str, int]],

@@ -30,7 +30,7 @@ def texts_of(path: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("columns", [80, 120])
-def test_text_fits_the_terminal(
+def test_log_plot_in_text_fits_the_terminal(
     here: Command, log: Path, monkeypatch: pytest.MonkeyPatch, columns: int
 ) -> None:
     monkeypatch.setenv("COLUMNS", str(columns))
@@ -52,7 +52,9 @@ def test_text_without_colours_tells_lines_apart_by_marks(here: Command, log: Pat
     assert len(said.splitlines()) == 16
 
 
-def test_facets_have_a_chart_each(here: Command, log: Path, tmp_path: Path) -> None:
+def test_log_plot_with_facets_draws_a_chart_for_each_variable(
+    here: Command, log: Path, tmp_path: Path
+) -> None:
     words = ("log", "plot", str(log), "--facets", "--variable", "left", "--variable", "right")
     lines = here(*words).stdout.splitlines()
     assert [line for line in lines if line.startswith("[")] == ["[x] left", "[x] right"]
@@ -135,7 +137,9 @@ def test_a_plot_that_cannot_be_made_is_refused_in_one_line(
 @pytest.mark.parametrize(
     "times", ["1e20 100000000000000016384", "1e20 1e20", "0 5e-324"], ids=["two", "one", "tiny"]
 )
-def test_times_that_lie_too_near(here: Command, tmp_path: Path, times: str) -> None:
+def test_log_plot_draws_times_too_near_each_other_without_an_error(
+    here: Command, tmp_path: Path, times: str
+) -> None:
     path = tmp_path / "a.csv"
     path.write_text(
         "time,red\n" + "".join(f"{time},{at}\n" for at, time in enumerate(times.split()))

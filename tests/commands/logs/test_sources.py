@@ -53,7 +53,9 @@ def test_empty_run_says_how_to_log(here: Command, tmp_path: Path) -> None:
     )
 
 
-def test_strays_are_shown_where_there_are_any(here: Command, tmp_path: Path) -> None:
+def test_log_bands_has_a_column_of_strays_only_if_there_are_any(
+    here: Command, tmp_path: Path
+) -> None:
     for name, stray in (("clean.csv", 3), ("stray.csv", 50)):
         values = [3, 3, 3, 3, stray, 3, 3, 3, 3]
         rows = "".join(f"{at},{value}\n" for at, value in enumerate(values))
@@ -64,7 +66,7 @@ def test_strays_are_shown_where_there_are_any(here: Command, tmp_path: Path) -> 
     assert band.split()[4:7] == ["9", "1", "3.00"]
 
 
-def test_what_was_chosen_in_the_analyser_counts_and_is_said(
+def test_log_commands_read_a_file_as_chosen_in_the_analyser_and_say_so(
     here: Command, tmp_path: Path, home: Path
 ) -> None:
     (tmp_path / "log.csv").write_text("boot;light\n0;1\n20;2\n")

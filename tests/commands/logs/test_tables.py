@@ -41,7 +41,7 @@ def test_an_event_has_the_row_that_the_analyser_shows(here: Command, log: Path) 
     assert (event["value"], event["row"]) == (5.0, 6)
 
 
-def test_reckoning_without_noise_is_exact(here: Command) -> None:
+def test_log_reckon_without_noise_is_exact(here: Command) -> None:
     here("run", "square", "-M", "300")
     here("log", "reckon", "last", "--out", "reckoned.csv")
     assert pd.read_csv("reckoned.csv").error_mm.max() < 0.01
@@ -49,7 +49,7 @@ def test_reckoning_without_noise_is_exact(here: Command) -> None:
     assert lines[-1].startswith("dead reckoning: 0.00 mm off at the end, at most 0.00 mm")
 
 
-def test_reckoning_is_wrong_where_the_robot_drifts(here: Command) -> None:
+def test_log_reckon_is_wrong_where_the_robot_drifts(here: Command) -> None:
     here("run", "square", "--drift", "typical")
     rows = [
         json.loads(line) for line in here("log", "reckon", "last", "--json").stdout.splitlines()
@@ -66,7 +66,7 @@ def test_reckoning_is_wrong_where_the_robot_drifts(here: Command) -> None:
     )
 
 
-def test_json_has_every_digit(here: Command, tmp_path: Path) -> None:
+def test_log_derive_prints_json_with_every_digit(here: Command, tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("time_s,v\n0,0.30000000000000004\n300000,1.3\n300000,inf\n")
     rows = [

@@ -23,7 +23,7 @@ def test_advice_names_commands_that_exist(tuisim: Command) -> None:
 
 
 @pytest.mark.slow
-def test_works_without_a_terminal(tmp_path: Path) -> None:
+def test_doctor_works_without_a_terminal(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "tuisim", "doctor", "--json"],
         env={**os.environ, "TUISIM_HOME": str(tmp_path / "new")},

@@ -24,7 +24,7 @@ def config(home: Path) -> Path:
     return home / "config.toml"
 
 
-def test_every_setting_is_listed_with_its_source(config: Path, here: Command) -> None:
+def test_config_lists_every_setting_with_its_source(config: Path, here: Command) -> None:
     config.write_text("[app]\nquiet = true\n[keys]\nrun = 'f5'\n")
 
     done = json.loads(here("config", "--json").stdout)
@@ -40,7 +40,7 @@ def test_every_setting_is_listed_with_its_source(config: Path, here: Command) ->
     assert ["app.quiet", "true", "config.toml"] in [line.split() for line in lines]
 
 
-def test_the_file_is_written_once(config: Path, here: Command) -> None:
+def test_config_init_never_overwrites_an_existing_file(config: Path, here: Command) -> None:
     assert here("config", "--init").returncode == 0
     text = config.read_text()
     again = here("config", "--init")
@@ -103,7 +103,7 @@ def test_a_run_says_which_settings_of_the_user_it_takes(
     assert RunStore().load_run("last").spec.world.noise.motor == noise
 
 
-def test_settings_without_an_effect_are_not_told(
+def test_a_run_does_not_mention_user_settings_that_equal_the_defaults(
     config: Path, tmp_path: Path, here: Command
 ) -> None:
     config.write_text("[simulation]\nmotornoise = 0\nprofile = 'robolab'\n")
@@ -112,7 +112,7 @@ def test_settings_without_an_effect_are_not_told(
     assert "note" not in here("run", "p.py").stderr
 
 
-def test_run_refuses_a_wrong_file(config: Path, tmp_path: Path, here: Command) -> None:
+def test_run_refuses_a_faulty_config_file(config: Path, tmp_path: Path, here: Command) -> None:
     config.write_text("[simulation]\nmotornoise = -1\n")
     (tmp_path / "p.py").write_text(PROGRAM)
 
@@ -122,7 +122,9 @@ def test_run_refuses_a_wrong_file(config: Path, tmp_path: Path, here: Command) -
 
 
 @pytest.mark.slow
-def test_a_batch_gives_everybody_the_same(config: Path, tmp_path: Path, here: Command) -> None:
+def test_a_batch_ignores_the_settings_of_the_user(
+    config: Path, tmp_path: Path, here: Command
+) -> None:
     config.write_text("[simulation]\nmotornoise = 'wrong'\n")
     (tmp_path / "p.py").write_text(PROGRAM)
     assert here("batch", "p.py", "--seeds", "0..1").returncode == 0
