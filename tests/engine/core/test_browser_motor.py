@@ -49,7 +49,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Course]:
 
 @pytest.mark.slow_cases("on_spin", "pairs_made_anew")
 @pytest.mark.parametrize("name", RECORDS)
-def test_a_program_runs_as_the_old_simulator_recorded_it(
+def test_programs_run_as_recorded_from_the_old_simulator(
     name: str, lab: Mapping[str, Course]
 ) -> None:
     record = RECORDS[name]

@@ -136,7 +136,7 @@ def test_other_walls_stop_a_robot_that_is_inside_one() -> None:
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_grouping_of_ticks_does_not_matter_inside_things(place: str) -> None:
+def test_a_robot_inside_an_obstacle_moves_the_same_however_ticks_are_grouped(place: str) -> None:
     def records(step: int) -> bytes:
         start, boxes = PLACES[place]
         sim = simulation(WorldSpec(obstacles=boxes, solid=True, start=start))

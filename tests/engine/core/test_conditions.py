@@ -129,7 +129,9 @@ RUN_CONDITIONS = {
 
 
 @pytest.mark.parametrize("text, condition", RUN_CONDITIONS.items(), ids=RUN_CONDITIONS)
-def test_conditions_on_a_run(text: str, condition: ValueCondition | None) -> None:
+def test_parse_run_condition_reads_each_form_of_condition(
+    text: str, condition: ValueCondition | None
+) -> None:
     assert parse_run_condition(text) == condition
 
 

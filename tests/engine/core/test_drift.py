@@ -112,7 +112,7 @@ def test_encoders_do_not_notice_drift(profile: str) -> None:
 
 @pytest.mark.parametrize("solid", [False, True])
 @pytest.mark.parametrize("noise", [0, 30])
-def test_the_same_however_ticks_are_divided(noise: int, solid: bool) -> None:
+def test_a_drifting_robot_moves_the_same_however_ticks_are_grouped(noise: int, solid: bool) -> None:
     ends = []
     for step in (1, 7, 400):
         sim = simulation(TYPICAL, 5, noise=NoiseSpec(motor=noise), solid=solid)

@@ -75,7 +75,7 @@ def new_records() -> Records:
 @pytest.mark.parametrize("turns_deg", [(-3.0, 5.0), (5.0, -3.0), (2.0, 6.0), (4.0, 4.0)], ids=str)
 @pytest.mark.parametrize("early", [0.0, 0.5])
 @pytest.mark.parametrize("kind", [BrickDrive, BrowserDrive])
-def test_ticks_together_are_as_one_by_one(
+def test_driving_many_ticks_at_once_equals_driving_them_one_by_one(
     kind: Callable[[RobotSpec, Pose, float], Drive], early: float, turns_deg: tuple[float, float]
 ) -> None:
     rolled, gliding, even = (kind(RobotSpec(), Pose(900.0, 500.0, 340.0), early) for _ in range(3))

@@ -47,14 +47,14 @@ def record(seed: int, most: int, looks: Random | None = None) -> tuple[Lab, byte
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_the_same_records_however_the_ticks_are_divided_and_whoever_looks(seed: int) -> None:
+def test_motor_columns_do_not_depend_on_how_ticks_are_grouped_or_who_reads(seed: int) -> None:
     _, whole = record(seed, 200)
     assert record(seed, 1)[1] == whole
     assert record(seed, 7, Random(seed))[1] == whole
     assert any(whole)
 
 
-def test_what_a_breakpoint_sees_is_what_is_recorded() -> None:
+def test_motor_values_in_an_instant_equal_the_recorded_ones() -> None:
     lab, data = record(3, 50)
     size = MOTOR_RECORD.size * 3
     end = 64 + size * lab.sink.count
@@ -79,7 +79,7 @@ def test_a_run_has_columns_of_its_motors_only_where_they_have_drivers() -> None:
 
 
 @pytest.mark.parametrize("bit, state", [*enumerate(STATES)])
-def test_a_state_is_1_while_it_applies(bit: int, state: str) -> None:
+def test_the_column_of_a_motors_state_is_1_while_it_applies(bit: int, state: str) -> None:
     column = next(one for one in build_motor_columns("left") if one.name == f"left_{state}")
     assert column.of is not None
     rows = [(0.0, 0.0, 0.0, float(1 << bit)), (0.0, 0.0, 0.0, float(31 - (1 << bit)))]

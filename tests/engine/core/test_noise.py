@@ -115,7 +115,7 @@ def test_clamping_moves_a_value_as_its_errors_do(level: int) -> None:
 
 
 @pytest.mark.parametrize("kind", DISCS)
-def test_pixels_have_the_mean_that_is_read(kind: str) -> None:
+def test_noisy_pixels_sum_up_to_the_noisy_reading(kind: str) -> None:
     disc, level = DISCS[kind]
     channel = disc[0::3]
     sums = sum(channel), sum(channel), sum(channel)
@@ -132,7 +132,7 @@ def test_pixels_have_the_mean_that_is_read(kind: str) -> None:
         )
 
 
-def test_each_number_moves_its_own_channel_upwards() -> None:
+def test_each_random_number_raises_only_its_own_colour_channel() -> None:
     disc, level = DISCS["grey, never clamped"]
     sums = sum(disc[0::3]), sum(disc[1::3]), sum(disc[2::3])
     still = add_noise_to_sums(lambda: disc, COUNT, sums, level, (0.0, 0.0, 0.0))

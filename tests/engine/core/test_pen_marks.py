@@ -100,7 +100,7 @@ def test_a_lifted_robot_draws_no_line(white: Field) -> None:
     assert len(marks.field.marks) - before < 100
 
 
-def test_taking_in_at_once_or_bit_by_bit_is_the_same(white: Field) -> None:
+def test_pen_marks_are_the_same_from_records_at_once_or_one_by_one(white: Field) -> None:
     sim, marks = drawn(white, PenSpec(down=True, x_mm=20.0, y_mm=-30.0))
     again = PenMarks(white, replace(sim.spec))
     again.add_records(sim.read_records(0))

@@ -52,7 +52,7 @@ def test_motors_are_added_behind_the_others() -> None:
     assert [motor.port for motor in robot.extra_motors] == ["outD", "outA"]
 
 
-def test_wheels_on_other_ports() -> None:
+def test_wheels_plugged_in_at_other_ports_become_the_robots_wheels() -> None:
     robot = plug(USUAL, ("outA", "LargeMotor", LEFT), ("outD", "LargeMotor", RIGHT))
     assert (robot.left_port, robot.right_port) == ("outA", "outD")
     assert robot.extra_motors == ()

@@ -84,7 +84,9 @@ TIMES = {
 
 
 @cases("text, seconds", TIMES)
-def test_cost_of_a_call(run: Run, text: str, seconds: float) -> None:
+def test_each_call_takes_the_time_that_the_profile_says(
+    run: Run, text: str, seconds: float
+) -> None:
     assert run(text, profile=TRUE).ended.time_ns / 1e9 == pytest.approx(seconds, abs=1e-6)
 
 
@@ -100,7 +102,9 @@ ON_THE_BRICK = {
 
 
 @cases("text, seconds", ON_THE_BRICK)
-def test_cost_of_an_attribute_on_the_brick(run: Run, text: str, seconds: float) -> None:
+def test_reading_an_attribute_takes_its_time_on_the_brick(
+    run: Run, text: str, seconds: float
+) -> None:
     assert run(text, profile="ev3").ended.time_ns / 1e9 == pytest.approx(seconds, abs=1e-9)
 
 
@@ -136,7 +140,9 @@ STATE = "m = tank_drive.left_motor\nprint(repr(m.state))\nm.on(20)\nprint(repr(m
         ("ev3", ["[]", "['running']", "['holding']"]),
     ],
 )
-def test_state_of_a_motor(run: Run, profile: str, lines: list[str]) -> None:
+def test_the_state_list_of_a_motor_is_that_of_the_profile(
+    run: Run, profile: str, lines: list[str]
+) -> None:
     assert run(STATE, profile=profile).lines == lines
 
 
@@ -144,7 +150,7 @@ CREEPS = "import time\ntank_drive.on(0, 0)\ntime.sleep(5)\ntank_drive.off()"
 
 
 @pytest.mark.parametrize("profile, creeps", [(OLD, True), ("robolab", False), ("ev3", False)])
-def test_motor_noise_on_a_robot_that_was_told_to_stand(
+def test_only_the_old_profile_lets_motor_noise_move_a_standing_robot(
     run: Run, profile: str, creeps: bool
 ) -> None:
     done = run(CREEPS, profile=profile, noise=(0, 100), pose=(1000.0, 500.0, 0.0))
@@ -160,7 +166,7 @@ def test_old_noise_leaves_speeds_alone_that_stay_negative_with_it(run: Run) -> N
     assert quiet == noisy
 
 
-def test_viewers_and_programs_read_the_same(run: Run) -> None:
+def test_recorded_sensor_values_equal_those_that_the_program_read(run: Run) -> None:
     """What a program reads is what the recording gives back, sensor by sensor."""
     from tuisim.engine.runs.frames import build_telemetry_frame
     from tuisim.engine.runs.store import load_run

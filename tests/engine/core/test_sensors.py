@@ -74,13 +74,13 @@ def test_every_kind_has_a_place_on_the_robot_and_a_device() -> None:
 
 
 @each_mount
-def test_a_run_remembers_it(mount: Mount) -> None:
+def test_a_stored_run_keeps_each_sensor_of_its_robot(mount: Mount) -> None:
     run = run_of(robot_with(mount, sensor_of(mount)))
     assert load_run(json.loads(json.dumps(dump_run(run)))) == run
 
 
 @each_mount
-def test_a_robots_file_says_all_of_it_and_may_leave_it_out(mount: Mount, tmp_path: Path) -> None:
+def test_a_robot_file_stores_each_sensor_and_can_leave_it_out(mount: Mount, tmp_path: Path) -> None:
     sensor = sensor_of(mount)
     moved = {
         field.name: getattr(sensor, field.name) + 1.0
@@ -97,7 +97,7 @@ def test_a_robots_file_says_all_of_it_and_may_leave_it_out(mount: Mount, tmp_pat
 
 
 @each_mount
-def test_the_settings_have_a_field_for_each_of_its_numbers(mount: Mount) -> None:
+def test_the_settings_form_has_a_field_for_each_number_of_a_sensor(mount: Mount) -> None:
     sensor = sensor_of(mount)
     plan = plan_spec(run_of(robot_with(mount, sensor)))
     for field in fields(sensor):
@@ -132,7 +132,7 @@ def read_out(kind: SensorKind) -> StoredRun:
 
 
 @each_kind
-def test_a_program_reads_it_in_every_mode(kind: SensorKind) -> None:
+def test_a_program_can_read_each_kind_of_sensor_in_every_mode(kind: SensorKind) -> None:
     run = read_out(kind)
     lines = [row.text for row in run.output.read_all_rows()]
     assert (lines[0], lines[-1]) == (kind.driver_name, "done")
@@ -156,7 +156,7 @@ def test_each_kind_of_sensor_is_in_the_telemetry_as_measured(kind: SensorKind) -
 
 
 @each_kind
-def test_the_panels_show_it(kind: SensorKind) -> None:
+def test_the_panels_show_each_kind_of_sensor(kind: SensorKind) -> None:
     run = read_out(kind)
     last = run.telemetry.last()
     assert last is not None

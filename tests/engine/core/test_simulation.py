@@ -106,7 +106,7 @@ GIVEN = {
 
 
 @pytest.mark.parametrize("profile", GIVEN)
-def test_a_drive_in_a_full_world_gives_what_it_gave(profile: str) -> None:
+def test_a_random_drive_in_a_full_world_gives_the_recorded_rows(profile: str) -> None:
     spec = RunSpec(EQUIPPED, FULL, PROFILES[profile], seed=4)
     sim, dice, mat = (
         build_simulation(spec, MemorySink()),
@@ -137,7 +137,9 @@ STEPPED = {
 
 
 @pytest.mark.parametrize("profile", STEPPED)
-def test_few_ticks_are_run_one_by_one(profile: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_most_ticks_of_a_drive_are_computed_together(
+    profile: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     stepped: list[Simulation] = []
     step = Simulation.tick_once
 

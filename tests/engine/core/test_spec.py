@@ -93,12 +93,12 @@ HOMING = replace(
 
 
 @pytest.mark.parametrize("robot", [ROBOT, HOMING], ids=["further parts", "mechanics"])
-def test_parts_are_kept_when_a_run_is_written_down(robot: RobotSpec) -> None:
+def test_a_stored_run_keeps_the_robots_parts(robot: RobotSpec) -> None:
     run = replace(RUN, robot=robot)
     assert load_run(json.loads(json.dumps(dump_run(run)))) == run
 
 
-def test_what_is_as_usual_is_not_written_down() -> None:
+def test_default_values_are_left_out_of_a_stored_run() -> None:
     robot = dump_run(RUN)["robot"]
     assert not {"left_reversed", "right_reversed", "gear_ratio"} & robot.keys()
     assert (robot["extra_motors"][0], list(robot["touch_sensors"][0])) == (

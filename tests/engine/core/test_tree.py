@@ -39,7 +39,7 @@ Said = Callable[..., str]
         ("profile.motor_law", "brick"),
     ],
 )
-def test_a_value_has_a_path(path: str, value: object) -> None:
+def test_get_value_finds_each_value_of_a_run_by_its_path(path: str, value: object) -> None:
     assert tree.get_value(RUN, path) == value
 
 
@@ -49,7 +49,7 @@ def test_a_wrong_path_into_a_run_raises(path: str) -> None:
         tree.get_value(RUN, path)
 
 
-def test_another_value_leaves_the_rest() -> None:
+def test_putting_a_value_into_a_run_leaves_the_others_unchanged() -> None:
     changed = tree.put_all(
         RUN, {"world.noise.light": 5, "world.start.x_mm": 7.0, "robot.color_sensors.left.y_mm": 1.0}
     )
@@ -89,7 +89,7 @@ def test_another_value_leaves_the_rest() -> None:
         ),
     ],
 )
-def test_a_value_of_python_is_checked(
+def test_putting_a_wrong_value_into_a_run_raises_with_the_reason(
     path: str, value: object, error: type[ConfigError], said: str
 ) -> None:
     with pytest.raises(error) as caught:
@@ -103,7 +103,7 @@ def test_values_of_one_part_are_checked_together() -> None:
     assert (changed.robot.left_port, changed.robot.right_port) == ("outC", "outB")
 
 
-def test_plain_data_of_a_run_are_that_run() -> None:
+def test_a_run_dumped_to_json_loads_as_the_same_run() -> None:
     plain = json.loads(json.dumps(tree.dump_run(RUN)))
     assert tree.load_run(plain) == tree.restore(plain) == RUN
     # What came later is left out where it is as it was.
@@ -125,7 +125,7 @@ def test_plain_data_of_a_run_are_that_run() -> None:
         "robot.pen",
     ],
 )
-def test_data_of_another_kind_are_told(path: str, damage: object) -> None:
+def test_loading_a_run_from_data_of_a_wrong_type_raises(path: str, damage: object) -> None:
     plain: dict[str, object] = json.loads(json.dumps(tree.dump_run(RUN)))
     whole: dict[str, Any] = {"": plain}
     inside: Any = whole
@@ -151,7 +151,7 @@ def test_only_what_comes_from_outside_is_checked() -> None:
         tree.restore(plain)
 
 
-def test_every_leaf_that_an_option_sets_says_what_it_is() -> None:
+def test_every_value_with_an_option_has_a_help_text() -> None:
     lacking = [path for path, value in tree.list_leaves(RunSpec) if value.flags and not value.help]
     assert lacking == []
 
@@ -216,7 +216,9 @@ save_world(build_run_spec(Settings({"friction": 0.25})), "saved.toml")
 
 
 @pytest.mark.slow
-def test_one_more_value_of_the_world_is_one_line(with_friction: Said, tmp_path: Path) -> None:
+def test_a_value_added_to_the_world_gets_option_magic_and_file_key(
+    with_friction: Said, tmp_path: Path
+) -> None:
     def friction() -> float:
         return float(
             json.loads(with_friction("runs", "show", "last", "--json"))["values"]["friction"]

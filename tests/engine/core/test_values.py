@@ -61,7 +61,9 @@ TYPICAL = DriftSpec(0.5, 1.0, 1.0, 1.0, 3.0, 0.05, 2.0, 14.0, 100.0, 10.0, 5.0)
         ("part", {"slip_pc": "typical", "gyro_dps": 2}, DriftSpec(slip_pc=1.0, gyro_dps=2.0)),
     ],
 )
-def test_a_file_gives_it(kind: str, data: object, found: object) -> None:
+def test_parse_data_reads_each_kind_of_value_from_a_file(
+    kind: str, data: object, found: object
+) -> None:
     value = KINDS[kind].parse_data(data)
     assert (value, type(value)) == (found, type(found))
 
@@ -90,13 +92,15 @@ def test_a_file_gives_it(kind: str, data: object, found: object) -> None:
         ("part", {"gyro_dps": True}, "must be typical, or a number from 0 to 20, got true"),
     ],
 )
-def test_a_wrong_value_of_a_file_is_told(kind: str, data: object, said: str) -> None:
+def test_parse_data_refuses_wrong_values_with_what_is_allowed(
+    kind: str, data: object, said: str
+) -> None:
     with pytest.raises(WrongValue) as caught:
         KINDS[kind].parse_data(data)
     assert caught.value.message.startswith(said)
 
 
-def test_one_of_several_is_told_by_its_place() -> None:
+def test_a_wrong_value_in_a_list_is_named_by_its_place() -> None:
     for kind, data in (("numbers", [1, 10]), ("choices", ["a", "c"])):
         with pytest.raises(WrongValue) as caught:
             KINDS[kind].parse_data(data)
@@ -125,7 +129,7 @@ def test_one_of_several_is_told_by_its_place() -> None:
         ("part", "typical gyro_dps=0", replace(TYPICAL, gyro_dps=0.0), "typical gyro_dps=0"),
     ],
 )
-def test_an_option_or_a_form_gives_it_and_shows_it(
+def test_each_kind_of_value_is_read_from_text_and_formatted_back(
     kind: str, text: str, found: object, again: str
 ) -> None:
     value = parse(KINDS[kind], text, "-v")

@@ -18,5 +18,7 @@ from tuisim.engine.runs.arrays import find_spans
         (".##.#", [[1, 3], [4, 5]]),
     ],
 )
-def test_a_stretch_ends_after_its_last_true_value(text: str, spans: list[list[int]]) -> None:
+def test_find_spans_gives_start_and_end_of_each_run_of_true_values(
+    text: str, spans: list[list[int]]
+) -> None:
     assert find_spans(np.array([letter == "#" for letter in text], np.bool_)).tolist() == spans

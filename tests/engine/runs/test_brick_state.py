@@ -22,13 +22,13 @@ def row(text: str, stream: Stream) -> OutputRow:
     return OutputRow(text, 1, 10, 3, stream)
 
 
-def test_untouched_brick_is_blank() -> None:
+def test_a_brick_without_output_is_blank() -> None:
     face = BrickState().update_face([row("Colour: 3", Stream.STDOUT)])
     assert face == BrickState()
     assert not any(face.picture)
 
 
-def test_each_stream_comes_back() -> None:
+def test_the_bricks_state_has_the_last_lights_picture_and_text_of_the_output() -> None:
     picture = random.Random(5).randbytes(len(BLANK))
     screen = TextScreen(14, 5, ("hello", "", "", "", ""), ((0, 1, 3),))
     lights = {"left red": 255, "left green": 0, "right red": 7, "right green": 128}
@@ -42,7 +42,7 @@ def test_each_stream_comes_back() -> None:
     assert face == BrickState(lights, picture, screen, True)
 
 
-def test_newest_screen_is_shown() -> None:
+def test_the_newest_screen_of_text_or_picture_is_shown() -> None:
     screen = TextScreen(14, 5, ("",) * 5)
     face = BrickState().update_face(
         [row(build_console_row(screen), Stream.CONSOLE), row(display_row(BLANK), Stream.DISPLAY)],
@@ -51,7 +51,7 @@ def test_newest_screen_is_shown() -> None:
     assert not face.shows_text
 
 
-def test_the_last_sound_is_kept() -> None:
+def test_the_bricks_state_has_the_last_sound() -> None:
     assert (
         BrickState()
         .update_face(
@@ -66,7 +66,7 @@ def test_the_last_sound_is_kept() -> None:
     )
 
 
-def test_motors_turn_evenly_on() -> None:
+def test_motors_without_a_newer_row_are_drawn_turning_on_evenly() -> None:
     face = BrickState().update_face(
         [row(build_motors_row([(90.0, -50.0), (1.5, 0.0)]), Stream.MOTORS)]
     )

@@ -181,7 +181,7 @@ def test_what_sqlite_leaves_of_a_catalogue_that_cannot_be_made_is_removed(tmp_pa
 
 
 @pytest.mark.slow
-def test_two_processes_start_runs_at_once(tmp_path: Path) -> None:
+def test_runs_started_by_two_processes_at_once_get_different_numbers(tmp_path: Path) -> None:
     command = [sys.executable, "-c", MANY, str(tmp_path / "home")]
     children = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
     numbers = [int(line) for child in children for line in child.communicate()[0].split()]
@@ -193,7 +193,9 @@ def test_two_processes_start_runs_at_once(tmp_path: Path) -> None:
     ]
 
 
-def test_a_full_disk_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_error_of_the_catalogue_names_a_full_disk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / CATALOGUE_FILE).mkdir()
     monkeypatch.setattr("shutil.disk_usage", lambda _: SimpleNamespace(free=0))
     with pytest.raises(

@@ -89,7 +89,7 @@ def list_texts(run: Run, text: str, profile: str) -> list[str]:
 
 
 @cases("program, profile, beginnings", CAME)
-def test_what_was_asked_stands_beside_what_came(
+def test_a_commands_event_shows_the_asked_and_the_reached_values(
     run: Run, program: str, profile: str, beginnings: list[str]
 ) -> None:
     left = iter(list_texts(run, program, profile))
@@ -219,6 +219,6 @@ def test_events_beyond_the_limit_are_left_out(
     assert len(index) == 3
 
 
-def test_words_that_search_for_commands() -> None:
+def test_parse_command_search_reads_only_words_that_begin_with_command() -> None:
     texts = ("command", " Command  run to ", "commands", "command < 5", "sample command")
     assert [parse_command_search(text) for text in texts] == ["", "run to", None, "< 5", None]

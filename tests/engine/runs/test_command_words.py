@@ -43,7 +43,9 @@ WORDS = {
 
 
 @cases("call, values, text", WORDS)
-def test_a_command_in_words(call: Call, values: tuple[float, ...], text: str) -> None:
+def test_each_recorded_command_is_described_in_words(
+    call: Call, values: tuple[float, ...], text: str
+) -> None:
     filler = nan if call is Call.PLUG else 0.0
     record = (*values, *(filler,) * (MAX_VALUES - len(values)))
     main = record[CALL_WORDS[call].main]

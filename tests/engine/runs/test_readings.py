@@ -25,7 +25,7 @@ TOUCH = READING_CODES["in1", "TOUCH"]
 PLACE = READING_CODES["outD", "position"]
 
 
-def test_every_reading_can_be_read_at_once(tmp_path: Path) -> None:
+def test_each_recorded_reading_can_be_read_while_the_run_goes_on(tmp_path: Path) -> None:
     writer = ReadingsWriter(tmp_path)
     assert len(read_readings(tmp_path).rows) == 0
     expected = []
@@ -43,7 +43,7 @@ def test_every_reading_can_be_read_at_once(tmp_path: Path) -> None:
     assert set(read.find(("position",))["port"]) == set(range(len(READING_PORTS)))
 
 
-def test_the_newest_time_is_known(tmp_path: Path) -> None:
+def test_the_writer_knows_which_readings_it_has_at_the_newest_time(tmp_path: Path) -> None:
     writer = ReadingsWriter(tmp_path)
     assert not writer.has(TOUCH)
     writer.add(TOUCH, 5, 1)
@@ -99,7 +99,9 @@ def _replace(path: Path, begin: int, data: bytes) -> None:
         (HEADER_BYTES, b"\x09", "the records are not readings"),
     ],
 )
-def test_a_damaged_file_is_refused(tmp_path: Path, begin: int, data: bytes, complaint: str) -> None:
+def test_a_damaged_file_of_readings_is_refused(
+    tmp_path: Path, begin: int, data: bytes, complaint: str
+) -> None:
     writer = ReadingsWriter(tmp_path)
     writer.add(TOUCH, 1, 1)
     writer.add(TOUCH, 2, 1)
@@ -109,7 +111,7 @@ def test_a_damaged_file_is_refused(tmp_path: Path, begin: int, data: bytes, comp
         read_readings(tmp_path)
 
 
-def test_a_truncated_file_has_the_readings_that_are_left(tmp_path: Path) -> None:
+def test_a_truncated_file_of_readings_gives_those_that_are_left(tmp_path: Path) -> None:
     writer = ReadingsWriter(tmp_path)
     for time_ns in range(9):
         writer.add(TOUCH, time_ns, 1)
@@ -119,7 +121,7 @@ def test_a_truncated_file_has_the_readings_that_are_left(tmp_path: Path) -> None
     assert (len(read.rows), read.left_out) == (4, 5)
 
 
-def test_a_run_without_a_record_says_what_to_do(tmp_path: Path) -> None:
+def test_reading_a_run_without_recorded_readings_says_what_to_do(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="no record of what the program read"):
         read_readings(tmp_path)
     assert not len(read_readings(tmp_path, is_over=False).rows)

@@ -52,7 +52,7 @@ def assert_is_replayed(done: Done, actions: Sequence[UserAction] = ()) -> None:
 
 
 @pytest.mark.parametrize("profile", sorted(PROFILES))
-def test_a_random_program_is_worked_out_again(run: Run, profile: str) -> None:
+def test_a_random_programs_run_is_replayed_to_the_same_records(run: Run, profile: str) -> None:
     text = draw_program(len(profile), profile)
     assert_is_replayed(run(text, profile=profile, prelude="none", seed=3))
 
@@ -60,7 +60,9 @@ def test_a_random_program_is_worked_out_again(run: Run, profile: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("profile", sorted(PROFILES))
-def test_random_programs_are_worked_out_again(run: Run, profile: str, seed: int) -> None:
+def test_runs_of_many_random_programs_are_replayed_to_the_same_records(
+    run: Run, profile: str, seed: int
+) -> None:
     how: dict[str, Any] = {"noise": (5, 20 * (seed % 3)), "solid": seed % 2 == 0, "seed": seed}
     actions = ACTIONS if seed % 4 == 0 else ()
     done = run(
@@ -69,12 +71,12 @@ def test_random_programs_are_worked_out_again(run: Run, profile: str, seed: int)
     assert_is_replayed(done, actions)
 
 
-def test_what_a_user_does_is_done_again(run: Run) -> None:
+def test_a_replay_repeats_the_users_actions(run: Run) -> None:
     done = run(draw_program(7, "robolab"), prelude="none", actions=ACTIONS)
     assert_is_replayed(done, ACTIONS)
 
 
-def test_the_prelude_may_give_commands(run: Run) -> None:
+def test_a_run_whose_commands_come_from_the_prelude_is_replayed(run: Run) -> None:
     assert_is_replayed(run("tank_drive.on_for_seconds(50, 20, 0.5)\n", profile="nbev3devsim"))
 
 
@@ -147,14 +149,14 @@ def test_a_command_that_no_program_can_give_is_named(
         _replay(command)
 
 
-def test_time_does_not_go_back() -> None:
+def test_a_replay_refuses_commands_whose_time_goes_back() -> None:
     stop = Call.STOP, ()
     _replay((10, 0, *stop), (10, 1, *stop))
     with pytest.raises(LogError, match=r"at 0\.50 s there is a command that goes back in time"):
         _replay((600_000_000, 0, *stop), (500_000_000, 0, *stop))
 
 
-def test_what_takes_too_long_to_work_out_again_ends() -> None:
+def test_a_replay_that_takes_too_long_ends_with_an_error() -> None:
     spec = RunSpec(RobotSpec(), WorldSpec(), PROFILES["robolab"])
 
     def command() -> Iterator[SimulationCommand]:

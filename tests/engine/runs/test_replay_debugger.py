@@ -37,7 +37,7 @@ print('over')
 """
 
 
-def test_places_in_one_tick_are_in_the_order_of_its_lines() -> None:
+def test_positions_in_one_tick_are_ordered_by_their_lines() -> None:
     places = [
         Position(4),
         Position(5, AFTER_TICK),
@@ -89,14 +89,18 @@ def recording() -> Recording:
     return Recording(RunStore().load_run(run.run_id))
 
 
-def test_variables_at_instants_forwards_and_back(recording: Recording, looker: Looker) -> None:
+def test_variables_are_right_at_instants_visited_forwards_and_back(
+    recording: Recording, looker: Looker
+) -> None:
     for tick, n in ((105, "10"), (205, "20"), (205, "20"), (55, "5")):
         looker.debugger.go(recording, Position(tick), Inspect())
         paused, names = looker.answer()
         assert (paused.tick, names["n"], names["m"]) == (tick, n, str(int(n) ** 2))
 
 
-def test_lines_back_from_an_instant(recording: Recording, looker: Looker) -> None:
+def test_stepping_two_lines_back_from_an_instant_holds_at_that_line(
+    recording: Recording, looker: Looker
+) -> None:
     looker.debugger.lines_back(recording, Position(105), 2, Inspect())
     paused, names = looker.answer()
     assert (paused.line, names["n"], names["m"]) == (3, "10", "81")
@@ -112,7 +116,9 @@ def test_a_line_in_a_tick_is_where_it_began(recording: Recording, looker: Looker
     assert (paused.line, paused.ordinal, names["m"]) == (4, BEFORE_NEXT_TICK, "121")
 
 
-def test_a_step_from_an_instant(recording: Recording, looker: Looker) -> None:
+def test_a_step_from_a_past_instant_holds_at_the_next_line(
+    recording: Recording, looker: Looker
+) -> None:
     looker.debugger.go_on(recording, Position(105), StepLine(LineStep.INTO), Inspect())
     paused, _ = looker.answer()
     assert (paused.line, paused.tick) == (2, 110)

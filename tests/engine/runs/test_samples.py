@@ -59,12 +59,14 @@ TEXTS = {
 
 
 @cases("text, expected", SAMPLES)
-def test_line_is_a_sample(text: str, expected: tuple[str, float, float | None]) -> None:
+def test_a_printed_name_and_number_is_read_as_a_sample(
+    text: str, expected: tuple[str, float, float | None]
+) -> None:
     assert parse_sample(text) == expected
 
 
 @cases("text", TEXTS)
-def test_line_is_only_text(text: str) -> None:
+def test_printed_text_without_name_and_number_is_no_sample(text: str) -> None:
     assert parse_sample(text) is None
 
 
@@ -89,7 +91,7 @@ def test_a_sample_has_the_time_that_it_prints() -> None:
         "a line": ("", "matches", "x$", ValueSource.PRINT, ["max"]),
     },
 )
-def test_lines_of_which_a_condition_is_true(
+def test_select_rows_gives_the_printed_lines_that_meet_a_condition(
     name: str, sign: str, value: str, source: ValueSource, texts: list[str]
 ) -> None:
     printed = ("a: 1", "max", "a: 3", "b: 4")

@@ -27,7 +27,7 @@ from tuisim.engine.runs.side_files import (
 MISSING = FileRead("a", there=False)
 
 
-def test_state_of_a_file(tmp_path: Path) -> None:
+def test_read_state_gives_a_files_size_time_and_checksum(tmp_path: Path) -> None:
     path = tmp_path / "a"
     path.write_bytes(b"123456789")
     os.utime(path, ns=(5, 5))
@@ -45,7 +45,7 @@ def test_pipes_in_place_of_lists_and_locks_do_not_block(tmp_path: Path) -> None:
     assert is_held(tmp_path) is False
 
 
-def test_a_large_file_is_not_read(tmp_path: Path) -> None:
+def test_the_checksum_of_a_large_file_is_not_computed(tmp_path: Path) -> None:
     with open(tmp_path / "a", "wb") as file:
         file.truncate(MAX_SUMMED_BYTES + 1)
     found = read_state(str(tmp_path / "a"))
@@ -60,7 +60,7 @@ def test_folders_and_devices_have_no_file_state(path: str) -> None:
     assert read_state(path) is None
 
 
-def test_state_of_no_file(tmp_path: Path) -> None:
+def test_read_state_says_that_a_missing_file_is_not_there(tmp_path: Path) -> None:
     assert read_state(str(tmp_path / "a")) == FileRead(str(tmp_path / "a"), there=False)
 
 
@@ -105,5 +105,5 @@ def test_a_damaged_list_is_named(row: str, tmp_path: Path) -> None:
         read_reads(tmp_path)
 
 
-def test_no_list_is_no_files(tmp_path: Path) -> None:
+def test_a_run_without_a_list_of_read_files_has_none(tmp_path: Path) -> None:
     assert read_reads(tmp_path) == FilesRead()

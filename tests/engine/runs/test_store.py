@@ -34,7 +34,9 @@ from tuisim.engine.runs.store import NewRun, RunStore, load_run
 FINISHED = Ended(End.FINISHED, 100, 1_000_000_000)
 
 
-def test_run_is_stored_whole(record: Callable[..., Recorder], noisy_spec: RunSpec) -> None:
+def test_a_stored_run_is_loaded_as_it_was_recorded(
+    record: Callable[..., Recorder], noisy_spec: RunSpec
+) -> None:
     recorder = record(noisy_spec, live=True, options={"speed": 2.0}, field={"width_px": 3})
     recorder.drive(100, 100, 5)
     recorder.print("a: 1", line=2)
@@ -49,7 +51,9 @@ def test_run_is_stored_whole(record: Callable[..., Recorder], noisy_spec: RunSpe
     assert (run.telemetry.count, len(run.output.read_all_rows()), run.notes) == (6, 1, ())
 
 
-def test_catalogue_says_how_it_went(logged: StoredRun, store: RunStore) -> None:
+def test_the_list_of_runs_has_the_facts_and_end_of_a_run(
+    logged: StoredRun, store: RunStore
+) -> None:
     (info,) = store.runs()
     assert info == RunInfo(
         1,
@@ -68,7 +72,9 @@ def test_catalogue_says_how_it_went(logged: StoredRun, store: RunStore) -> None:
     )
 
 
-def test_run_file_is_what_others_may_read(logged: StoredRun) -> None:
+def test_the_run_file_has_its_documented_keys_and_no_temporary_neighbours(
+    logged: StoredRun,
+) -> None:
     data = json.loads((logged.folder / RUN_FILE).read_bytes())
     assert list(data) == [
         "format",
@@ -92,7 +98,9 @@ def test_run_file_is_what_others_may_read(logged: StoredRun) -> None:
 @pytest.mark.parametrize(
     "how", ["id", "start of the id", "number", "last", "folder", "folder as text"]
 )
-def test_a_run_is_found_by_each_of_its_names(logged: StoredRun, store: RunStore, how: str) -> None:
+def test_a_run_is_found_by_id_number_folder_or_last(
+    logged: StoredRun, store: RunStore, how: str
+) -> None:
     names: dict[str, str | Path] = {
         "id": logged.id,
         "start of the id": logged.id[:-2],
@@ -241,7 +249,7 @@ def test_killed_run_keeps_its_rows(
     assert run.time_s > 0
 
 
-def test_end_that_comes_late_counts(
+def test_an_end_recorded_after_a_run_was_listed_as_interrupted_counts(
     record: Callable[..., Recorder], spec: RunSpec, store: RunStore
 ) -> None:
     recorder = record(spec)
@@ -254,7 +262,7 @@ def test_end_that_comes_late_counts(
 @pytest.mark.parametrize(
     "listed", ["", Unended.INTERRUPTED], ids=["not listed", "listed as interrupted"]
 )
-def test_end_that_never_reached_the_catalogue_counts(
+def test_a_runs_end_that_the_catalogue_lacks_is_taken_from_the_run_file(
     logged: StoredRun, store: RunStore, listed: str
 ) -> None:
     (before,) = store.runs()

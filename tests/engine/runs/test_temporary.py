@@ -95,7 +95,7 @@ def test_where_no_folder_can_be_created_it_is_told(place: Path) -> None:
         TemporaryRun(place / "file")
 
 
-def test_a_run_is_read_as_it_was_begun_whatever_the_program_does_to_its_file(place: Path) -> None:
+def test_a_temporary_run_is_loaded_as_begun_though_its_file_was_changed(place: Path) -> None:
     with TemporaryRun(place) as runs:
         new = runs.create_run(Program("p.py", "x = 1\n"), SPEC)
         (new.folder / RUN_FILE).write_text("rubbish")
@@ -106,7 +106,9 @@ def test_a_run_is_read_as_it_was_begun_whatever_the_program_does_to_its_file(pla
             runs.load_run(new.folder)
 
 
-def test_in_memory_only_where_there_is_room(place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_batchs_folder_is_in_memory_only_if_there_is_room(
+    place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     memory = place / "memory"
     memory.mkdir()
     monkeypatch.setattr(temporary, "_MEMORY", memory)

@@ -74,7 +74,7 @@ def put(writer: TelemetryWriter, count: int) -> None:
         writer.publish(tick + 1)
 
 
-def test_run_without_files_is_empty(tmp_path: Path) -> None:
+def test_a_run_without_recorded_files_is_read_as_empty(tmp_path: Path) -> None:
     telemetry = TelemetryView(tmp_path)
     output = OutputView(tmp_path)
     assert (telemetry.count, telemetry.last(), len(telemetry.array())) == (0, None, 0)
@@ -83,12 +83,12 @@ def test_run_without_files_is_empty(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"", bytes(4096)], ids=["empty", "no header yet"])
-def test_file_that_is_just_made_is_empty(tmp_path: Path, content: bytes) -> None:
+def test_a_recording_that_was_just_created_is_read_as_empty(tmp_path: Path, content: bytes) -> None:
     (tmp_path / TELEMETRY_FILE).write_bytes(content)
     assert TelemetryView(tmp_path).count == 0
 
 
-def test_view_finds_the_file_when_it_comes(tmp_path: Path) -> None:
+def test_a_view_opened_before_its_file_exists_reads_it_later(tmp_path: Path) -> None:
     view = TelemetryView(tmp_path)
     assert view.last() is None
     writer = TelemetryWriter(tmp_path)
@@ -114,7 +114,7 @@ def test_a_view_that_grows_makes_no_third_copy(tmp_path: Path) -> None:
     writer.close()
 
 
-def test_view_follows_a_file_beyond_its_map(tmp_path: Path) -> None:
+def test_a_view_reads_records_added_beyond_its_memory_map(tmp_path: Path) -> None:
     writer = TelemetryWriter(tmp_path)
     put(writer, 10)
     view = TelemetryView(tmp_path)
@@ -412,7 +412,7 @@ def test_output_that_a_program_changes_later_is_damage_and_no_error(tmp_path: Pa
 @pytest.mark.parametrize(
     "mode, is_damage", [(0o600, False), (0o000, True)], ids=["by the machine", "by its program"]
 )
-def test_a_recording_that_may_not_be_read(
+def test_a_recording_without_read_permission_is_named(
     mode: int, is_damage: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def forbidden(path: Path) -> None:

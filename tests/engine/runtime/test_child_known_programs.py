@@ -52,7 +52,7 @@ def test_a_program_is_compiled_when_it_is_run_again(monkeypatch: pytest.MonkeyPa
     assert len(turns) == 2
 
 
-def test_the_same_text_in_another_file_is_another_program() -> None:
+def test_the_same_text_under_another_file_name_is_compiled_anew() -> None:
     known = KnownPrograms()
     codes = [known.code(Program(name, "x = 1"), False) for name in ("a.py", "b.py", "a.py", "b.py")]
     assert [code and code.co_filename for code in codes] == [None, None, "a.py", "b.py"]
@@ -66,7 +66,7 @@ def test_a_program_whose_annotations_are_dropped_is_another_program() -> None:
     assert names == [None, None, False, True]
 
 
-def test_not_more_programs_are_kept_than_that() -> None:
+def test_the_number_of_remembered_programs_is_limited() -> None:
     known = KnownPrograms()
     for number in range(3 * MAX_KNOWN):
         known.code(Program("p.py", f"x = {number}"), False)

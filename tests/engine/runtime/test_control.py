@@ -23,7 +23,7 @@ from tuisim.engine.runs.child import process
 GOES_ON = "import time\nwhile True:\n    try: time.sleep(0.01)\n    except: pass"
 
 
-def test_stop_before_the_first_line(start: Start) -> None:
+def test_a_run_can_be_stopped_before_its_first_line(start: Start) -> None:
     run = start("while True: pass", live=True)
     run.stop()
     ended = run.wait(PATIENCE_S)
@@ -66,7 +66,7 @@ def test_a_program_whose_turn_does_not_come_is_not_taken_for_stuck(
     assert not killed
 
 
-def test_pause_steps_and_resume(start: Start) -> None:
+def test_a_paused_run_steps_by_ticks_and_resumes(start: Start) -> None:
     run = start("tank_drive.on(50, 50)\nimport time\ntime.sleep(0.2)", live=True, start_paused=True)
     until(run, lambda: run.paused)
     assert run.telemetry.count == 1
@@ -97,7 +97,7 @@ def test_user_actions_take_effect_right_before_a_tick_and_are_written_down(start
     ]
 
 
-def test_answer_from_the_user(start: Start) -> None:
+def test_input_gets_the_answer_that_the_user_sends(start: Start) -> None:
     run = start("print('hello ' + input('Name? '))", live=True, asks_user=True)
     until(run, lambda: run.waiting_for_input == "Name? ")
     run.send(Answer("Ada"))

@@ -75,7 +75,9 @@ ENDS = {
 )
 @cases("text, end, exit_code", ENDS)
 @pytest.mark.usefixtures("real_start")
-def test_end_of_a_program(run: Run, text: str, end: str, exit_code: int) -> None:
+def test_each_way_a_program_ends_has_its_end_and_exit_code(
+    run: Run, text: str, end: str, exit_code: int
+) -> None:
     done = run(text, time_limit_s=1.0)
     assert (done.ended.end, done.ended.exit_code) == (end, exit_code)
     if ("A: 1" in text and end != "raised") or text.startswith("print('A: 1')\n"):

@@ -99,7 +99,7 @@ def test_by_the_rules_of_the_course_a_run_ends_with_its_program(run: Run) -> Non
     assert done.ended.time_ns < 1_010_000_000
 
 
-def test_a_move_counts_to_the_limit(run: Run) -> None:
+def test_a_move_that_goes_on_after_the_program_ends_at_the_time_limit(run: Run) -> None:
     done = run(
         _EV3DEV2 + "left.on_for_seconds(20, 9, block=False)", profile="ev3", time_limit_s=2.0
     )

@@ -26,7 +26,7 @@ c.printf(b'no end')
 
 
 @pytest.mark.usefixtures("real_start")
-def test_its_order_and_time_are_those_of_the_program(run: Run) -> None:
+def test_raw_output_is_stored_in_the_order_and_at_the_time_it_was_written(run: Run) -> None:
     done = run(MIXED, prelude="none")
     rows = [
         (row.text, row.stream, row.time_ns, row.line) for row in done.run.output.read_all_rows()
@@ -40,7 +40,7 @@ def test_its_order_and_time_are_those_of_the_program(run: Run) -> None:
     ]
 
 
-def test_more_than_fits_at_once_is_kept(run: Run) -> None:
+def test_raw_output_larger_than_the_buffer_is_stored_whole(run: Run) -> None:
     size = 2 * RAW_BYTES + 5
     done = run(f"import os\nprint(os.write(1, b'x' * {size}), end='')", prelude="none")
     assert done.lines == ["x" * size + str(size)]

@@ -17,7 +17,7 @@ def turn(counter: Counter, begin_ms: int, end_ms: int, speed_dps: float) -> None
 
 
 @pytest.mark.parametrize("speed_dps", [60.4, -60.4, 250.7, 1050.2, -1560.9])
-def test_a_steady_speed_is_cut_off(speed_dps: float) -> None:
+def test_a_steady_speed_read_from_counts_is_rounded_towards_zero(speed_dps: float) -> None:
     counter = Counter()
     turn(counter, 0, 600, speed_dps)
     assert counter.measure_speed_dps() == int(speed_dps)
@@ -34,7 +34,7 @@ def test_the_speed_of_a_motor_that_stops_lingers() -> None:
     assert speeds.index(0) * 10 == pytest.approx(204, abs=10)
 
 
-def test_turning_back_counts_the_same_counts() -> None:
+def test_a_motor_that_turns_back_counts_the_same_positions_again() -> None:
     counter = Counter()
     counter.record(0, 2 * LOOK, 0.1, 3.1, 0.5)
     counter.record(2 * LOOK, 2 * LOOK, 3.1, -3.1, 0.5)

@@ -54,13 +54,13 @@ EXACT = 152
 """In so many recordings every number is the same."""
 
 
-def test_there_are_as_many_recordings_as_the_text_says() -> None:
+def test_there_are_161_recordings_of_motors_of_which_30_are_quick() -> None:
     assert len(RECORDINGS) == 161 and len(set(QUICK)) == 30 and set(QUICK) < set(RECORDINGS)
 
 
 @pytest.mark.quick_cases(*QUICK)
 @pytest.mark.parametrize("name", RECORDINGS)
-def test_a_motor_does_what_the_driver_did(name: str) -> None:
+def test_simulated_motors_reproduce_recorded_positions_and_states(name: str) -> None:
     bench = Bench(RECORDINGS[name]).run()
     assert bench.states == RECORDINGS[name].states
     for samples, recorded in zip(bench.samples, RECORDINGS[name].samples, strict=True):
@@ -117,7 +117,7 @@ def play(motor: DriverMotor, seed: int, looks: random.Random | None) -> Iterator
 
 
 @for_each(seed=range(30))
-def test_a_motor_moves_the_same_however_often_one_looks(seed: int) -> None:
+def test_reading_a_motor_more_often_does_not_change_how_it_moves(seed: int) -> None:
     jiffies = Jiffies(seed, 137 * seed)
     motors = build_motor(jiffies=jiffies), build_motor(jiffies=jiffies)
     shown = [*play(motors[0], seed, None)]

@@ -35,7 +35,7 @@ def test_a_motor_at_rest_needs_a_torque_to_start(duty: int, turns: bool) -> None
     assert bool(steady_dps(Axle(LARGE, 8.0), duty)) is turns
 
 
-def test_the_way_is_the_same_in_any_steps() -> None:
+def test_an_axle_turns_equally_far_whatever_the_time_steps() -> None:
     whole = Axle(LARGE, 8.0)
     parts = Axle(LARGE, 8.0)
     for duty in (70, -40, 0, None):

@@ -81,7 +81,7 @@ class Lab:
 @pytest.mark.parametrize("world", [WORLD, NOISY], ids=["still", "noisy"])
 # In the last one an obstacle pushes a wheel back that its control holds.
 @pytest.mark.parametrize("seed", [*range(4), 2333])
-def test_the_same_bytes_however_the_ticks_are_divided_and_whoever_looks(
+def test_records_do_not_depend_on_how_ticks_are_grouped_or_who_reads(
     seed: int, world: WorldSpec
 ) -> None:
     recorded = Lab(world, seed=seed).run(seed, 1000)
@@ -90,7 +90,7 @@ def test_the_same_bytes_however_the_ticks_are_divided_and_whoever_looks(
     assert Lab(world, seed=seed).run(seed, 1, random.Random(~seed)) == recorded
 
 
-def test_a_wheel_has_its_share_of_the_robot() -> None:
+def test_a_wheels_motor_moves_its_share_of_the_robots_mass() -> None:
     wheel = load_wheel(LARGE, RobotSpec())
     assert wheel.inertia_kg_m2 - LARGE.inertia_kg_m2 == pytest.approx(0.00038, rel=0.01)
     assert wheel.friction_nm - LARGE.friction_nm == pytest.approx(0.006, rel=0.01)

@@ -140,7 +140,9 @@ def test_the_corner_of_the_seen_box_is_rounded_as_in_the_old_simulator(
         "hue 359": ((255, 0, 1), 5),
     },
 )
-def test_each_color_has_its_code(rgb: tuple[int, int, int], code: int) -> None:
+def test_find_color_code_gives_the_lego_code_of_each_colour(
+    rgb: tuple[int, int, int], code: int
+) -> None:
     assert color.find_color_code(*rgb) == code
 
 

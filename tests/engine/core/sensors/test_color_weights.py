@@ -40,7 +40,9 @@ def seen(field: Field, x_mm: float, strategy: str, light: int = 0) -> float:
 
 
 @pytest.mark.parametrize("x_mm, reds", EDGE.items())
-def test_readings_across_an_edge(grey_bands: Field, x_mm: int, reds: tuple[float, ...]) -> None:
+def test_readings_across_an_edge_follow_the_weights_of_the_disc(
+    grey_bands: Field, x_mm: int, reds: tuple[float, ...]
+) -> None:
     found = tuple(seen(grey_bands, float(x_mm), strategy) for strategy in STRATEGIES)
     assert found == pytest.approx(reds, abs=0.005)
 

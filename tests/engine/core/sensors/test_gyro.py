@@ -46,7 +46,9 @@ def test_an_angle_misses_what_is_faster_than_the_gyro_senses(sign: int) -> None:
 
 @pytest.mark.parametrize("robot", [SMALL, RobotSpec()])
 @pytest.mark.parametrize("drift", [NO_DRIFT, DriftSpec(gyro_scale_pc=2.0)])
-def test_the_same_however_ticks_are_divided(drift: DriftSpec, robot: RobotSpec) -> None:
+def test_a_limited_gyro_reads_the_same_however_ticks_are_grouped(
+    drift: DriftSpec, robot: RobotSpec
+) -> None:
     ends = {
         (sim.pose, sim.drive.gyro_zero_deg)
         for sim in (spin(1, "pybricks4", drift, step, robot) for step in (1, 7, 300))
@@ -64,7 +66,7 @@ def test_a_drifting_gyro_counts_too_little_of_a_clockwise_turn(sign: int, share:
     assert instant.gyro_rate_dps == pytest.approx(-share * instant.turn_rate_dps / share, abs=0.51)
 
 
-def test_no_limit_without_one() -> None:
+def test_a_profile_without_a_gyro_limit_reads_any_rate() -> None:
     instant = spin(1, "lego-micropython", NO_DRIFT, 300, SMALL).build_instant()
     free = replace(instant, profile=PROFILES["robolab"])
     assert free.gyro_rate_dps == round(-instant.turn_rate_dps) > 440

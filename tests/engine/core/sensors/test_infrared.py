@@ -25,7 +25,7 @@ EYE = InfraredSpec(x_mm=0, y_mm=50)
         (600, 450, 0, 51),
     ],
 )
-def test_the_nearest_surface_ahead_counts(
+def test_an_infrared_sensor_reads_the_nearest_surface_ahead(
     x_mm: float, y_mm: float, heading_deg: float, percent: int
 ) -> None:
     world = WorldSpec(obstacles=(Obstacle(1000, 500, 100, 100),), walls=False)
@@ -53,7 +53,7 @@ def test_a_beacon_is_seen_on_its_channel(x_mm: float, y_mm: float, found: tuple[
     assert seek(Pose(400, 500, 0), EYE, hidden) == (0, -128) * 4
 
 
-def test_the_later_of_two_presses_counts() -> None:
+def test_the_later_of_two_overlapping_presses_of_the_remote_counts() -> None:
     world = WorldSpec(
         remote=(
             RemotePress(("top_left",), 1.0, 3.0),

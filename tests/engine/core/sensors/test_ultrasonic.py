@@ -26,7 +26,9 @@ POST = WorldSpec(obstacles=(Obstacle(900, 500, 200, 200),))
         (-719.9 + 40.0, 720),
     ],
 )
-def test_walls_from_the_middle(heading_deg: float, expected_mm: int) -> None:
+def test_the_ultrasonic_sensor_measures_the_distance_to_each_wall(
+    heading_deg: float, expected_mm: int
+) -> None:
     assert measure_distance_mm(Pose(1000, 500, heading_deg), SENSOR, WALLS) == expected_mm
 
 

@@ -31,7 +31,7 @@ def read(
     ("distance_mm", "profile", "shown"),
     [(29, EV3, 2550), (30, EV3, 30), (29, ROBOLAB, 29), (0, EV3, 2550), (1000, EV3, 1000)],
 )
-def test_what_is_too_close_gives_no_echo(
+def test_an_object_too_close_to_the_ultrasonic_sensor_gives_no_echo(
     distance_mm: float, profile: ProfileSpec, shown: int
 ) -> None:
     assert read(distance_mm, profile) == shown
@@ -45,7 +45,7 @@ def test_a_bias_is_drawn_once_a_run_and_adds_to_each_echo() -> None:
     assert draw_echo_bias_mm("in4", BIASED, 0) != drawn[0]
 
 
-def test_without_an_echo_there_is_nothing_to_add_to() -> None:
+def test_without_an_echo_no_bias_is_added_to_the_distance() -> None:
     far = Instant(0, Pose(100.0, 500.0, 90.0), drift=BIASED, profile=EV3, seed=3)
     open_world = WorldSpec(walls=False, drift=BIASED)
     assert measure_noisy_mm(SENSOR, far, open_world) == 2550

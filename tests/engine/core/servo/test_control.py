@@ -31,7 +31,9 @@ def build_controller(*, slips: bool = False) -> Controller:
 
 @pytest.mark.parametrize("end_us", [None, END_US])
 @pytest.mark.parametrize("rate", [777, -777])
-def test_the_same_command_again_changes_nothing(rate: int, end_us: int | None) -> None:
+def test_giving_a_motor_the_same_command_again_changes_nothing(
+    rate: int, end_us: int | None
+) -> None:
     milli = []
     for times_us in ((BEGIN_US,), (BEGIN_US, *RAMP_US)):
         control = build_controller()
@@ -68,7 +70,7 @@ def test_a_robot_that_was_held_begins_where_its_wheels_have_come_to() -> None:
     assert control.milli(200 * MS_US) == 0
 
 
-def test_a_move_that_was_held_goes_on_later() -> None:
+def test_a_held_back_move_goes_on_as_a_free_one_delayed_by_the_hold() -> None:
     held = build_controller()
     free = build_controller()
     for control in (held, free):

@@ -89,7 +89,7 @@ class Robot:
 
 
 @for_each(world=[WORLD, WALLED], seed=range(8))
-def test_ticks_are_the_same_however_they_are_divided(world: WorldSpec, seed: int) -> None:
+def test_motor_records_do_not_depend_on_how_ticks_are_grouped(world: WorldSpec, seed: int) -> None:
     records = []
     for at_once in (True, False):
         robot = Robot(world, PROFILES["pybricks4" if seed % 2 else "lego-micropython"])

@@ -174,7 +174,7 @@ def test_the_guide_names_the_limits_that_are_set() -> None:
     ] == []
 
 
-def test_what_is_open_and_has_no_name_is_counted(tmp_path: Path) -> None:
+def test_deleted_files_that_are_still_open_count_for_the_disk_quota(tmp_path: Path) -> None:
     def sizes() -> list[int]:
         return sorted(isolation.Quota(os.getpid(), [tmp_path])._measure_nameless())
 
@@ -200,7 +200,7 @@ def idle_pid() -> Iterator[int]:
 @pytest.mark.parametrize(
     "files, size, says", [(3, 1, ""), (4, 1, "more than 3 files"), (1, 9, "more than")]
 )
-def test_what_is_added_to_the_folders_has_limits(
+def test_files_added_beyond_the_quota_of_number_or_size_are_noticed(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     idle_pid: int,

@@ -110,7 +110,7 @@ def test_a_process_that_was_forked_does_not_use_the_warm_process_of_the_other(
     assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 0
 
 
-def test_how_a_child_ends_is_known(warm: WarmProcess) -> None:
+def test_the_signal_that_killed_a_forked_run_is_known(warm: WarmProcess) -> None:
     with closing(_start()) as handle:
         until_tick(handle, 1)
         os.kill(handle._process.pid, signal.SIGSEGV)

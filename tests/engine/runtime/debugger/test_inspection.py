@@ -24,7 +24,7 @@ LOOKS: dict[str, tuple[str, str | tuple[str, ...]]] = {
 
 @pytest.mark.slow_cases("repr that loops", "repr of 20 MB")
 @pytest.mark.parametrize("name, shown", LOOKS.items(), ids=LOOKS)
-def test_hostile_values_are_cut_safely(
+def test_hostile_values_are_shown_shortened_without_harming_the_program(
     start: Start, name: str, shown: tuple[str, str | tuple[str, ...]]
 ) -> None:
     text = PROGRAMS[name]
@@ -42,7 +42,9 @@ def test_hostile_values_are_cut_safely(
 @pytest.mark.parametrize(
     "name", ["repr that cannot be stopped", "repr stuck in C", "repr that ends the program"]
 )
-def test_values_that_never_come_do_not_hold_up_the_rest(start: Start, name: str) -> None:
+def test_a_value_whose_repr_never_ends_does_not_hide_the_other_variables(
+    start: Start, name: str
+) -> None:
     text = PROGRAMS[name]
     driver = Driver(start(text, live=True, speed=0.0, breaks=(str(text.count("\n")),)))
     driver.paused()

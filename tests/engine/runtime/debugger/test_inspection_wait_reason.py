@@ -51,7 +51,9 @@ READS = {
 
 
 @cases("text, words", READS)
-def test_what_is_read_is_named_as_in_the_program(start: Start, text: str, words: str) -> None:
+def test_a_paused_loop_names_the_sensor_it_reads_as_in_the_program(
+    start: Start, text: str, words: str
+) -> None:
     before = "gyro\nturned, gyro = gyro, None\n" if text.startswith("turned") else ""
     loop = f"{before}while True:\n    {text}\n"
     driver = Driver(start(loop, live=True, speed=0.0, hold_at=(30, BEFORE_NEXT_TICK)))

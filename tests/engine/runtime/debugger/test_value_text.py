@@ -57,7 +57,7 @@ TEXTS: dict[str, tuple[object, str]] = {
 
 
 @cases("value, text", TEXTS)
-def test_a_value_as_text(value: object, text: str) -> None:
+def test_each_kind_of_value_is_rendered_as_text(value: object, text: str) -> None:
     assert Renderer(1.0).render(value) == text
 
 
@@ -75,7 +75,7 @@ def test_when_time_is_up_foreign_values_are_named_by_their_kind() -> None:
     assert Renderer(-1.0).render([Plain(), 3]) == "[<Plain, not shown: values take too long>, 3]"
 
 
-def test_the_kind_is_the_real_one() -> None:
+def test_the_named_type_of_a_value_is_its_real_type() -> None:
     class Liar:
         __class__ = int  # type: ignore[assignment]
 

@@ -60,7 +60,9 @@ def test_a_file_that_was_there_is_noted_as_it_was(run: Run, folder: Path, text: 
 
 
 @cases("text", NO_READS)
-def test_what_the_run_has_made_itself_is_not_noted(run: Run, folder: Path, text: str) -> None:
+def test_files_that_the_program_wrote_itself_are_not_noted_as_read(
+    run: Run, folder: Path, text: str
+) -> None:
     done = run(SETUP + text, prelude="none")
     assert done.ended.end == "finished", done.errors
     assert read_reads(done.run.folder).files == ()

@@ -77,7 +77,7 @@ PROGRAMS = {
 
 @pytest.mark.slow_cases("pandas")
 @cases("text, lines", PROGRAMS)
-def test_clocks_chance_files_and_sockets_are_those_of_the_run(
+def test_clocks_random_numbers_and_sockets_are_those_of_the_simulated_run(
     run: Run, text: str, lines: list[str] | None
 ) -> None:
     first = run(text, prelude="none")
@@ -96,6 +96,6 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("statement", REFUSED)
-def test_other_files_are_refused(run: Run, statement: str) -> None:
+def test_waiting_for_pipes_or_stdin_is_refused(run: Run, statement: str) -> None:
     done = run(f"import os, select, selectors, sys\nr, w = os.pipe()\n{statement}", prelude="none")
     assert done.errors[-1] == f"NotSimulated: {REFUSED[statement]}"

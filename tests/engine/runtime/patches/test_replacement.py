@@ -147,7 +147,7 @@ VALUES = {
 
 
 @cases("text, lines, errors", VALUES)
-def test_what_they_give_passes_for_the_real_thing(
+def test_values_of_replaced_builtins_behave_like_the_real_ones(
     run: Run, text: str, lines: list[str], errors: list[str]
 ) -> None:
     done = run(text, prelude="none")
