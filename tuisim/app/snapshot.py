@@ -177,7 +177,7 @@ class Snapshot:
 
     @property
     def turning(self) -> str:
-        """How wheels that turn at the end of a run were left, to follow its state; empty at any other instant."""
+        """A text on wheels that still turn at the end of a run, to append to the run's state; else an empty text."""
         is_end = self.state is RunPhase.ENDED and not (self.past or self.placed)
         turns = self.instant.left_speed_dps or self.instant.right_speed_dps
         return f", {self.wheels}" if is_end and turns else ""

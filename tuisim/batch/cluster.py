@@ -239,7 +239,7 @@ def _build_client(distributed: Any, scheduler: str) -> Any:
         client.__init__(scheduler, timeout=CONNECT_S, set_as_default=False)
     # Every exception is handled here and raised again.
     except BaseException:
-        # Otherwise, when deleted, the client would wait for the end of a connection that it never had.
+        # Without this, the deletion of the client would wait for the end of a connection that never began.
         client.status = "closed"
         raise
     return client

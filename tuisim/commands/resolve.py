@@ -307,7 +307,7 @@ def prepare_runs(
 def _prepare_folder(
     word: str, world: WorldFile | None, arguments: Arguments, config: UserConfig
 ) -> list[Prepared | NotRun]:
-    # This raises errors of the command line once, instead of once for each cell.
+    # Errors of the command line are raised here once, instead of once for each cell.
     build_run_spec(merge_settings(world.settings if world else {}, arguments.settings))
     prepared: list[Prepared | NotRun] = []
     for path in check_folder(word, run_all=arguments.all):

@@ -433,10 +433,10 @@ _DEFAULT_PRELUDE = "preloaded"
 
 @dataclass(slots=True)
 class _Names:
-    """Finds the full names of what a program's names refer to, such as `ev3dev2.motor.MoveTank`.
+    """Finds the full names of the objects behind a program's names, such as `ev3dev2.motor.MoveTank`.
 
     Args:
-        prelude: The scope of its prelude.
+        prelude: The scope of the program's prelude.
     """
 
     prelude: Scope

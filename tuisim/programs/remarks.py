@@ -193,7 +193,8 @@ def _describe_order(numbers: Sequence[list[float]]) -> str:
 def list_late_stops(tree: ast.Module, remarks: Remarks) -> Iterator[tuple[int, int, int]]:
     """Yield the lines of a `while` loop, of the sleep after the loop, and of the stop of the motors after the sleep.
 
-    Only loops are yielded between whose end and whose sleep a band is named."""
+    Only loops are yielded between whose end and whose sleep a band is named.
+    """
     for node in ast.walk(tree):
         block = getattr(node, "body", None)
         statements = block if isinstance(block, list) else []

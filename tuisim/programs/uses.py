@@ -374,7 +374,8 @@ def _find_option(statement: ast.stmt) -> str:
 def _find_next_move(move: ast.Call, rest: list[ast.stmt]) -> int:
     """Return the line of the next move of the same object or, without one, of any object, in the calls after a move.
 
-    The line is 0 if there is no such move."""
+    The line is 0 if there is no such move.
+    """
     owner = _name_object(move.func)
     lines: list[tuple[bool, int]] = []
     for statement in rest:

@@ -224,11 +224,11 @@ class _MechanicsReader:
                 self.found.closed.add(port)
 
     def _convert_way(self, port: str, forwards: bool | None) -> bool | None:
-        """Return whether a motor's own direction is forwards; None if that is not known.
+        """Return whether a move is forwards for the motor itself, which may be mounted in reverse; None if unknown.
 
         Args:
             port: The motor's port.
-            forwards: Whether it is forwards in the program; None if that is not known.
+            forwards: Whether the move is forwards in the program; None if this is not known.
         """
         mention = self.mentions.find_motor(port)
         return not forwards if forwards is not None and mention and mention.is_turned else forwards

@@ -196,9 +196,9 @@ def _list_entries(folder: Path, excluded: Collection[Path], search: _Search) -> 
 def _make_names_unique(students: Iterable[_Submission]) -> Iterator[Student]:
     """Yield the students with unique names.
 
-    The name of a file without `.py` keeps the suffix if a neighbour has the name, too. Equal names from several folders
-    get the name of the folder in front, and equal names from a gradebook its numbers behind. Names that are still equal
-    are numbered.
+    A file's name loses its suffix `.py`, unless another student in the folder has the same name then. Equal names from
+    several folders get the folder's name in front; equal names from a gradebook get the gradebook's numbers at the end.
+    Names that are still equal are numbered.
     """
     every = [(_resolve_links(folder), student, own) for folder, own, student in students]
     beside = Counter((folder, student.name) for folder, student, _ in every)

@@ -90,7 +90,8 @@ def find_cut_move(data: RunData) -> Unmet | None:
 def _list_moves(data: RunData) -> Iterator[_Move]:
     """Yield the commands with an aim that the next one to the same part, or the end of the program, has ended.
 
-    They are in the order of their ends."""
+    The commands are in the order of their ends.
+    """
     aims = [call for call, words in CALL_WORDS.items() if words.aim is not Aim.NONE]
     is_aim = np.isin(data.commands["call"], aims)
     rows, ticks = (part[is_aim][:_MAX_COMMANDS] for part in (data.commands, data.command_ticks))
