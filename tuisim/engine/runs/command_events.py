@@ -20,7 +20,7 @@ from tuisim.engine.core.plugged import plug_parts
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import RobotSpec, RunSpec
 from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
-from tuisim.engine.runs.command_records import RecordedCommands, read_command_rows
+from tuisim.engine.runs.command_records import COMMAND_RECORD, read_command_rows
 from tuisim.engine.runs.command_words import (
     CALL_WORDS,
     MOVES,
@@ -122,10 +122,8 @@ class CommandIndex:
         self._robots: list[RobotSpec] = [run.first_spec.robot]
         """The robot at the start, and after each time that parts were plugged in."""
         self._end = self._newest_ns = 0
-        self._change_rows, self._change_ticks = array("I"), array("I")
-        """Row and tick of each command of `IMMEDIATE_CALLS`."""
-        self._listed: tuple[tuple[int, int], list[SimulationCommand]] = (0, 0), []
-        """The last result of `list_changes`, and where its commands are in `_change_rows`."""
+        self._changes, self._change_ticks = bytearray(), array("I")
+        """The records and the ticks of the commands of `IMMEDIATE_CALLS`."""
         # Arrays take 48 bytes for each event; objects would take too much memory, as there may be two million commands.
         self._starts, self._counts, self._codes = array("I"), array("I"), array("Q")
         """Row of the first command, number of commands, and robot, call and part of each event."""
@@ -202,11 +200,12 @@ class CommandIndex:
             self._add(*event)
 
     def _note_changes(self, rows: Array, times: Array) -> None:
-        """Store where the commands are that change at once what the program reads."""
+        """Store the commands that change at once what the program reads."""
         import numpy as np
 
         changes = np.flatnonzero(np.isin(rows["call"], IMMEDIATE_CALLS))
-        self._change_rows.extend((changes + self._end).tolist())
+        changes = changes[: _MAX_EVENTS - len(self._change_ticks)]
+        self._changes += rows[changes].tobytes()
         self._change_ticks.extend((times[changes] * self._hz // NS_PER_S).tolist())
 
     def _note_wheels(self, rows: Array) -> None:
@@ -300,21 +299,14 @@ class CommandIndex:
         return {port: scale for when, port, scale in self.scale_changes if when <= tick}
 
     def list_changes(self, tick: int) -> list[SimulationCommand]:
-        """Return the commands in a tick, in order, from the first to the last one of `IMMEDIATE_CALLS`."""
-        ticks = self._change_ticks
-        first, end = bisect_left(ticks, tick), bisect_right(ticks, tick)
-        if first == end:
-            return []
-        if self._listed[0] != (first, end):
-            row = self._change_rows[first]
-            count = self._change_rows[end - 1] + 1 - row
-            rows = RecordedCommands(read_command_rows(self._run.folder, row, count))
-            commands: list[SimulationCommand] = []
-            # The program may have damaged the record.
-            with suppress(ValueError):
-                commands.extend(rows.unpack())
-            self._listed = (first, end), commands
-        return self._listed[1]
+        """Return the commands of `IMMEDIATE_CALLS` in a tick, in order."""
+        first, end = (side(self._change_ticks, tick) for side in (bisect_left, bisect_right))
+        size = COMMAND_RECORD.size
+        records = COMMAND_RECORD.iter_unpack(self._changes[first * size : end * size])
+        return [
+            SimulationCommand(time_ns, part, Call(call), tuple(values))
+            for time_ns, part, call, *values in records
+        ]
 
     def find_events(self, text: str = "") -> list[int]:
         """Return the numbers of the events whose part and command contain all words of a text; all if it is empty."""
