@@ -39,6 +39,27 @@ def test_a_comparison_that_nothing_uses_is_named(text: str, idle: tuple[int, str
 
 
 @cases(
+    "text, missing",
+    {
+        "a condition": (
+            "def dark():\n    x = us < 9\nwhile not dark():\n    pass\n",
+            (
+                3,
+                "dark() returns nothing, so this is always true: return is missing in line 1 and on",
+            ),
+        ),
+        "a result": ("def dark():\n    return us < 9\nwhile not dark():\n    pass\n", None),
+        "no question": ("def dark():\n    x = us < 9\ndark()\n", None),
+        "an error": ("def dark():\n    raise E\nif dark():\n    pass\n", None),
+    },
+)
+def test_a_question_to_a_function_without_a_result_is_named(
+    text: str, missing: tuple[int, str] | None
+) -> None:
+    assert find_slip(text) == missing
+
+
+@cases(
     "text, equal",
     {
         "else": ("if a:\n    b()\nelse:\n    b()\n", (1, "if and else do the same")),

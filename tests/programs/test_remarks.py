@@ -33,6 +33,10 @@ def test_the_colour_of_which_the_lines_around_a_loop_speak_is_found(text: str, c
         ),
         "a turn": ("# straight, then turn\nt.on(30, -30)\n", []),
         "no word": ("t.on(30, -30)\n", []),
+        "named speeds": (
+            "t.on_for_seconds(left_speed=9, right_speed=-9, seconds=1)  # forwards\n",
+            ["9 and -9"],
+        ),
         "equal signs": ("t.on(30, 30)  # forwards\n", []),
     },
 )
@@ -46,6 +50,10 @@ def test_wheels_set_against_each_other_are_no_way_forwards(text: str, words: lis
         "cm": (
             "b.straight(50)  # 50 cm\n",
             "straight(50) drives 50 mm: straight(500) drives 50 cm",
+        ),
+        "cm of a name": (
+            "WAY = 50  # cm\nb.straight(WAY)\n",
+            "straight counts in mm, but WAY is in cm: line 1 says so",
         ),
         "mm": ("b.straight(50)  # 5 cm\n", ""),
         "ms": ("sleep(2000)\n", "sleep(2000) waits 2000 s, not ms: sleep(2) waits 2000 ms"),

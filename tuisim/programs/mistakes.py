@@ -32,6 +32,7 @@ def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
         _find_uncalled_method,
         _find_equal_branches,
         _find_idle_comparison,
+        _find_missing_return,
         _find_short_wait,
     ):
         if slip := find_slip(tree):
@@ -147,6 +148,44 @@ def _describe_idle(test: ast.Compare, function: str) -> str:
             return f"{words} only compares: {name} = {ast.unparse(value)} sets it"
         case _:
             return f"{words} alone does nothing: the answer is not used"
+
+
+def _find_missing_return(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first condition that asks a function without a result, and a description; None if there is none."""
+    empty = {
+        node.name: node.lineno
+        for node in tree.body
+        if isinstance(node, ast.FunctionDef)
+        and not node.decorator_list
+        and not any(_gives_value(part) for part in ast.walk(node))
+        and not isinstance(node.body[-1], ast.Raise)
+        # A comparison in the last line is a slip of its own.
+        and not (
+            isinstance(node.body[-1], ast.Expr) and isinstance(node.body[-1].value, ast.Compare)
+        )
+    }
+    for node in ast.walk(tree):
+        match node:
+            case ast.If(test=test) | ast.While(test=test):
+                match test:
+                    case ast.UnaryOp(op=ast.Not(), operand=asked):
+                        answer = "always"
+                    case asked:
+                        answer = "never"
+                match asked:
+                    case ast.Call(func=ast.Name(id=name)) if name in empty:
+                        text = f"{name}() returns nothing, so this is {answer} true"
+                        return (
+                            node.lineno,
+                            f"{text}: return is missing in line {empty[name]} and on",
+                        )
+    return None
+
+
+def _gives_value(node: ast.AST) -> bool:
+    return isinstance(node, ast.Yield | ast.YieldFrom) or (
+        isinstance(node, ast.Return) and node.value is not None
+    )
 
 
 _MAX_SLIP_MS = 20

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
 from tuisim.base.data_class import dataclass
@@ -27,7 +27,7 @@ _ANY_BAND = re.compile(
 )
 _STRAIGHT = re.compile(r"\bstraight\b", re.IGNORECASE)
 _TURNS = re.compile(r"turn|spin|rotat|dance|circle|dreh|kreis|around", re.IGNORECASE)
-_BEFORE_LINES = 2
+_BEFORE_LINES = 4
 _AFTER_LINES = 3
 """A remark is about a loop if it is so near to it."""
 
@@ -42,14 +42,19 @@ class Remarks:
     def __init__(self, text: str) -> None:
         self._lines = source_lines(text)
 
-    def find_color(self, first_line: int, last_line: int) -> str:
+    def find_color(self, first_line: int, last_line: int, others: Iterable[int] = ()) -> str:
         """Return `black` or `white` if the lines around a loop name only this colour; empty otherwise.
 
         Args:
             first_line: The first line of the loop.
             last_line: The last line of the loop.
+            others: The first lines and the last ones of other loops; what is beyond them is not about this one.
         """
-        lines = self._list_lines(first_line - _BEFORE_LINES, last_line + _AFTER_LINES)
+        others = [*others]
+        start = max([line + 1 for line in others if line < first_line], default=0)
+        end = min([line for line in others if line > last_line], default=len(self._lines) + 1)
+        first_line = max(start, first_line - _BEFORE_LINES)
+        lines = self._list_lines(first_line, min(end - 1, last_line + _AFTER_LINES))
         text = " ".join(lines)
         colors = [name for name, words in _COLORS.items() if words.search(text)]
         return colors[0] if len(colors) == 1 and not _OTHERS.search(text) else ""
@@ -67,7 +72,7 @@ class Remarks:
     def has_centimetres(self, line: int, number: int) -> bool:
         """Return whether a line, or the line above it, has a number with the unit cm."""
         text = " ".join(self._list_lines(line - 1, line))
-        return bool(re.search(rf"\b{number}\s?cm\b", text))
+        return bool(number) and bool(re.search(rf"\b{number}\b\W{{0,6}}cm\b", text))
 
     def _list_lines(self, first_line: int, last_line: int) -> list[str]:
         lines = self._lines[max(0, first_line - 1) : last_line]
@@ -107,10 +112,15 @@ def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[Spin]:
 def _list_speeds(statement: ast.stmt) -> list[float]:
     """Return both speeds in a statement such as `tank.on(30, -30)` if they are opposite; else an empty list."""
     match statement:
-        case ast.Expr(value=ast.Call(func=ast.Attribute(attr=method), args=[left, right, *_])):
+        case ast.Expr(
+            value=ast.Call(func=ast.Attribute(attr=method), args=args, keywords=keywords)
+        ):
+            named = {each.arg: each.value for each in keywords}
+            speeds = [named[name] for name in ("left_speed", "right_speed") if name in named]
+            left, right, *_ = [*args, *speeds, ast.Constant(0), ast.Constant(0)]
             if method in ("on", "on_for_seconds", "on_for_rotations", "on_for_degrees"):
-                speeds = [*_list_numbers(left), *_list_numbers(right)]
-                return speeds if len(speeds) == 2 and speeds[0] == -speeds[1] else []
+                numbers = [*_list_numbers(left), *_list_numbers(right)]
+                return numbers if len(numbers) == 2 and numbers[0] == -numbers[1] else []
     return []
 
 
@@ -152,6 +162,7 @@ _MAX_TIME = 10
 
 def list_wrong_units(tree: ast.Module, remarks: Remarks) -> Iterator[WrongUnit]:
     """Yield the calls whose numbers are probably meant in another unit or in another order."""
+    ways = dict(_list_centimetres(tree, remarks))
     for node in ast.walk(tree):
         match node:
             case ast.Call(func=ast.Attribute(attr="straight"), args=[number, *_]) if (
@@ -159,6 +170,11 @@ def list_wrong_units(tree: ast.Module, remarks: Remarks) -> Iterator[WrongUnit]:
             ):
                 way = _round(number)
                 text = f"straight({way}) drives {way} mm: straight({way * 10}) drives {way} cm"
+                yield WrongUnit(node.lineno, text)
+            case ast.Call(func=ast.Attribute(attr="straight"), args=[ast.Name(id=name), *_]) if (
+                name in ways
+            ):
+                text = f"straight counts in mm, but {name} is in cm: line {ways[name]} says so"
                 yield WrongUnit(node.lineno, text)
             case ast.Call(
                 func=ast.Name(id="sleep") | ast.Attribute(attr="sleep"),
@@ -169,6 +185,15 @@ def list_wrong_units(tree: ast.Module, remarks: Remarks) -> Iterator[WrongUnit]:
             case ast.Call(func=ast.Attribute(attr="on_for_seconds"), args=[*args], keywords=[]):
                 if text := _describe_order([_list_numbers(arg) for arg in args]):
                     yield WrongUnit(node.lineno, text, is_endless=True)
+
+
+def _list_centimetres(tree: ast.Module, remarks: Remarks) -> Iterator[tuple[str, int]]:
+    """Yield each name to which a number in cm is assigned, as a comment says, and the line."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                if remarks.has_centimetres(node.lineno, _round(value)):
+                    yield name, node.lineno
 
 
 def _round(node: ast.expr) -> int:

@@ -243,6 +243,8 @@ class LostValue:
     """The first line of the program itself, outside of functions, that calls the function; 0 for none."""
     set_line: int
     """The line that sets the program's name."""
+    is_certain: bool
+    """Whether a program that comes to its end has called the function: the call is in no other block."""
 
 
 def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
@@ -261,6 +263,9 @@ def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
         used = [*_walk_used(function, has_result=not bare.issuperset(calls))]
         lines = [node.lineno for node in outside if _is_call(node, function.name)]
         call_line = min(lines, default=0)
+        is_certain = any(
+            _is_call(getattr(step, "value", step), function.name) for step in tree.body
+        )
         for node in walk_scope(function):
             match node:
                 case ast.Assign(targets=[ast.Name(id=name)]) if calls and name not in own:
@@ -271,7 +276,10 @@ def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
                         and not _is_loaded(name, used)
                     ):
                         span = function.lineno, function.end_lineno or function.lineno
-                        yield LostValue(node.lineno, name, function.name, span, call_line, set_line)
+                        yield LostValue(
+                            *(node.lineno, name, function.name, span, call_line, set_line),
+                            is_certain,
+                        )
 
 
 def _is_meant(
@@ -332,7 +340,7 @@ class UnwaitedMove:
     option: str
     """The argument because of which the program does not wait, such as `block=False`."""
     next_line: int
-    """The line of the next move in the same block, if only calls are in between; 0 for none."""
+    """The line of the next move or stop in the same block, if only calls are in between; 0 for none."""
 
 
 _OPTIONS = ("block", "wait")
@@ -372,16 +380,16 @@ def _find_option(statement: ast.stmt) -> str:
 
 
 def _find_next_move(move: ast.Call, rest: list[ast.stmt]) -> int:
-    """Return the line of the next move of the same object or, without one, of any object, in the calls after a move.
+    """Return the line of the next move or stop of the same object or, without one, of any object, after a move.
 
-    The line is 0 if there is no such move.
+    The line is 0 if there is none, or if anything but calls comes before it.
     """
     owner = _name_object(move.func)
     lines: list[tuple[bool, int]] = []
     for statement in rest:
         match statement:
             case ast.Expr(value=ast.Call(func=func)) if not _find_waiting(statement):
-                if _find_call(statement, _ANY_MOVE):
+                if _find_call(statement, (*_ANY_MOVE, *STOPS)):
                     lines.append((_name_object(func) != owner, statement.lineno))
             case _:
                 break

@@ -41,6 +41,10 @@ CUT = {
         "def turn():\n    tank.on_for_degrees(20, -20, 200, block=False)\ngo()\nturn()\n",
         "line 7: block=False did not wait for this move, of which 0 of 720 degrees were done when the next",
     ),
+    "by a stop at once": (
+        f"{BRICK}tank.on_for_rotations(40, 40, 3, block=False)\ntank.off()\n",
+        "line 6: block=False did not wait for this move, of which 0 of 1080 degrees were done when line 7 stopped it",
+    ),
     "a drive base": (
         f"{HUB}base.straight(500, wait=False)\nbase.turn(90)\n",
         "line 9: wait=False did not wait for this move, of which 0 of 500 mm were done when line 10 began",

@@ -67,6 +67,12 @@ WRONG = {
         "0.61 s, line 6: the colour sensor on in2 saw 89.02 % here, but line 3 read it only once, at "
         "0.01 s (100 %), before the loop in line 5: read it inside the loop",
     ),
+    "a colour": (
+        ONCE.replace("reflected_light_intensity_pc", "color_name")
+        .replace("light < 90", "light == 'Black'")
+        .replace("Grey_bands", "Grey_bands -x 1200"),
+        "s, line 6: the colour sensor on in2 saw black here, but line 3 read it only once, at 0.02 s (white)",
+    ),
     "steered by": (STEERS, "s, line 5: the colour sensor on in2 saw "),
     "asked once": (
         ASKS.format(15),

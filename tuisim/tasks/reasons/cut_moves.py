@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,6 +39,7 @@ _CALLS: Mapping[str, tuple[Call, ...]] = {
 """The commands with which methods move motors, by the name of the method."""
 _GO_ON = (Call.RUN_TO_REL_POS, Call.RUN_TO_ABS_POS, Call.RUN_TIMED)
 """Moves that go on after the end of the program."""
+_STOPS = (Call.STOP, Call.STOP_DRIVER, Call.HOLD, Call.STOP_BASE)
 _AT_ONCE_S = 0.1
 """A move that is followed so soon by another one has hardly begun."""
 _DONE_SHARE = 0.8
@@ -74,11 +75,13 @@ def find_cut_move(data: RunData) -> Unmet | None:
     unwaited = data.facts.unwaited_moves
     if not unwaited or not len(data.records):
         return None
-    for move in _list_moves(data):
+    calls = {call for each in unwaited for call in _CALLS.get(each.method, ())}
+    for move in _list_moves(data, calls):
         fitting = [each for each in unwaited if move.call in _CALLS.get(each.method, ())]
         if call := _find_call(data, move, fitting):
             share = _describe_share(data, move)
-            after = f"line {call.next_line} began the next one"
+            does = "stopped it" if move.next_call in _STOPS else "began the next one"
+            after = f"line {call.next_line} {does}"
             if not call.next_line:
                 after = "the next one began" if move.next_call else "the program ended"
             text = f"{call.option} did not wait for this move, {share} when {after}"
@@ -87,10 +90,14 @@ def find_cut_move(data: RunData) -> Unmet | None:
     return None
 
 
-def _list_moves(data: RunData) -> Iterator[_Move]:
-    """Yield the commands with an aim that the next one to the same part, or the end of the program, has ended.
+def _list_moves(data: RunData, calls: Set[Call]) -> Iterator[_Move]:
+    """Yield the commands of some kinds that the next command to the same part, or the end of the program, has ended.
 
-    The commands are in the order of their ends.
+    They are in the order of their ends.
+
+    Args:
+        data: The run.
+        calls: The kinds of commands.
     """
     aims = [call for call, words in CALL_WORDS.items() if words.aim is not Aim.NONE]
     is_aim = np.isin(data.commands["call"], aims)
@@ -105,7 +112,7 @@ def _list_moves(data: RunData) -> Iterator[_Move]:
         part = (call >= Call.BUILD_BASE, int(row["part"]))
         end, next_call = following.get(part, (last, None))
         following[part] = tick, call
-        if next_call or (is_finished and call not in _GO_ON):
+        if call in calls and (next_call or (is_finished and call not in _GO_ON)):
             moves.append(_Move(tick, end, call, row["values"].tolist(), part[1], next_call))
     yield from sorted(moves, key=lambda move: move.end)
 
@@ -145,11 +152,7 @@ def _has_looked(data: RunData, move: _Move) -> bool:
     aim = CALL_WORDS[move.next_call].aim if move.next_call else Aim.NONE
     ticks = data.reading_ticks
     has_read = ((ticks >= move.tick) & (ticks <= move.end)).any()
-    return (
-        bool(has_read)
-        or aim is Aim.SPEED
-        or move.next_call in (Call.STOP, Call.STOP_DRIVER, Call.HOLD)
-    )
+    return bool(has_read) or aim is Aim.SPEED or move.next_call in _STOPS
 
 
 def _describe_share(data: RunData, move: _Move) -> str:

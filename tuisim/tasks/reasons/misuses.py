@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tuisim.base.errors import ConfigError, LogError
+from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.profile import NS_PER_S
@@ -59,7 +60,7 @@ def _find_stale_reads(data: RunData) -> Iterator[Unmet]:
     """Yield readings that a loop used again and again, while the sensor saw something else."""
     known = {end.line for end in data.facts.loop_ends if end.set_line}
     for use in data.facts.stale_reads:
-        if isinstance(use.limit, str) or (use.line in known and _was_in_vain(data, use)):
+        if use.line in known and _was_in_vain(data, use):
             continue
         for tick in _list_ticks(data, use.read_line):
             if tick < len(data.records) and (misuse := _compare_stale(data, use, tick)):
@@ -97,8 +98,7 @@ def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
         return Unmet(float(ticks[0] / data.hz), use.line, text) if is_stuck else None
     first = float(old.values[0])
     if use.operator:
-        compare = COMPARE[use.operator]
-        differs = compare(seen.values, use.limit) != compare(first, use.limit)
+        differs = _compare(use, seen) != _compare(use, old)
     else:
         differs = abs(seen.values - first) >= max(_MIN_OTHER, _OTHER_SHARE * abs(first))
     if not differs.any():
@@ -111,6 +111,16 @@ def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
     return Unmet(float(ticks[index] / data.hz), use.line, text)
 
 
+def _compare(use: LoopEnd, series: Series) -> Array:
+    """Return the results of a comparison for some values; all are false if it compares what is never equal."""
+    if not isinstance(use.limit, str):
+        return np.asarray(COMPARE[use.operator](series.values, use.limit))
+    if series.column != "color" or (use.attribute == "color") is not use.limit.isupper():
+        return np.zeros(len(series.values), bool)
+    names = np.array([COLOR_NAMES[int(code)].lower() for code in series.values])
+    return np.asarray(COMPARE[use.operator](names, use.color))
+
+
 def _find_next_reading(data: RunData, line: int, tick: int) -> int:
     """Return the tick of the next reading of a port that a line reads; without one, the number of ticks."""
     ports = np.unique(data.readings["port"][data.readings["line"] == line])
@@ -120,6 +130,8 @@ def _find_next_reading(data: RunData, line: int, tick: int) -> int:
 
 
 def _name(series: Series, value: float) -> str:
+    if series.column == "color":
+        return COLOR_NAMES[int(value)].lower()
     return f"{round_value(value)}{series.unit}"
 
 
@@ -200,6 +212,9 @@ def _find_lost_values(data: RunData) -> Iterator[Unmet]:
         tick = _find_tick(data, *lost.lines)
         if tick is None and lost.call_line:
             tick = _find_tick(data, lost.call_line + 1, 1 << 31)
+            is_over = data.run.end is not None and data.run.end.end is End.FINISHED
+            if tick is None and is_over and lost.is_certain:
+                tick = len(data.records) - 1
         if tick is not None:
             text = (
                 f"{lost.name} is a name of {lost.function}() alone here, so the {lost.name} of line "

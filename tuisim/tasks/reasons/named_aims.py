@@ -57,8 +57,11 @@ def find_missed_aims(data: RunData) -> Iterator[Unmet]:
 
 def _find_wrong_bands(data: RunData) -> Iterator[Unmet]:
     """Yield each loop that, by its words, waits for black or white, but was ended by another band before."""
+    places = [(loop.first_line, loop.last_line) for loop in data.facts.loop_ends]
     for loop in data.facts.loop_ends:
-        color = data.facts.remarks.find_color(loop.first_line, loop.last_line)
+        place = loop.first_line, loop.last_line
+        others = [line for other in places if other != place for line in other]
+        color = data.facts.remarks.find_color(*place, others)
         if not color or isinstance(loop.limit, str) or loop.operator[0] != _LIMITS[color][1]:
             continue
         series = data.measure(loop, (0, len(data.records)))
