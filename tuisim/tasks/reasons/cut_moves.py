@@ -93,7 +93,7 @@ def find_cut_move(data: RunData) -> Unmet | None:
 def _list_moves(data: RunData, calls: Set[Call]) -> Iterator[_Move]:
     """Yield the commands of some kinds that the next command to the same part, or the end of the program, has ended.
 
-    They are in the order of their ends.
+    The commands are in the order of their ends.
 
     Args:
         data: The run.
