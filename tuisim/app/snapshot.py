@@ -329,7 +329,7 @@ def shorten_value(text: str) -> str:
         if word[0] in "'\"" or len(word) <= _SHORT:
             return word
         number = float(word)
-        # The time of the clock, in seconds since 1970, changes in its last digits only.
+        # The time since 1970, which has ten digits, gets decimals, since only its last digits differ between readings.
         form = ".1f" if 1000 <= abs(number) < 1e9 else ".2f" if 1e9 <= abs(number) < 1e10 else ".4g"
         return min(word, format(number, form), key=len)
 

@@ -430,7 +430,7 @@ def _has_names(rows: Sequence[_Line]) -> bool:
     first = rows[0]
     if first.kinds[0] == "t" and (len(rows) < 2 or rows[1].kinds[0] == "t"):
         return False
-    # One line with a number is a row: below a heading, nothing would be left.
+    # A single line with a number is a row, since a table with only a heading would be empty.
     return (
         "n" not in first.kinds if len(rows) < 2 else 2 * first.kinds.count("n") < len(first.kinds)
     )

@@ -463,7 +463,7 @@ def build_program(text: str, path: Path | None, name: str, *, alone: bool = Fals
     Raises:
         ConfigError: its magic line is wrong.
     """
-    # A path inside the file itself, used if the program is alone, has no modules beside it.
+    # A program alone gets a path inside its own file, where Python finds no modules beside it.
     where = path / name if path and alone else path
     source = parse_program(text, name, str(where) if where else "")
     return replace(

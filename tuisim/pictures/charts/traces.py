@@ -299,7 +299,7 @@ class Pyramid:
     def select_points(
         self, x_limits: tuple[float, float], columns: int
     ) -> tuple[FloatArray, FloatArray]:
-        """Return the times and values to draw: at most a few thousand points that look like all points.
+        """Return the times and values to draw: at most a few thousand points, which look like all points in a chart.
 
         Args:
             x_limits: First and last time shown; one point beyond each is kept.

@@ -173,7 +173,7 @@ def _measure_way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
     away_mm = np.hypot(x, y)
     dx, dy = np.diff(x), np.diff(y)
     squared = dx * dx + dy * dy
-    # A robot that was moved by hand does not pass the places between.
+    # A robot that was moved by hand does not pass the places between its old and its new place.
     driven = (np.diff(records["actions"].astype("i4")) == 0) & (squared > 0)
     part = np.clip(-(x[:-1] * dx + y[:-1] * dy) / np.where(driven, squared, 1.0), 0.0, 1.0)
     between = np.hypot(x[:-1] + part * dx, y[:-1] + part * dy)

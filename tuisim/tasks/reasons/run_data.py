@@ -131,7 +131,7 @@ class RunData:
     def light_ticks(self) -> dict[str, Array]:
         """The ticks at which the program read each light sensor, by its name, in ascending order.
 
-        Readings after the telemetry, as a run that goes on may have, are left out.
+        Readings after the end of the telemetry, which exist while a run goes on, are left out.
         """
         rows = self._recorded.find(MODES_BY_KIND["color"])
         ticks = find_ticks(rows, self.hz)
