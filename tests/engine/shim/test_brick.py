@@ -7,7 +7,7 @@ from tuisim.engine.core.spec import NO_PORT, RobotSpec
 from tuisim.engine.shim.brick import Connection, find_connections
 
 
-def test_devices_of_a_robot_by_port() -> None:
+def test_find_connections_gives_driver_and_mode_of_each_port() -> None:
     found = find_connections(EYES)
     assert found.keys() == {"outA", "outB", "outC", "outD", "in1", "in2", "in3", "in4"}
     assert (found["outA"], found["outD"]) == (
@@ -30,14 +30,14 @@ for name in ('outA', 'in2'):
 """
 
 
-def test_an_empty_port_and_one_with_a_sensor(run_on: RunOn) -> None:
+def test_a_program_reads_which_ports_are_empty_and_which_have_a_sensor(run_on: RunOn) -> None:
     assert run_on(PORTS, "default").lines == [
         "ev3-output-port auto no-motor",
         "ev3-input-port auto ev3-uart",
     ]
 
 
-def test_a_look_for_what_is_not_there_names_what_is(run_on: RunOn) -> None:
+def test_looking_for_a_missing_device_names_the_devices_that_are_there(run_on: RunOn) -> None:
     done = run_on("from ev3dev2.sensor.lego import TouchSensor\nTouchSensor('in1')", "default")
     assert "This robot has: in1 " in done.errors[-1]
     assert "outB" not in done.errors[-1]

@@ -51,7 +51,7 @@ def dark(row: OutputRow) -> set[tuple[int, int]]:
     return {(at % ROW_BYTES * 8 + bit, at // ROW_BYTES) for at, bit in bits}
 
 
-def test_an_update_is_written_down_once_it_is_done(run_on: RunOn) -> None:
+def test_a_display_update_is_recorded_when_it_is_done(run_on: RunOn) -> None:
     done = run_on(PICTURE)
     first, second = shown(done)
     assert (dark(first), dark(second)) == ({(1, 0)}, {(1, 0), (DISPLAY_WIDTH - 1, 127)})
@@ -61,7 +61,7 @@ def test_an_update_is_written_down_once_it_is_done(run_on: RunOn) -> None:
     assert done.lines == ["done"]
 
 
-def test_the_text_screen_after_each_call(run_on: RunOn) -> None:
+def test_the_text_screen_shows_the_right_text_after_each_console_call(run_on: RunOn) -> None:
     lines = ["from ev3dev2.console import Console", "c = Console()", *SCREENS]
     done = run_on("\n".join([*lines, "print('done')"]))
     faces = {row.line: BrickState().update_face([row]).text for row in shown(done)}
@@ -76,7 +76,7 @@ def test_the_text_screen_after_each_call(run_on: RunOn) -> None:
     assert (done.lines, done.errors) == (["done"], [])
 
 
-def test_picture_and_text_take_turns(run_on: RunOn) -> None:
+def test_the_brick_shows_picture_or_text_whichever_was_drawn_last(run_on: RunOn) -> None:
     done = run_on(
         "from ev3dev2.console import Console\nfrom ev3dev2.display import Display\n"
         "d = Display()\nd.update()\nc = Console()\nc.text_at('x')\nd.update()\nc.text_at('x')"
@@ -107,7 +107,9 @@ def test_a_font_that_is_not_there_is_told(run_on: RunOn) -> None:
     ],
     ids=["display", "console", "volume", "sound for ever"],
 )
-def test_no_loop_of_calls_stands_still(run_on: RunOn, text: str, profile: str) -> None:
+def test_an_endless_loop_of_drawing_calls_reaches_the_time_limit(
+    run_on: RunOn, text: str, profile: str
+) -> None:
     done = run_on(text, profile=profile, time_limit_s=2.0)
     assert done.ended.end == "time_limit"
 

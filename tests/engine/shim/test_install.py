@@ -12,7 +12,9 @@ from tuisim.engine.shim.install import finish_imports
 
 
 @pytest.mark.parametrize("early", [True, False], ids=["imported before", "imported later"])
-def test_a_module_is_finished(early: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_patched_module_is_finished_once_whenever_it_is_imported(
+    early: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "something_new.py").write_text("value = 1\n")
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(sys, "meta_path", list(sys.meta_path))

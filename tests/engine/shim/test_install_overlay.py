@@ -153,7 +153,7 @@ EXERCISED = {
         *(("nbev3devsim", robot) for robot in ("default", "eyes")),
     ],
 )
-def test_each_mended_call_does_what_the_guides_row_says(
+def test_each_changed_library_call_does_what_the_guides_row_says(
     run_on: RunOn, profile: str, robot: str
 ) -> None:
     checks = []
@@ -169,7 +169,7 @@ def test_each_mended_call_does_what_the_guides_row_says(
     assert done.ended.end == "finished", done.errors
 
 
-def test_the_table_has_these_rows() -> None:
+def test_the_guides_table_of_changed_calls_has_exactly_the_tested_rows() -> None:
     section = find_page("library-differences").source.partition("## What is not simulated")[0]
     rows = [
         line.split(" | ")[0].removeprefix("| ") for line in section.splitlines() if " | " in line
@@ -177,7 +177,7 @@ def test_the_table_has_these_rows() -> None:
     assert rows[2:] == list(ROWS)
 
 
-def test_volume_is_one_for_all_and_stays(run_on: RunOn) -> None:
+def test_the_volume_is_shared_by_all_sound_objects_and_stays(run_on: RunOn) -> None:
     done = run_on(
         "from ev3dev2.sound import Sound\ns, t = Sound(), Sound()\nprint(s.get_volume())\n"
         "s.set_volume(70)\nprint(t.get_volume(), t.channel, s.channel)\n"

@@ -42,7 +42,7 @@ def lights(row: OutputRow) -> tuple[int, ...]:
     return tuple(BrickState().update_face([row]).leds.values())
 
 
-def test_each_change_is_written_down_once_with_its_line(run_on: RunOn) -> None:
+def test_each_change_of_a_light_is_recorded_once_with_its_line(run_on: RunOn) -> None:
     done = run_on(STEPS)
     assert [(row.line, lights(row)) for row in rows(done)] == [
         (5, (255, 255, 0, 255)),
@@ -58,7 +58,7 @@ def test_each_change_is_written_down_once_with_its_line(run_on: RunOn) -> None:
     ]
 
 
-def test_a_blinking_light_is_written_down_each_time(run_on: RunOn) -> None:
+def test_each_change_of_a_blinking_light_is_recorded(run_on: RunOn) -> None:
     done = run_on(BLINKING)
     found = [(row.time_ns // 10_000_000, lights(row)[0]) for row in rows(done)]
     assert found == [(0, 255), (10, 0), (60, 255), (70, 0), (120, 255), (125, 0)]

@@ -113,7 +113,7 @@ def test_a_port_that_is_used_stays_taken(home: Path, tmp_path: Path, text: str) 
     assert "DeviceNotFound: TouchSensor(in1) is not connected" in done.errors[-1]
 
 
-def test_a_named_robot_stays_as_it_is(home: Path, tmp_path: Path) -> None:
+def test_a_robot_chosen_by_name_gets_no_parts_plugged_in(home: Path, tmp_path: Path) -> None:
     done = run_program(tmp_path, LATE_TOUCH, robot="Default_Robot")
     assert done.run.plugged == []
     assert "DeviceNotFound" in done.errors[-1]
@@ -134,7 +134,7 @@ def test_of_two_pairs_in_the_text_the_one_that_was_chosen_drives(
     assert (done.run.plugged, done.pose[0] - 1181 > 170) == ([], True)
 
 
-def test_a_trial_plugs_in_nothing(home: Path, tmp_path: Path) -> None:
+def test_trying_for_a_part_inside_try_plugs_in_nothing(home: Path, tmp_path: Path) -> None:
     done = run_program(tmp_path, TRIED)
     assert (done.lines, done.run.plugged) == (["no Touch", "no Infrared"], [])
 
@@ -145,7 +145,7 @@ def test_a_handler_around_the_whole_program_is_no_trial(home: Path, tmp_path: Pa
     assert [part.line for part in done.run.plugged] == [9]
 
 
-def test_listing_plugs_in_nothing(home: Path, tmp_path: Path) -> None:
+def test_listing_motors_or_sensors_plugs_in_nothing(home: Path, tmp_path: Path) -> None:
     done = run_program(tmp_path, LISTED)
     assert done.lines == [
         "['lego-ev3-color', 'lego-ev3-color', 'lego-ev3-gyro', 'lego-ev3-us']",
@@ -166,7 +166,7 @@ def read_columns(done: Done) -> dict[str, list[float]]:
 
 
 @pytest.mark.parametrize("late", LATE_PROGRAMS.values(), ids=LATE_PROGRAMS)
-def test_a_late_program_runs_and_names_its_parts(
+def test_a_program_that_asks_for_parts_late_runs_with_them_plugged_in(
     home: Path, tmp_path: Path, late: LateProgram
 ) -> None:
     done = run_program(tmp_path, late.text, answers=late.answers)
@@ -175,7 +175,7 @@ def test_a_late_program_runs_and_names_its_parts(
 
 
 @pytest.mark.parametrize("name", ["late, after driving", "wheels too late", "after a menu"])
-def test_a_late_program_is_the_same_in_every_way_of_running(
+def test_a_program_that_asks_for_parts_late_runs_the_same_in_every_way(
     home: Path, tmp_path: Path, name: str
 ) -> None:
     late = LATE_PROGRAMS[name]
@@ -207,7 +207,7 @@ def test_exports_have_the_columns_of_the_whole_robot(home: Path, tmp_path: Path)
     assert any(row.split(",")[duty] != "0.0" for row in rows)
 
 
-def test_simulate_names_the_parts(home: Path) -> None:
+def test_simulate_names_the_parts_that_were_plugged_in(home: Path) -> None:
     late = LATE_PROGRAMS["by getattr"]
     assert f"plugged in {late.parts}" in tuisim.simulate(late.text).note
 

@@ -18,7 +18,9 @@ print(touch.is_pressed, eye.proximity)
 
 
 @pytest.mark.parametrize("profile", ["ev3", "robolab"])
-def test_columns_of_touch_and_infrared(run_on: RunOn, profile: str) -> None:
+def test_touch_and_infrared_columns_equal_what_the_program_reads(
+    run_on: RunOn, profile: str
+) -> None:
     done = run_on(PROGRAM, "eyes", "furnished", profile)
     names = ["touch_pressed", "infrared_proximity"]
     mat = done.run.field.open_field()

@@ -25,7 +25,7 @@ print(time.time() - before < 0.005)
 """
 
 
-def test_a_change_takes_time_and_the_first_readings_are_old(run_on: RunOn) -> None:
+def test_changing_a_sensors_mode_takes_time_and_first_readings_are_old(run_on: RunOn) -> None:
     took, shown, is_quick = run_on(COLOR, "default", "red").lines
     assert 0.015 <= float(took) <= 0.0165
     # The reflected light of before, then red; a slow program reads nothing so early.
@@ -33,7 +33,7 @@ def test_a_change_takes_time_and_the_first_readings_are_old(run_on: RunOn) -> No
     assert is_quick == "True"
 
 
-def test_no_change_takes_time_in_the_course(run_on: RunOn) -> None:
+def test_changing_a_sensors_mode_takes_no_time_in_the_course_profile(run_on: RunOn) -> None:
     took, shown, _ = run_on(COLOR, "default", "red", "robolab").lines
     assert (float(took), shown) == (0, "[189] {189}")
 
@@ -77,7 +77,7 @@ print(gyro.angle())
 
 
 @pytest.mark.parametrize(("robot", "keeps"), [("default", False), ("newer gyro", True)])
-def test_pybricks_restarts_an_older_one_as_well(run_on: RunOn, robot: str, keeps: bool) -> None:
+def test_pybricks_also_restarts_an_older_gyro(run_on: RunOn, robot: str, keeps: bool) -> None:
     assert run_on(PYBRICKS, robot, profile="lego-micropython").lines == [f"True {keeps}", "10"]
 
 

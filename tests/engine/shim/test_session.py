@@ -99,7 +99,7 @@ def test_each_reading_is_recorded_with_its_line(run_on: RunOn, library: str) -> 
     assert _read(done) == _expected(LINES[library])
 
 
-def test_the_time_is_that_of_the_value(run_on: RunOn) -> None:
+def test_a_recorded_reading_has_the_time_at_which_its_value_was_measured(run_on: RunOn) -> None:
     done = run_on(
         """\
 import time
@@ -119,7 +119,7 @@ for _ in range(3):
     assert read_readings(done.run.folder).rows["time_ns"].tolist() == printed
 
 
-def test_a_loop_without_time_writes_a_reading_once_an_instant(run_on: RunOn) -> None:
+def test_a_loop_that_takes_no_time_records_a_reading_once_an_instant(run_on: RunOn) -> None:
     done = run_on(
         """\
 from ev3dev2.motor import LargeMotor
@@ -136,7 +136,7 @@ for _ in range(3000):
     assert len(rows) == 2 * instants
 
 
-def test_threads_and_own_functions_have_their_lines(run_on: RunOn) -> None:
+def test_readings_in_threads_and_functions_are_recorded_with_their_lines(run_on: RunOn) -> None:
     done = run_on(
         """\
 import threading

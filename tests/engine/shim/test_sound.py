@@ -15,7 +15,7 @@ from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.records import Stream
 
 
-def test_each_sound_in_words_and_tones() -> None:
+def test_each_sound_call_is_recorded_in_words_and_tones() -> None:
     program = Program("program.py", "\n".join([FILE, *HEARD]), "none")
     run = start_run(program, RunSpec(PLAIN, FAR_WALL, PROFILES["ev3"]), RunOptions(live=False))
     events = []
@@ -53,7 +53,7 @@ def test_a_song_is_heard_up_to_its_wrong_note(run_on: RunOn) -> None:
     assert done.ended.time_ns == 550_000_000
 
 
-def test_for_ever_is_until_the_run_is_stopped(run_on: RunOn) -> None:
+def test_a_tone_played_in_a_loop_repeats_until_the_run_stops(run_on: RunOn) -> None:
     done = run_on(
         "from ev3dev2.sound import Sound\nSound().tone(440, 400, play_type=2)", time_limit_s=1.9
     )

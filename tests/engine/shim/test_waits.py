@@ -20,7 +20,7 @@ def test_a_move_that_ends_shortly_before_the_limit_is_seen_to_end(run: Run) -> N
     assert (done.ended.end, done.lines) == ("finished", ["over"])
 
 
-def test_a_move_beyond_the_limit_ends_with_it(run: Run) -> None:
+def test_a_wait_for_a_move_beyond_the_time_limit_ends_with_the_limit(run: Run) -> None:
     done = run("tank_drive.on_for_seconds(20, 20, 100)\n", time_limit_s=12.5)
     assert (done.ended.end, done.ended.time_ns) == ("time_limit", 12_500_000_000)
 

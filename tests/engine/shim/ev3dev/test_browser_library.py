@@ -12,7 +12,7 @@ MOTOR = "from ev3dev2.motor import *\nm, t = LargeMotor('outB'), MoveTank('outB'
 
 
 @pytest.mark.parametrize("number, rounded", [(2.5, 3), (-2.5, -2), (2.4, 2), (-0.6, -1)])
-def test_halves_are_rounded_up(number: float, rounded: int) -> None:
+def test_round_half_up_rounds_halves_up_also_below_zero(number: float, rounded: int) -> None:
     assert round_half_up(number) == rounded
 
 

@@ -14,5 +14,7 @@ TABLES: Tables = {
 
 
 @cases(TABLES)
-def test_calls_do_what_the_table_says(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+def test_calls_of_ev3dev2_do_what_the_table_says(
+    run_on: RunOn, table: Table, robot: str, world: str
+) -> None:
     check(run_on, table, robot, world)

@@ -46,7 +46,9 @@ BESIDE = (
 
 
 @cases(TABLES)
-def test_items_do_what_the_table_says(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+def test_classes_and_functions_of_ev3dev2_do_what_the_table_says(
+    run_on: RunOn, table: Table, robot: str, world: str
+) -> None:
     check(run_on, table, robot, world)
 
 

@@ -10,7 +10,7 @@ from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 _HEAD = "from ev3dev2.motor import *\nfrom ev3dev2.sensor import *\nfrom ev3dev2.sensor.virtual import *\n"
 
 
-def test_the_pen_draws_and_the_place_is_true(run: Run) -> None:
+def test_the_virtual_pen_draws_and_the_virtual_gps_gives_the_true_position(run: Run) -> None:
     done = run(
         f"{_HEAD}wheels, pen, place = MoveTank(OUTPUT_B, OUTPUT_C), Pen(INPUT_5), GPSSensor(INPUT_6)\n"
         "talk = Radio()\nwheels.on_for_rotations(30, 30, 1)\npen.down()\npen.setColor(255, 0, 0)\n"
@@ -30,7 +30,9 @@ def test_the_pen_draws_and_the_place_is_true(run: Run) -> None:
 @pytest.mark.parametrize(
     "use", ["Radio().send('a')", "CameraSensor().image", "LidarSensor(INPUT_7).scan()"]
 )
-def test_what_is_not_simulated_can_be_made_and_is_named_when_it_is_used(run: Run, use: str) -> None:
+def test_using_a_virtual_part_that_is_not_simulated_raises_with_its_name(
+    run: Run, use: str
+) -> None:
     name = use.split("(")[0]
     done = run(f"{_HEAD}part = {name}(INPUT_7)\n{use}\n", profile="ev3", prelude="none")
     assert done.errors[-1].startswith(

@@ -40,7 +40,7 @@ for side in range(4):
 """
 
 
-def test_a_square_ends_where_it_began(run_on: RunOn) -> None:
+def test_a_square_driven_with_the_older_library_ends_where_it_began(run_on: RunOn) -> None:
     done = run_on(SQUARE, "plain")
     assert done.pose == pytest.approx((500.0, 571.5, -360.0), abs=0.5)
     assert done.errors == []
@@ -89,7 +89,7 @@ attempt(ev3dev.webserver.RobotWebServer)
 """
 
 
-def test_what_is_not_simulated_says_so_by_name(run_on: RunOn) -> None:
+def test_using_a_part_of_ev3dev_1_that_is_not_simulated_raises_with_its_name(run_on: RunOn) -> None:
     names = (
         "brickpi",
         "brickpi3",
@@ -111,7 +111,9 @@ def test_without_the_library_its_import_says_how_to_get_it() -> None:
     assert finder.find_spec("ev3dev2") is None
 
 
-def test_what_stands_in_during_an_import_is_gone_after_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_stand_in_for_pkg_resources_is_gone_after_the_import(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.delitem(sys.modules, "pkg_resources", raising=False)
     with surroundings():
         assert "__init__.py" in sys.modules["pkg_resources"].resource_listdir(

@@ -80,7 +80,9 @@ def test_a_button_stops_the_program_if_it_is_chosen(run_on: RunOn) -> None:
         ),
     ],
 )
-def test_its_own_names_work(run_on: RunOn, text: str, lines: list[str]) -> None:
+def test_names_that_only_pybricks_4_has_work_on_the_ev3(
+    run_on: RunOn, text: str, lines: list[str]
+) -> None:
     done = run_on(HEAD + text, profile=PROFILE)
     assert done.lines == lines, done.errors
 

@@ -34,18 +34,18 @@ STARTS = {
 
 
 @pytest.mark.parametrize("start", STARTS)
-def test_two_motors_move_at_the_same_time(run_on: RunOn, start: str) -> None:
+def test_run_parallel_moves_two_motors_at_the_same_time(run_on: RunOn, start: str) -> None:
     done = run_on(MOVE + STARTS[start], profile="lego-micropython")
     # 360 degrees at 200 degrees per second last 1.9 s, at 400 1.2 s.
     assert done.lines == ["400 11", "200 19", "(360, 360)"], done.errors
 
 
-def test_results_are_found_by_function(run_on: RunOn) -> None:
+def test_run_parallel_gives_each_functions_result_by_that_function(run_on: RunOn) -> None:
     text = f"{MOVE}\nfound = run_parallel(slow, fast)\nprint(found[slow], found[fast])"
     assert run_on(text, profile="lego-micropython").lines[-1] == "360 360"
 
 
-def test_an_error_ends_the_others(run_on: RunOn) -> None:
+def test_an_error_in_one_function_of_run_parallel_ends_the_others(run_on: RunOn) -> None:
     text = f"{MOVE}\nrun_parallel(lambda: 1 / 0, fast)"
     done = run_on(text, profile="lego-micropython")
     assert done.lines == []
@@ -54,6 +54,6 @@ def test_an_error_ends_the_others(run_on: RunOn) -> None:
 
 
 @pytest.mark.parametrize("functions", ["fast", "fast, 5", ""])
-def test_fewer_than_two_functions_are_refused(run_on: RunOn, functions: str) -> None:
+def test_run_parallel_refuses_fewer_than_two_functions(run_on: RunOn, functions: str) -> None:
     done = run_on(f"{MOVE}\nrun_parallel({functions})", profile="lego-micropython")
     assert "TypeError: run_parallel() needs two or more functions" in done.errors

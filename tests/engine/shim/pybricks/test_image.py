@@ -82,7 +82,9 @@ def test_images_are_copied_without_the_transparent_colour(lab: Lab) -> None:
     assert dark(target) == {(3, 3)}
 
 
-def test_files_have_an_ending(lab: Lab, tmp_path: Path) -> None:
+def test_images_are_saved_and_loaded_as_png_without_naming_the_suffix(
+    lab: Lab, tmp_path: Path
+) -> None:
     picture = Image.empty(6, 6)
     picture.draw_pixel(2, 3)
     picture.save("own")

@@ -29,7 +29,7 @@ PROFILE = "lego-micropython"
         (TextMailbox, "", b"\x00"),
     ],
 )
-def test_a_value_becomes_its_bytes_and_back(
+def test_a_mailbox_encodes_a_value_to_bytes_and_back(
     kind: type[Mailbox], value: Any, payload: bytes
 ) -> None:
     box = kind("box", MailboxHandlerMixIn())
@@ -37,7 +37,7 @@ def test_a_value_becomes_its_bytes_and_back(
     assert box.decode(payload) == value
 
 
-def test_functions_of_the_program_may_convert() -> None:
+def test_a_mailbox_converts_values_with_functions_of_the_program() -> None:
     box = Mailbox(
         "box",
         MailboxHandlerMixIn(),
@@ -94,7 +94,9 @@ def test_a_server_and_a_client_of_one_program_talk(run_on: RunOn) -> None:
         ("BluetoothMailboxClient().connect('left')", "'left' is not simulated"),
     ],
 )
-def test_another_brick_is_refused(run_on: RunOn, call: str, told: str) -> None:
+def test_connecting_a_mailbox_to_another_brick_is_refused(
+    run_on: RunOn, call: str, told: str
+) -> None:
     done = run_on(f"from pybricks.messaging import *\n{call}", profile=PROFILE)
     assert done.ended.summary.startswith("NotSimulated: BluetoothMailbox")
     assert told in done.ended.summary

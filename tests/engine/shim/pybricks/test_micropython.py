@@ -20,7 +20,7 @@ from tuisim.engine.shim.pybricks.micropython import (
 PROFILE = "lego-micropython"
 
 
-def test_every_module_can_be_imported(run_on: RunOn) -> None:
+def test_every_module_of_micropython_can_be_imported(run_on: RunOn) -> None:
     names = [
         *OF_PYTHON,
         *OF_PYTHON.values(),
@@ -78,7 +78,7 @@ def test_the_compiler_knows_its_names_and_drops_annotations(here: Command, tmp_p
 
 
 @pytest.mark.parametrize("text", ["@native\ndef f(): pass", "def f(x: Number): pass"])
-def test_other_names_are_not_known(run_on: RunOn, text: str) -> None:
+def test_compiler_names_of_micropython_are_unknown_elsewhere(run_on: RunOn, text: str) -> None:
     done = run_on(text, profile=PROFILE if text.startswith("@") else "ev3")
     assert "NameError" in done.errors[-1]
 
@@ -142,7 +142,7 @@ except ZeroDivisionError as error:
 """
 
 
-def test_its_own_names_work(run_on: RunOn, tmp_path: Path) -> None:
+def test_functions_that_only_micropython_has_work(run_on: RunOn, tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
     (tmp_path / "file").touch()
     lines = run_on(f"FOLDER = {str(tmp_path)!r}\n{NAMES}", profile=PROFILE).lines
@@ -162,13 +162,15 @@ def test_its_own_names_work(run_on: RunOn, tmp_path: Path) -> None:
     "use",
     ["micropython.qstr_info()", "uctypes.UINT32 | 4", "ffi.open('libc')", "machine.Pin(1)"],
 )
-def test_what_has_no_sense_says_so_when_it_is_used(run_on: RunOn, use: str) -> None:
+def test_functions_of_micropython_that_cannot_be_simulated_raise_with_a_reason(
+    run_on: RunOn, use: str
+) -> None:
     done = run_on(f"import {use.partition('.')[0]}\n{use}", profile=PROFILE)
     name = use.partition("(")[0].partition(" ")[0]
     assert done.ended.summary.startswith(f"NotSimulated: {name}: ")
 
 
-def test_names_and_sizes_that_python_does_not_allow_are_taken(run_on: RunOn) -> None:
+def test_namedtuple_and_stack_size_take_what_only_micropython_allows(run_on: RunOn) -> None:
     text = """\
 from ucollections import namedtuple
 import _thread, gc

@@ -146,7 +146,7 @@ def in_units(experiment: Experiment, found: list[Any]) -> list[list[int]]:
 
 
 @pytest.mark.parametrize("key", PLANT_FREE)
-def test_the_reference_is_that_of_the_firmware(key: str) -> None:
+def test_a_moves_reference_trajectory_equals_the_firmwares(key: str) -> None:
     experiment = Experiment(key).run()
     compared = 0
     held_ms = min(
@@ -208,7 +208,7 @@ def test_a_motor_that_holds_is_where_it_was_sent(key: str) -> None:
 
 
 @pytest.mark.parametrize("key", [key for key in RECORDED if RECORDED[key]["usual"]])
-def test_settings_are_those_of_the_firmware(key: str) -> None:
+def test_default_settings_and_limits_equal_those_of_the_firmware(key: str) -> None:
     experiment = Experiment(key)
     base = experiment.base
     usual = RECORDED[key]["usual"]
@@ -226,7 +226,7 @@ def test_settings_are_those_of_the_firmware(key: str) -> None:
 # Recordings that depend on the simulated motor: their rules
 
 
-def test_a_blocked_move_pauses_and_never_returns() -> None:
+def test_a_blocked_moves_trajectory_pauses_and_the_call_never_returns() -> None:
     experiment = Experiment("L_run_angle_blocked", stop_deg=68.0).run()
     at = RECORDED["L_run_angle_blocked"]["reference"]["ref_count"][-1]
     assert experiment.motor.simulated.control.stalled
@@ -237,7 +237,7 @@ def test_a_blocked_move_pauses_and_never_returns() -> None:
     assert experiment.seen[-1][1] == experiment.seen[-50][1]
 
 
-def test_a_blocked_call_waits_for_ever() -> None:
+def test_a_move_against_an_end_stop_never_returns_and_says_why() -> None:
     lab = Lab(MotorLaw.PYBRICKS, {"outA": "large"}, stop_deg=68.0)
     lab.until_ns = 60_000 * 1_000_000
     with pytest.raises(TimeoutError):

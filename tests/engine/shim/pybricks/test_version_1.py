@@ -16,7 +16,7 @@ HEAD = (
 PROFILE = "lego-micropython"
 
 
-def test_sounds_of_version_1(run_on: RunOn) -> None:
+def test_sound_functions_of_version_1_play_in_turn_at_their_times(run_on: RunOn) -> None:
     done = run_on(
         HEAD
         + "brick.sound.beep(1000, 500)\nbrick.sound.beeps(2)\nbrick.sound.tune([(440, 200), (880, 100)])\n"
@@ -88,7 +88,7 @@ def test_an_image_of_version_1_has_its_place(run_on: RunOn, tmp_path: Path) -> N
     assert found == [*alone, alone[-1] | filled(100, 100)], done.errors
 
 
-def test_light_buttons_and_battery_of_version_1(run_on: RunOn) -> None:
+def test_light_buttons_and_battery_of_version_1_can_be_used(run_on: RunOn) -> None:
     done = run_on(
         HEAD + "brick.light(Color.RED)\nbrick.light(None)\n"
         "while Button.CENTER not in brick.buttons():\n    wait(10)\n"

@@ -30,7 +30,9 @@ def base() -> DriveBase:
 @pytest.mark.parametrize(
     "then, active", [(Stop.HOLD, True), (Stop.COAST, False), (Stop.BRAKE, False)]
 )
-def test_a_move_ends_as_it_is_told(base: DriveBase, then: Stop, active: bool) -> None:
+def test_a_move_of_a_drive_base_ends_held_braked_or_coasting_as_asked(
+    base: DriveBase, then: Stop, active: bool
+) -> None:
     base.straight(100, then)
     # The brick tells the mean speed over 100 ms.
     distance, speed, *_ = base.state()
@@ -40,7 +42,7 @@ def test_a_move_ends_as_it_is_told(base: DriveBase, then: Stop, active: bool) ->
     assert base._base.active == active
 
 
-def test_what_is_no_end_of_a_move_is_refused(base: DriveBase) -> None:
+def test_a_move_refuses_a_stop_type_of_the_wrong_kind(base: DriveBase) -> None:
     with pytest.raises(TypeError, match="a Stop is needed, not"):
         call(base.straight, 100, Port.A)
 
@@ -64,7 +66,7 @@ def test_an_arc_between_moves_without_an_end_turns_by_its_whole_angle(base: Driv
     assert base.state() == (distance, 0, angle, 0)
 
 
-def test_a_call_need_not_wait(base: DriveBase) -> None:
+def test_a_move_with_wait_false_returns_before_it_is_done(base: DriveBase) -> None:
     base.turn(90, wait=False)
     assert not base.done()
     wait(2000)
@@ -107,7 +109,7 @@ def test_two_drive_bases_cannot_have_the_same_motor(base: DriveBase) -> None:
     DriveBase(*motors, 56, 114)
 
 
-def test_a_speed_is_the_mean_over_the_window(base: DriveBase) -> None:
+def test_a_motors_speed_is_the_mean_over_the_given_window(base: DriveBase) -> None:
     arm = Motor(Port.C)
     arm.run(200)
     wait(50)
@@ -121,7 +123,7 @@ def test_a_speed_is_the_mean_over_the_window(base: DriveBase) -> None:
             arm.speed(window)
 
 
-def test_what_runs_on_has_no_move_under_way(base: DriveBase) -> None:
+def test_done_is_true_while_a_motor_or_drive_base_just_runs_on(base: DriveBase) -> None:
     base.drive(100, 20)
     arm = Motor(Port.C)
     arm.run(100)
@@ -162,13 +164,13 @@ def test_a_deceleration_stays_until_it_is_set_again(base: DriveBase) -> None:
     assert base.settings() == (100, 400, 131, 737)
 
 
-def test_settings_change_while_it_drives(base: DriveBase) -> None:
+def test_settings_of_a_drive_base_can_change_while_it_drives(base: DriveBase) -> None:
     base.drive(100, 0)
     base.settings(straight_speed=200)
     assert base.settings()[0] == 200  # type: ignore[index]
 
 
-def test_tasks_run_side_by_side(base: DriveBase) -> None:
+def test_tasks_of_multitask_run_at_the_same_time(base: DriveBase) -> None:
     watch, told = StopWatch(), list[tuple[str, Any]]()
 
     async def drive() -> str:
@@ -192,7 +194,7 @@ def test_tasks_run_side_by_side(base: DriveBase) -> None:
     assert not run_task()
 
 
-def test_a_race_ends_with_the_first(base: DriveBase) -> None:
+def test_multitask_with_race_ends_with_its_first_task(base: DriveBase) -> None:
     arm = Motor(Port.C)
 
     async def main() -> Any:
@@ -207,7 +209,7 @@ def test_a_race_ends_with_the_first(base: DriveBase) -> None:
         run_task(5)
 
 
-def test_tasks_take_turns(base: DriveBase) -> None:
+def test_tasks_that_wait_for_0_ms_take_turns(base: DriveBase) -> None:
     turns: list[str] = []
 
     async def wait_often(name: str) -> None:
@@ -338,7 +340,7 @@ def test_move_by_drives_to_a_place(base: DriveBase) -> None:
     assert base.angle() == pytest.approx(0, abs=0.5)
 
 
-def test_what_is_counted_begins_again_at_a_reset(base: DriveBase) -> None:
+def test_reset_sets_the_distance_and_angle_of_a_drive_base(base: DriveBase) -> None:
     base.straight(100)
     base.turn(90)
     base.reset(20, 30)

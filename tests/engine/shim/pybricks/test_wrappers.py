@@ -100,7 +100,7 @@ def test_every_name_of_a_module_can_be_imported(run_on: RunOn, text: str) -> Non
         "from pybricks.uev3dev.util import I2C\nI2C(5)",
     ],
 )
-def test_what_only_a_brick_has_is_refused_when_it_is_used(run_on: RunOn, text: str) -> None:
+def test_using_what_only_a_real_brick_has_is_refused(run_on: RunOn, text: str) -> None:
     assert "NotSimulated: pybricks." in "\n".join(run_on(text, profile=PROFILE).errors)
 
 

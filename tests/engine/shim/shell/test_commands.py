@@ -304,23 +304,27 @@ def test_a_shell_command_does_what_it_does_on_the_brick(seen: dict[str, Seen], n
 
 
 @pytest.mark.parametrize("statement", REFUSED)
-def test_what_is_not_simulated_is_refused_by_name(seen: dict[str, Seen], statement: str) -> None:
+def test_shell_commands_that_are_not_simulated_are_refused_by_name(
+    seen: dict[str, Seen], statement: str
+) -> None:
     what, hint = REFUSED[statement]
     message = f"NotSimulated: {what} is not part of the simulated brick ({hint})"
     assert seen[statement] == Seen([message], [], [])
 
 
 @pytest.mark.parametrize("statement", FAILED)
-def test_what_fails_says_so_and_the_program_goes_on(seen: dict[str, Seen], statement: str) -> None:
+def test_a_failing_shell_command_prints_its_error_and_the_program_goes_on(
+    seen: dict[str, Seen], statement: str
+) -> None:
     assert seen[statement] == Seen([], [FAILED[statement]], [])
 
 
 @pytest.mark.parametrize("statement", NOT_THERE)
-def test_other_processes_are_refused_by_name(seen: dict[str, Seen], statement: str) -> None:
+def test_running_other_processes_is_refused_by_name(seen: dict[str, Seen], statement: str) -> None:
     assert seen[statement] == Seen([f"NotSimulated: {NOT_THERE[statement]}"], [], [])
 
 
-def test_commands_for_the_text_screen(run_on: RunOn) -> None:
+def test_shell_commands_for_the_text_screen_change_the_shown_text(run_on: RunOn) -> None:
     done = run_on(
         f"{SETUP}from ev3dev2.console import Console\nConsole().text_at('Hello')\n"
         "os.system('setfont Lat15-TerminusBold14')\nprint(os.popen('stty size').read().split())\nos.system('clear')\n"
@@ -336,6 +340,6 @@ def test_commands_for_the_text_screen(run_on: RunOn) -> None:
     assert done.lines == ["['9', '22']", "['8', '22']"]
 
 
-def test_commands_come_out_the_same_each_time(run_on: RunOn) -> None:
+def test_shell_commands_give_the_same_recording_each_time(run_on: RunOn) -> None:
     text = f"{SETUP}p = Popen('beep', shell=True)\nprint(p)\nos.system('espeak hi')\nprint(p.wait(), p.pid)"
     assert run_on(text).recording == run_on(text).recording

@@ -6,7 +6,7 @@ from tests.engine.shim.conftest import RunOn
 from tests.engine.shim.shell.test_commands import SETUP
 
 
-def test_a_line_that_is_refused_on_its_way_ends(run_on: RunOn) -> None:
+def test_a_shell_line_that_is_refused_halfway_ends_with_exit_code_1(run_on: RunOn) -> None:
     done = run_on(
         f"{SETUP}p = Popen('sleep 1; cat a.txt; beep', shell=True)\ntime.sleep(3)\nprint(p.poll(), p.wait())"
     )

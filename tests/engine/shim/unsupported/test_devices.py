@@ -68,7 +68,9 @@ USES = {
 
 
 @cases("text, words", USES)
-def test_the_program_ends_with_its_name(run: Run, text: str, words: str) -> None:
+def test_using_an_unsupported_device_ends_the_program_with_its_name(
+    run: Run, text: str, words: str
+) -> None:
     done = run(text, prelude="none")
     assert done.errors[-1].startswith(f"NotSimulated: {words}")
     assert done.errors[-1].endswith(")")
@@ -89,7 +91,7 @@ def test_a_program_may_try_what_is_connected(run: Run) -> None:
     assert done.lines == ["no LightSensor", "no TouchSensor", "GyroSensor"]
 
 
-def test_a_sensor_of_no_kind_reads_the_simulated_one(run: Run) -> None:
+def test_the_generic_sensor_class_reads_the_simulated_sensor(run: Run) -> None:
     done = run(
         "from ev3dev2.sensor import *\nfrom ev3dev2.sensor.lego import UltrasonicSensor\n"
         "s = Sensor(INPUT_1, driver_name=['lego-nxt-us', 'lego-ev3-us'])\ns.mode = 'US-DIST-CM'\n"
@@ -109,7 +111,7 @@ def test_an_empty_port_is_not_connected(run: Run) -> None:
     )
 
 
-def test_a_sensor_of_no_kind_may_be_one_that_is_not_simulated(run: Run) -> None:
+def test_the_generic_sensor_class_refuses_a_sensor_that_is_not_simulated(run: Run) -> None:
     done = run(
         "from ev3dev2.sensor import *\nSensor(INPUT_1, name_pattern='sensor7')", prelude="none"
     )
@@ -119,12 +121,12 @@ def test_a_sensor_of_no_kind_may_be_one_that_is_not_simulated(run: Run) -> None:
 
 
 @for_each(name=[*sorted(SIMULATED), "lego-ev3"])
-def test_a_simulated_driver_is_not_refused(name: str) -> None:
+def test_drivers_that_are_simulated_are_not_refused(name: str) -> None:
     assert of_driver(name) is None
 
 
 @for_each(pattern=DRIVERS)
-def test_each_kind_is_found(pattern: str) -> None:
+def test_each_unsupported_driver_is_recognized_by_its_name_pattern(pattern: str) -> None:
     assert (
         of_driver(
             pattern.replace("*", "-0") if pattern.endswith("*") else pattern.replace("*", "x")
@@ -133,7 +135,7 @@ def test_each_kind_is_found(pattern: str) -> None:
     )
 
 
-def test_the_error_is_the_librarys_own_too() -> None:
+def test_the_error_about_an_unsupported_device_is_also_the_librarys_own() -> None:
     # The older library raises no class of its own.
     error = refused_device(
         SimpleNamespace(kwargs={"address": "in1", "driver_name": "pixy-lego"}),
@@ -156,7 +158,7 @@ def test_the_error_is_the_librarys_own_too() -> None:
     ],
     ids=["port", "no texts", "no port", "one of them", "several ports"],
 )
-def test_what_another_robot_may_have_is_not_refused(
+def test_a_device_that_another_robot_may_have_is_not_called_unsupported(
     class_name: str, wanted: dict[str, object]
 ) -> None:
     assert refused_device(SimpleNamespace(kwargs=wanted), class_name, OSError) is None

@@ -53,7 +53,9 @@ USES = {
 
 
 @cases("text, words", USES)
-def test_the_program_ends_with_its_name(run: Run, text: str, words: str) -> None:
+def test_using_an_unsupported_module_ends_the_program_with_its_name(
+    run: Run, text: str, words: str
+) -> None:
     done = run(text, prelude="none")
     assert done.errors[-1].startswith(f"NotSimulated: {words}")
     assert done.errors[-1].endswith(")")
@@ -100,7 +102,7 @@ def test_every_module_of_the_brick_can_be_imported(run: Run) -> None:
     ]
 
 
-def test_a_program_can_do_without_what_a_brick_does_not_have(run: Run) -> None:
+def test_a_program_may_catch_the_import_error_of_a_module_no_brick_has(run: Run) -> None:
     tries = "".join(
         f"try:\n    import {name}\nexcept ImportError:\n    print('{name}')\n" for name in ELSEWHERE
     )
@@ -113,13 +115,15 @@ TOLD = "caught NotSimulated: serial.Serial: a serial port is not simulated"
 
 
 @pytest.mark.parametrize("handled", ["", " Exception", " Exception as error"])
-def test_the_end_tells_what_a_program_caught(run: Run, handled: str) -> None:
+def test_the_end_of_a_run_names_the_not_simulated_part_that_was_caught(
+    run: Run, handled: str
+) -> None:
     ended = run(CAUGHT.format(handled), prelude="none").ended
     assert (ended.end, ended.exit_code, ended.summary) == (End.FINISHED, 0, TOLD)
     assert end_words(ended, "") == (f"finished: {TOLD}", f"— finished: {TOLD} at 0.00 s")
 
 
-def test_a_limit_and_an_exit_code_tell_it_too(run: Run) -> None:
+def test_the_end_by_limit_or_exit_code_also_names_what_is_not_simulated(run: Run) -> None:
     ended = run(CAUGHT.format("") + "time.sleep(9)", prelude="none", time_limit_s=1).ended
     assert ended.summary == f"stopped at the limit of 1 s simulated time; {TOLD}"
     ended = run(CAUGHT.format("") + "raise SystemExit(3)", prelude="none").ended
@@ -127,7 +131,7 @@ def test_a_limit_and_an_exit_code_tell_it_too(run: Run) -> None:
     assert run("import time\nraise SystemExit(0)", prelude="none").ended.summary == ""
 
 
-def test_errors_can_be_handled(run: Run) -> None:
+def test_error_classes_of_unsupported_modules_work_in_except(run: Run) -> None:
     done = run(
         "import serial\ntry:\n    try:\n        int('x')\n    except serial.SerialException:\n        pass\n"
         "except ValueError as error:\n    print(error)",
@@ -151,7 +155,7 @@ def test_sockets_that_are_not_bluetooth_work(run: Run) -> None:
 
 
 @pytest.mark.parametrize("name", [name for name in BLUETOOTH if hasattr(socket, name)])
-def test_numbers_are_those_of_the_system(name: str) -> None:
+def test_bluetooth_constants_of_sockets_have_the_systems_numbers(name: str) -> None:
     assert getattr(socket, name) == BLUETOOTH[name]
 
 

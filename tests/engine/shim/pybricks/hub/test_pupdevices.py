@@ -203,7 +203,7 @@ QUICK: tuple[str, ...] = tuple(RECORDED)[::4]
 
 @pytest.mark.parametrize("key", RECORDED)
 @pytest.mark.quick_cases(*QUICK)
-def test_a_recording_is_met(key: str) -> None:
+def test_motors_of_a_hub_reproduce_recordings_of_the_firmware(key: str) -> None:
     assert bool(find_misses(key)) == (key in MISSED)
 
 
@@ -257,7 +257,7 @@ def test_a_motor_with_gears_tells_what_the_gears_leave() -> None:
     assert control.target_tolerances() == (17, 5)
 
 
-def test_the_controllers_of_a_drive_base_take_what_those_of_motors_take() -> None:
+def test_controllers_of_a_drive_base_take_the_settings_of_motor_controllers() -> None:
     Lab(MotorLaw.PYBRICKS_4, dict.fromkeys("AB", "medium-angular"), hub="PrimeHub")
     robotics.DriveBase.current = None
     ports: Any = Port
