@@ -65,7 +65,9 @@ RULES: dict[str, tuple[BreakRule, str]] = {
 
 
 @pytest.mark.parametrize("text, rule, common", [(t, *r) for t, r in RULES.items()], ids=RULES)
-def test_a_text_is_a_rule_and_back(text: str, rule: BreakRule, common: str) -> None:
+def test_a_breakpoints_text_is_parsed_and_written_back_the_same(
+    text: str, rule: BreakRule, common: str
+) -> None:
     found = parse_break(text, RUN)
     assert found == Breakpoint(rule, common)
     assert parse_break(found.written(), RUN) == found
@@ -96,21 +98,21 @@ WRONG = {
 
 
 @pytest.mark.parametrize("text, why", WRONG.items(), ids=[text[:20] or "empty" for text in WRONG])
-def test_what_is_no_break_says_why_and_what_is_allowed(text: str, why: str) -> None:
+def test_a_text_that_is_no_breakpoint_is_refused_with_what_is_allowed(text: str, why: str) -> None:
     with pytest.raises(ConfigError, match="break: ") as refused:
         parse_break(text, RUN)
     assert why in refused.value.message
     assert refused.value.hint
 
 
-def test_every_column_of_a_robot_can_be_compared_and_without_one_any_name() -> None:
+def test_breakpoints_can_compare_every_column_of_the_robot() -> None:
     for column in list_columns(RUN):
         for name in (column.name, *column.also):
             assert parse_break(f"{name} > 1.5", RUN).rule == ValueCondition(column.name, ">", "1.5")
     assert parse_break("middle.red > 1").rule == ValueCondition("middle.red", ">", "1")
 
 
-def test_lines_with_a_break_and_breaks_that_move() -> None:
+def test_breakpoints_know_their_lines_and_can_be_moved() -> None:
     breaks = parse_breakpoints(["# 3", "3 if x", "# 5", "stall"])
     assert {line: one.text for line, one in break_lines(breaks).items()} == {3: "3 if x", 5: "5"}
     assert [one.find_line() for one in breaks] == [3, 3, 5, 0]

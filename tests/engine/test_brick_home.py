@@ -18,7 +18,7 @@ PARTS = {
 
 
 @pytest.mark.parametrize("case", PARTS)
-def test_parts_of_a_path_in_it(case: str) -> None:
+def test_parts_in_home_gives_the_path_below_the_bricks_home_folder(case: str) -> None:
     path, parts = PARTS[case]
     assert parts_in_home(path, "/work") == parts
     assert parts_in_home(path, "/home/robot/own") is None

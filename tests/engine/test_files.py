@@ -237,7 +237,9 @@ def test_a_robot_file_may_differ_from_any_robot(write: Write) -> None:
     ],
     ids=["one changed", "one gone", "none", "other order", "a third"],
 )
-def test_colour_sensors_of_a_file(text: str, sensors: list[tuple[str, int]], write: Write) -> None:
+def test_a_robot_file_can_change_remove_and_add_colour_sensors(
+    text: str, sensors: list[tuple[str, int]], write: Write
+) -> None:
     found = load_robot(write("mine.toml", text)).color_sensors
     assert [(sensor.name, sensor.diameter_mm) for sensor in found] == sensors
 
@@ -303,7 +305,7 @@ SAVED_ROBOT = {
         "unknown keys",
     ],
 )
-def test_a_saved_robot_in_full(
+def test_a_robot_saved_by_the_old_simulator_is_read_with_its_noise_and_weight(
     changes: dict[str, Any], found: dict[str, Any], write: Write
 ) -> None:
     choice = choose_robot(str(write("old.json", json.dumps({**SAVED_ROBOT, **changes}))))
@@ -509,7 +511,7 @@ def run_like(**changes: Any) -> RunSpec:
         "profile in a world",
     ],
 )
-def test_what_no_file_can_say_is_not_written(
+def test_saving_what_no_file_can_express_is_refused_and_writes_nothing(
     save: Callable[..., None], thing: object, error: type[ConfigError], tmp_path: Path
 ) -> None:
     file = tmp_path / "mine.toml"

@@ -393,7 +393,9 @@ def check(switch: str, path: Path, content: Content, said: str) -> None:
 
 @pytest.mark.parametrize("switch", KINDS)
 @cases("content, said", BROKEN)
-def test_a_broken_file_is_told(content: Content, said: str, switch: str, tmp_path: Path) -> None:
+def test_a_broken_settings_file_is_refused_with_the_reason(
+    content: Content, said: str, switch: str, tmp_path: Path
+) -> None:
     check(switch, tmp_path / "broken.toml", content, said)
 
 
@@ -412,7 +414,7 @@ def test_a_missing_file_names_its_neighbour(tmp_path: Path) -> None:
         build("-r", tmp_path / "robt.toml")
 
 
-def test_a_suffix_alone_is_no_likeness(tmp_path: Path) -> None:
+def test_a_missing_file_names_no_neighbour_that_shares_only_its_suffix(tmp_path: Path) -> None:
     (tmp_path / "w.toml").touch()
     with pytest.raises(RobotError, match=r"none\.toml: there is no such file$"):
         build("-r", tmp_path / "none.toml")
@@ -431,7 +433,7 @@ def test_a_mistake_in_a_file_that_a_world_names_is_told_with_that_file(
 
 
 @pytest.mark.parametrize("case", ["json robot: syntax", "world: mat", "binary"])
-def test_the_command_says_it_in_one_line_and_runs_nothing(
+def test_run_refuses_a_broken_settings_file_in_one_line_and_runs_nothing(
     case: str, home: Path, tmp_path: Path, here: Command
 ) -> None:
     switch, name = FILES[case.partition(":")[0] if ":" in case else "world"]

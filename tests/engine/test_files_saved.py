@@ -231,7 +231,7 @@ def test_a_file_that_cannot_be_read_is_not_replaced(
     assert file.read_bytes() == old.encode("latin-1")
 
 
-def test_a_failed_write_leaves_the_old_file(
+def test_a_failed_save_of_settings_leaves_the_old_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "mine.toml").write_text(ROBOT_FILE)

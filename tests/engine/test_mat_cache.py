@@ -95,7 +95,7 @@ def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
 
 @pytest.mark.quick_cases("2", "7")
 @pytest.mark.parametrize("diameter", [2, 7, 100, 128])
-def test_sums_of_unusual_diameters(diameter: int, home: Path) -> None:
+def test_cached_sums_are_right_for_unusual_diameters(diameter: int, home: Path) -> None:
     files = mat_cache.prepare(mats.background("Radial_red").image, [diameter])
     field = files.open_field()
     pixels = files.read_pixels()
@@ -104,13 +104,13 @@ def test_sums_of_unusual_diameters(diameter: int, home: Path) -> None:
 
 
 @pytest.mark.slow
-def test_white_discs_do_not_overflow(home: Path, tmp_path: Path) -> None:
+def test_the_sum_over_the_largest_white_disc_does_not_overflow(home: Path, tmp_path: Path) -> None:
     files = mat_cache.prepare(picture(tmp_path, fill="white"), [mat_cache.MAX_DIAMETER_PX])
     pixels = sum(map(sum, build_disc_mask(mat_cache.MAX_DIAMETER_PX)))
     assert files.open_field().sum_disc(mat_cache.MAX_DIAMETER_PX, 500, 500) == (255 * pixels,) * 3
 
 
-def test_pixels_are_those_of_the_image(home: Path) -> None:
+def test_cached_pixels_equal_those_of_the_image(home: Path) -> None:
     image = mats.background("Rainbow_bands").image
     files = mat_cache.prepare(image, ())
     with Image.open(image) as opened:
@@ -118,7 +118,7 @@ def test_pixels_are_those_of_the_image(home: Path) -> None:
     assert files.open_field().read_box(4, -1, -1)[12:24] == bytes(3) + b"\xff" * 9
 
 
-def test_what_is_cached_is_not_made_again(home: Path, tmp_path: Path) -> None:
+def test_a_cached_mat_is_not_prepared_again(home: Path, tmp_path: Path) -> None:
     image = picture(tmp_path)
     first = mat_cache.prepare(image, (20, 10))
     made = {path: path.stat().st_ino for path in cached(home)}
@@ -127,7 +127,9 @@ def test_what_is_cached_is_not_made_again(home: Path, tmp_path: Path) -> None:
     assert [diameter for diameter, _ in first.sums] == [10, 20]
 
 
-def test_the_key_is_the_content_not_the_name(home: Path, tmp_path: Path) -> None:
+def test_a_cached_mat_is_found_by_its_images_content_not_its_name(
+    home: Path, tmp_path: Path
+) -> None:
     image = picture(tmp_path)
     first = mat_cache.prepare(image, ())
     assert mat_cache.prepare(image.rename(tmp_path / "other.png"), ()) == first
@@ -135,7 +137,7 @@ def test_the_key_is_the_content_not_the_name(home: Path, tmp_path: Path) -> None
 
 
 @pytest.mark.slow
-def test_a_torn_file_is_made_again(home: Path, tmp_path: Path) -> None:
+def test_a_cut_off_cache_file_is_made_again(home: Path, tmp_path: Path) -> None:
     image = picture(tmp_path)
     files = mat_cache.prepare(image, [20])
     whole = files.sums[0][1].read_bytes()
@@ -187,7 +189,7 @@ DAMAGES: dict[str, Callable[[Path], None]] = {
 
 @pytest.mark.quick_cases("zeros")
 @cases("damage", DAMAGES)
-def test_a_damaged_file_is_made_again(
+def test_a_damaged_cache_file_is_made_again(
     home: Path, tmp_path: Path, damage: Callable[[Path], None]
 ) -> None:
     image = picture(tmp_path, fill="white")
@@ -202,7 +204,7 @@ def test_a_damaged_file_is_made_again(
     assert files.open_field().read_box(1, 500, 500) == b"\xff" * 3
 
 
-def test_a_copied_file_is_read_once_to_be_trusted(home: Path, tmp_path: Path) -> None:
+def test_a_copied_cache_file_is_checked_once_and_then_trusted(home: Path, tmp_path: Path) -> None:
     image = picture(tmp_path, fill="white")
     files = mat_cache.prepare(image, ())
     shutil.copy(files.pixels, tmp_path / "copy")
@@ -214,7 +216,7 @@ def test_a_copied_file_is_read_once_to_be_trusted(home: Path, tmp_path: Path) ->
     assert note_of(files.pixels).read_text().split()[1] == str(copied)
 
 
-def test_a_missing_file_is_told(home: Path, tmp_path: Path) -> None:
+def test_opening_a_mat_whose_cache_file_is_missing_raises(home: Path, tmp_path: Path) -> None:
     files = mat_cache.prepare(picture(tmp_path), [20])
     files.pixels.unlink()
     with pytest.raises(BackgroundError, match="cannot be opened"):
@@ -273,7 +275,7 @@ def test_a_mat_with_many_diameters_is_kept_whole(
     assert files.open_field().sums.keys() == {10, 20}
 
 
-def test_parts_of_killed_processes_are_cleared(home: Path, tmp_path: Path) -> None:
+def test_temporary_cache_files_of_killed_processes_are_removed(home: Path, tmp_path: Path) -> None:
     folder = home / "cache" / "fields"
     folder.mkdir(parents=True)
     old, new = folder / ".sums.old.tmp", folder / ".sums.new.tmp"
@@ -285,7 +287,9 @@ def test_parts_of_killed_processes_are_cleared(home: Path, tmp_path: Path) -> No
 
 
 @pytest.mark.slow
-def test_several_at_once_make_the_same_files(home: Path, tmp_path: Path) -> None:
+def test_several_processes_preparing_a_mat_at_once_make_the_same_files(
+    home: Path, tmp_path: Path
+) -> None:
     image = picture(tmp_path, fill="navy")
     with ThreadPoolExecutor(3) as pool:
         found = {pool.submit(mat_cache.prepare, image, [20]) for _ in range(3)}
@@ -312,7 +316,9 @@ def test_a_diameter_beyond_the_limits_is_refused(diameter: int, home: Path, tmp_
         mat_cache.prepare(picture(tmp_path), [diameter])
 
 
-def test_a_folder_that_cannot_be_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cache_folder_that_cannot_be_created_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "file").write_text("in the way")
     monkeypatch.setenv("TUISIM_HOME", str(tmp_path / "file"))
     with pytest.raises(BackgroundError, match="TUISIM_HOME"):
@@ -328,7 +334,7 @@ def test_without_a_home_the_users_cache_is_used(
 
 
 @pytest.mark.slow
-def test_opening_needs_no_heavy_library(home: Path, tmp_path: Path) -> None:
+def test_opening_a_cached_mat_imports_no_heavy_library(home: Path, tmp_path: Path) -> None:
     files = mat_cache.prepare(picture(tmp_path, fill="white"), [20])
     code = (
         "import json, sys\n"

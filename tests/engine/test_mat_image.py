@@ -182,12 +182,12 @@ def locked(tmp_path: Path) -> Path:
 
 
 @pytest.mark.usefixtures("locked", "_a_nobody")
-def test_a_file_that_may_not_be_read(tmp_path: Path) -> None:
+def test_an_image_without_read_permission_is_refused_with_the_reason(tmp_path: Path) -> None:
     with pytest.raises(BackgroundError, match="cannot be read: Permission denied"):
         mat_image.read_file(tmp_path / "mat.png")
 
 
-def test_a_file_too_large_to_read(tmp_path: Path) -> None:
+def test_an_image_file_beyond_the_size_limit_is_refused(tmp_path: Path) -> None:
     with (tmp_path / "mat.tiff").open("wb") as stream:
         stream.truncate(257_000_000)
     with pytest.raises(BackgroundError, match="257 MB, the limit is 256"):
@@ -202,7 +202,7 @@ def test_an_unknown_fit_is_refused_with_those_that_exist(fit: str, tmp_path: Pat
     assert all(allowed in caught.value.hint for allowed in BACKGROUND_FITS)
 
 
-def test_stretch_fills_the_field() -> None:
+def test_fit_stretch_makes_the_image_fill_the_field() -> None:
     image = Image.new("RGB", (40, 60), "red")
     image.paste("blue", (20, 0, 40, 60))
     field = decoded(saved(image), "stretch")
@@ -220,7 +220,9 @@ def test_stretch_fills_the_field() -> None:
         "high": ((50, 4000), (1174, 0, 1188, 1143)),
     },
 )
-def test_fit_keeps_the_proportions(size: tuple[int, int], box: tuple[int, int, int, int]) -> None:
+def test_fit_fit_keeps_the_proportions_of_the_image(
+    size: tuple[int, int], box: tuple[int, int, int, int]
+) -> None:
     field = decoded(saved(Image.new("RGB", size, "black")), "fit")
     rows, columns = np.nonzero(~field.any(axis=2))
     assert (columns.min(), rows.min(), columns.max() + 1, rows.max() + 1) == box
@@ -232,7 +234,7 @@ def test_fit_keeps_the_proportions(size: tuple[int, int], box: tuple[int, int, i
 @pytest.mark.parametrize(
     "size, dark", [((100, 50), 5000), ((3000, 50), WIDTH * 50), ((3000, 2000), WIDTH * HEIGHT)]
 )
-def test_centre_is_pixel_for_pixel(size: tuple[int, int], dark: int) -> None:
+def test_fit_centre_copies_the_image_pixel_for_pixel(size: tuple[int, int], dark: int) -> None:
     image = Image.new("RGB", size, "black")
     image.putpixel((size[0] // 2, size[1] // 2), (9, 8, 7))
     field = decoded(saved(image), "centre")
@@ -260,7 +262,9 @@ def test_a_picture_of_the_fields_size_is_left_alone() -> None:
     ],
 )
 @pytest.mark.parametrize("shade", ["black", "white"])
-def test_every_kind_of_picture(kind: str, mode: str, shade: str) -> None:
+def test_images_of_every_format_and_mode_keep_black_and_white(
+    kind: str, mode: str, shade: str
+) -> None:
     image = Image.new("RGB", (64, 64), shade)
     image = _lab(shade) if mode == "LAB" else image.convert(mode)
     assert middle(decoded(saved(image, kind))) == pytest.approx(
@@ -291,7 +295,7 @@ def test_deep_greys_become_eight_bits(array: np.ndarray, shade: int) -> None:
     assert middle(decoded(saved(Image.fromarray(array), "TIFF"))) == [shade] * 3
 
 
-def test_a_png_of_16_bits() -> None:
+def test_a_png_of_16_bits_is_reduced_to_8_bits() -> None:
     image = Image.fromarray(np.full((9, 9), 32896, np.uint16))
     assert middle(decoded(saved(image))) == [128] * 3
 

@@ -142,7 +142,7 @@ def test_a_wrong_name_gets_a_guess_without_the_list(name: str, guess: str) -> No
 
 
 @pytest.mark.parametrize("name", ["", "zzzzzz", "..", "~"])
-def test_a_strange_name_is_refused(name: str) -> None:
+def test_a_strange_name_of_a_mat_is_refused(name: str) -> None:
     with pytest.raises(BackgroundError, match="no such mat"):
         mats.background(name)
 
@@ -197,7 +197,9 @@ def test_the_catalogue_goes_before_files(here: Path) -> None:
         "no such home": ("~nobody-of-that-name/x.png", "no such folder|cannot be read"),
     },
 )
-def test_an_image_that_is_not_there(word: str, message: str, here: Path) -> None:
+def test_a_mat_image_that_does_not_exist_is_refused_by_name(
+    word: str, message: str, here: Path
+) -> None:
     with pytest.raises(BackgroundError, match=message):
         mats.background(word)
 
@@ -229,7 +231,7 @@ def test_a_programs_title_is_the_first_line_of_its_docstring(
     assert program_file.list_programs() == [("turn.py", given / "programs" / "turn.py", title)]
 
 
-def test_a_given_folder_needs_only_what_is_asked_for(given: Path) -> None:
+def test_a_folder_of_own_mats_needs_no_programs_until_they_are_asked_for(given: Path) -> None:
     (given / "programs").rmdir()
     assert mats.background("Mine").title == "My own"
     with pytest.raises(ConfigError, match="TUISIM_ASSETS"):
@@ -288,20 +290,20 @@ def test_obstacles_and_sensors_are_read(given: Path) -> None:
         "no sensor number": (GOOD + "sensor_x_mm = { left = 'x' }\n", "Mine.sensor_x_mm.left"),
     },
 )
-def test_a_wrong_catalogue_is_explained(text: str, message: str, given: Path) -> None:
+def test_a_faulty_catalogue_of_mats_is_explained(text: str, message: str, given: Path) -> None:
     catalog(given, text)
     with pytest.raises(BackgroundError, match=message) as caught:
         mats.catalogue()
     assert "catalog.toml" in str(caught.value)
 
 
-def test_a_missing_catalogue_is_told(given: Path) -> None:
+def test_a_missing_catalogue_of_mats_is_told(given: Path) -> None:
     (given / "backgrounds" / "catalog.toml").unlink()
     with pytest.raises(BackgroundError, match=r"catalog\.toml: cannot be read"):
         mats.catalogue()
 
 
-def test_a_missing_picture_is_told(given: Path) -> None:
+def test_a_mats_missing_picture_is_told(given: Path) -> None:
     (given / "backgrounds" / "Mine.png").unlink()
     with pytest.raises(BackgroundError, match=r"Mine\.png"):
         mats.background("Mine")

@@ -80,7 +80,9 @@ def test_what_stands_on_the_mat_and_moves_sensors_stays(own: Path) -> None:
         "the user says it": ("FuBK_testcard_vectorized.png", "fit", "fit"),
     },
 )
-def test_how_a_picture_meets_the_field(file: str, said: str | None, fit: str, own: Path) -> None:
+def test_the_fit_of_a_users_mat_follows_its_file_name_or_the_users_choice(
+    file: str, said: str | None, fit: str, own: Path
+) -> None:
     paint(own / file, size=(2215, 1073))
     assert (
         build_run_spec(

@@ -36,7 +36,9 @@ ERRORS = {
 
 
 @cases("text, summary", ERRORS)
-def test_an_error_that_is_hard_to_tell_is_told(run: Run, text: str, summary: str) -> None:
+def test_errors_with_odd_or_broken_texts_still_have_a_summary(
+    run: Run, text: str, summary: str
+) -> None:
     done = run(text, prelude="none")
     assert (done.ended.end, done.ended.summary) == ("raised", summary)
     assert not any("tuisim" in line for line in done.errors)
@@ -74,7 +76,9 @@ EXITS = {
 
 
 @cases("text, code, errors", EXITS)
-def test_a_program_that_ends_itself(run: Run, text: str, code: int, errors: list[str]) -> None:
+def test_a_program_that_exits_itself_finishes_with_its_exit_code(
+    run: Run, text: str, code: int, errors: list[str]
+) -> None:
     done = run(text, prelude="none")
     assert (done.ended.end, done.ended.exit_code, done.errors, done.lines) == (
         "finished",
@@ -111,7 +115,7 @@ def test_an_error_that_python_cannot_raise_shows_the_programs_lines_only(run: Ru
     assert done.lines == ["on"]
 
 
-def test_what_goes_at_the_end_still_finds_its_names(run: Run) -> None:
+def test_destructors_at_the_programs_end_still_find_global_names(run: Run) -> None:
     text = (
         "class A:\n    def __del__(self): print('gone', seen)\n"
         "seen = [1]\na = A()\nseen.append(a.__class__.__name__)"
@@ -130,7 +134,9 @@ CRASHES = {
 @pytest.mark.parametrize(
     "before", ["", "import faulthandler; faulthandler.enable(); "], ids=["plain", "enabled"]
 )
-def test_a_crash_names_the_line(run: Run, signal: str, text: str, before: str) -> None:
+def test_a_crash_of_the_interpreter_names_the_programs_line(
+    run: Run, signal: str, text: str, before: str
+) -> None:
     done = run(before + text, prelude="none")
     assert (done.ended.end, done.ended.error_line, done.lines) == ("crashed", 3, ["A: 1"])
     assert done.ended.summary == f"the program's process was killed by {signal} in line 3"
