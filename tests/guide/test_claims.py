@@ -96,7 +96,7 @@ def _says(claim: dict[str, Any]) -> list[str]:
 
 
 @pytest.mark.parametrize("name", [*TEXTS, *LESSONS])
-def test_each_sentence_with_a_number_is_held(name: str) -> None:
+def test_each_sentence_of_the_guide_with_a_number_has_a_claim(name: str) -> None:
     said = [one for claim in CLAIMS.get(name, []) for one in _says(claim)]
     assert [
         sentence for sentence in _sentences(name) if not any(one in sentence for one in said)
@@ -104,7 +104,7 @@ def test_each_sentence_with_a_number_is_held(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CLAIMS)
-def test_each_claim_is_in_its_page(name: str) -> None:
+def test_each_claims_sentence_is_in_its_page_and_its_test_exists(name: str) -> None:
     text = "\n".join(_paragraphs(name))
     for claim in CLAIMS[name]:
         assert set(claim) <= KEYS
@@ -149,7 +149,7 @@ def _lay_out(name: str, where: Path) -> None:
 
 
 @pytest.mark.parametrize("name, claim", [*_cases()])
-def test_a_claim_is_so(
+def test_commands_and_programs_print_what_the_guide_claims(
     name: str,
     claim: dict[str, Any],
     tmp_path: Path,

@@ -76,7 +76,7 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     "README", "experiments", "marking", "measuring-bands", "motion-and-drift", "python"
 )
 @pytest.mark.parametrize("name", WITH_BLOCKS)
-def test_each_block_of_code_runs_and_prints_what_it_says(
+def test_each_code_block_of_the_guide_runs_and_prints_what_it_says(
     name: str, tmp_path: Path, here: Command, home: Path, opened: list[Any]
 ) -> None:
     if prepare := PREPARED.get(name):
@@ -103,7 +103,7 @@ def _run_commands(block: Block, here: Command) -> None:
         assert done.returncode == 0, (words, done.stderr)
 
 
-def test_blocks_that_are_not_run_here_are_run_elsewhere() -> None:
+def test_code_blocks_of_the_guide_not_run_by_this_test_are_run_by_another() -> None:
     kinds = {block.kind for name in DOCUMENTS for block in blocks(name)} - {
         "",
         "sh",
@@ -114,7 +114,7 @@ def test_blocks_that_are_not_run_here_are_run_elsewhere() -> None:
     assert [path for path in RUN_ELSEWHERE.values() if not (ROOT / path).exists()] == []
 
 
-def test_blocks_without_a_kind_are_drawings() -> None:
+def test_code_blocks_without_a_language_contain_no_command() -> None:
     plain = [block.code for name in DOCUMENTS for block in blocks(name) if block.kind == ""]
     assert ["tuisim" in code.split() for code in plain] == [False] * len(plain)
 

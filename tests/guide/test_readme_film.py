@@ -49,7 +49,7 @@ def test_the_film_is_short_and_small() -> None:
 
 
 @pytest.mark.slow
-async def test_the_script_films_the_app(home: object) -> None:
+async def test_the_film_script_records_the_panels_and_a_running_program(home: object) -> None:
     """After a change of the app's look: `python -m tests.guide.film`."""
     film = []
     async with aclosing(frames()) as taken:

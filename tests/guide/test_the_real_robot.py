@@ -237,7 +237,7 @@ def test_the_guides_row_of_a_stop_is_what_comes_out(row: Cells) -> None:
     )
 
 
-def test_ends_of_timed_moves() -> None:
+def test_the_guides_row_of_late_ends_of_timed_moves_is_what_comes_out() -> None:
     for row in rows_of("When a move by time ends"):
         time_ms = int(float(row[0]) * 1000)
         late_ms = [
