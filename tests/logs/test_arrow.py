@@ -43,7 +43,9 @@ def column(*parts: list[Any], kind: pa.DataType | None = None) -> pa.ChunkedArra
     ],
     ids=["parts", "whole", "nulls", "short", "slice", "empty"],
 )
-def test_a_column_as_numbers(cells: pa.ChunkedArray, expected: list[float]) -> None:
+def test_convert_to_floats_gives_numbers_with_nan_for_missing_cells(
+    cells: pa.ChunkedArray, expected: list[float]
+) -> None:
     np.testing.assert_array_equal(convert_to_floats(cells), expected)
 
 
@@ -89,7 +91,7 @@ def test_texts_that_are_no_utf_8_are_replaced() -> None:
     ],
     ids=["numbers", "spans", "texts", "part of a text", "part of a number"],
 )
-def test_cells_that_meet_a_condition(
+def test_match_condition_finds_the_cells_that_meet_a_condition(
     cells: pa.ChunkedArray, operator: Operator, value: str, expected: list[bool]
 ) -> None:
     assert match_condition(cells, ValueCondition("a", operator, value)).tolist() == expected
@@ -118,7 +120,7 @@ def test_coded_texts_are_sorted_as_texts() -> None:
     ],
     ids=["span", "no span", "nothing", "fraction", "whole"],
 )
-def test_a_cell_as_text(cell: pa.Scalar, text: str) -> None:
+def test_format_cell_writes_each_kind_of_cell(cell: pa.Scalar, text: str) -> None:
     assert format_cell(cell) == text
 
 

@@ -74,7 +74,9 @@ def hits(made: Made, found: list[Plateau]) -> int:
 
 
 @pytest.mark.slow
-def test_score_on_held_logs(capsys: pytest.CaptureFixture[str]) -> None:
+def test_at_least_98_percent_of_plateaus_in_held_out_logs_are_found(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     true = right = extra = 0
     for seed in HELD_SEEDS:
         made = made_log(seed)
@@ -180,7 +182,7 @@ def short_log(seed: int) -> NDArray[np.float64]:
     ],
     ids=["made", "short"],
 )
-def test_plateaus_are_where_they_were(
+def test_plateaus_found_in_drawn_logs_have_the_recorded_sums(
     make: Callable[[int], NDArray[np.float64]], sums: list[float]
 ) -> None:
     found = [plateau for seed in range(100) for plateau in find_plateaus(make(seed))]

@@ -109,7 +109,9 @@ def test_bands_have_the_places_and_widths_that_the_robot_drove_over() -> None:
         {"runs": [{"world": {"noise": {"light": "?"}}}]},
     ],
 )
-def test_log_that_does_not_know_its_noise(metadata: dict[str, object]) -> None:
+def test_a_log_without_known_noise_is_read_as_light_without_noise(
+    metadata: dict[str, object],
+) -> None:
     assert read_light(metadata, 0) == Light()
 
 

@@ -32,7 +32,9 @@ def drawn_levels(places_mm: FloatArray, edges_mm: FloatArray, spot_mm: float) ->
 
 
 @for_each(width_mm=[30.0, 73.0, 200.0], spot_mm=[2.0, 12.0, 20.0], period_mm=[0.2, 1.0, 2.6, 6.0])
-def test_width_is_the_true_one(width_mm: float, spot_mm: float, period_mm: float) -> None:
+def test_measured_widths_of_bands_equal_the_true_ones(
+    width_mm: float, spot_mm: float, period_mm: float
+) -> None:
     random = np.random.default_rng(1)
     for first_mm in random.uniform(60.0, 60.0 + period_mm, 10):
         edges_mm = first_mm + width_mm * np.arange(len(GREYS) - 1)
@@ -48,7 +50,7 @@ def test_width_is_the_true_one(width_mm: float, spot_mm: float, period_mm: float
 @pytest.mark.parametrize("width_mm", [73.0, 200.0])
 @pytest.mark.parametrize("spot_mm", [2.0, 12.0, 20.0])
 @pytest.mark.parametrize("period_mm", [1.0, 2.6, 6.0])
-def test_width_of_levels_that_are_searched(
+def test_widths_are_right_also_when_levels_are_estimated_from_the_samples(
     width_mm: float, spot_mm: float, period_mm: float
 ) -> None:
     edges_mm = 60.3 + width_mm * np.arange(len(GREYS) - 1.0)
@@ -74,7 +76,9 @@ WIDTHS = {
 
 
 @cases("values, widths", WIDTHS)
-def test_widths_of_drawn_steps(values: list[float], widths: list[float]) -> None:
+def test_measured_widths_of_simple_steps_are_as_expected(
+    values: list[float], widths: list[float]
+) -> None:
     samples = np.array(values, np.float64)
     measured = measure_widths(samples, np.arange(len(values), dtype=float), measure_levels(samples))
     assert measured == pytest.approx(widths, nan_ok=True)

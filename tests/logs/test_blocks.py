@@ -26,7 +26,9 @@ TEXTS = {
 
 @pytest.mark.quick_cases("names that repeat")
 @cases("text, kind", TEXTS)
-def test_texts_of_several_blocks(tmp_path: Path, text: Callable[[int], str], kind: str) -> None:
+def test_texts_of_a_csv_longer_than_one_block_are_read_to_the_end(
+    tmp_path: Path, text: Callable[[int], str], kind: str
+) -> None:
     lines = [f"{at},{text(at)},5" for at in range(LONG)]
     (tmp_path / "a.csv").write_text("time,variable,value\n" + "\n".join(lines) + "\n")
     log = open_log(tmp_path / "a.csv")
@@ -40,7 +42,9 @@ LATE = {"numbers": ("5.5", 5.5), "texts": ("five", "five")}
 @pytest.mark.quick_cases(".csv-*")
 @cases("cell, value", LATE)
 @pytest.mark.parametrize("suffix", [".csv", ".jsonl"])
-def test_a_column_that_begins_empty(tmp_path: Path, suffix: str, cell: str, value: object) -> None:
+def test_a_column_that_is_empty_in_its_first_blocks_is_read_with_its_type(
+    tmp_path: Path, suffix: str, cell: str, value: object
+) -> None:
     quoted = cell if isinstance(value, float) else f'"{cell}"'
     empty = '{"time": 1, "late": null}\n'
     full = f'{{"time": 2, "late": {quoted}}}\n'

@@ -27,7 +27,9 @@ TEXTS: dict[str, tuple[list[str | None], list[float]]] = {
 
 
 @cases("texts, expected", TEXTS)
-def test_texts_of_moments_are_seconds(texts: list[str | None], expected: list[float]) -> None:
+def test_dates_and_times_as_text_are_read_as_seconds(
+    texts: list[str | None], expected: list[float]
+) -> None:
     assert_allclose(
         read_times(
             pa.chunked_array([pa.array(texts, pa.string())]), 1.0, since_first=False
@@ -50,7 +52,9 @@ KINDS: dict[str, tuple[pa.Array, list[float]]] = {
 
 
 @cases("column, expected", KINDS)
-def test_typed_moments_are_seconds(column: pa.Array, expected: list[float]) -> None:
+def test_timestamp_and_duration_columns_are_read_as_seconds(
+    column: pa.Array, expected: list[float]
+) -> None:
     assert_allclose(
         read_times(pa.chunked_array([column]), 1.0, since_first=False).seconds, expected, rtol=1e-12
     )
@@ -71,7 +75,7 @@ def test_columns_of_any_kind_are_exported(tmp_path: Path, suffix: str) -> None:
     assert open_log(tmp_path / f"b{suffix}").series("red").values.tolist() == [1, 2]
 
 
-def test_decimal_numbers_and_short_texts_of_parquet(tmp_path: Path) -> None:
+def test_decimal_and_string_view_columns_of_parquet_are_read(tmp_path: Path) -> None:
     path = tmp_path / "a.parquet"
     names = pa.array(["red", "blue"], pa.string_view())
     pq.write_table(

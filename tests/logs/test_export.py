@@ -50,7 +50,7 @@ def noisy_run(record: Callable[..., Recorder], spec: RunSpec, **options: object)
 
 
 @each_format
-def test_samples_come_back_to_the_last_bit(
+def test_exported_samples_are_read_back_to_the_last_bit(
     record: Callable[..., Recorder], noisy_spec: RunSpec, tmp_path: Path, suffix: str
 ) -> None:
     run = noisy_run(record, noisy_spec)
@@ -63,7 +63,7 @@ def test_samples_come_back_to_the_last_bit(
 
 @pytest.mark.quick_cases(".csv", ".parquet")
 @each_format
-def test_telemetry_comes_back_to_the_last_bit(
+def test_exported_telemetry_is_read_back_to_the_last_bit(
     record: Callable[..., Recorder], noisy_spec: RunSpec, tmp_path: Path, suffix: str
 ) -> None:
     run = noisy_run(record, noisy_spec)
@@ -73,7 +73,9 @@ def test_telemetry_comes_back_to_the_last_bit(
 
 
 @each_format
-def test_values_that_are_hard_to_write(tmp_path: Path, suffix: str) -> None:
+def test_extreme_numbers_and_odd_texts_are_exported_and_read_back(
+    tmp_path: Path, suffix: str
+) -> None:
     values = [0.1 + 0.2, 5e-324, 1.7976931348623157e308, -0.0, np.nan, 1e22, 100.0, 2 / 3]
     nanoseconds = [0, 1, 10**18 + 1, 999, 1_000_000, 86_400_000_000_000, 33_333_334, 5]
     frame = pd.DataFrame(
@@ -132,7 +134,7 @@ OTHER_FRAMES: dict[str, tuple[dict[str, object], str]] = {
 @pytest.mark.quick_cases("*-.csv", "*-.parquet")
 @each_format
 @cases("columns, types", OTHER_FRAMES)
-def test_other_frames_come_back(
+def test_frames_that_are_no_logs_are_exported_and_read_back(
     tmp_path: Path, suffix: str, columns: dict[str, object], types: str
 ) -> None:
     frame = pd.DataFrame(columns)
@@ -305,7 +307,9 @@ def test_folder_that_cannot_be_written_is_refused() -> None:
 
 
 @pytest.mark.parametrize("lines, kind", [([1.0, 2.0], "int64"), ([1.5, 2.5], "float64")])
-def test_lines_are_whole_numbers_where_all_are(lines: list[float], kind: str) -> None:
+def test_a_column_of_line_numbers_has_whole_numbers_if_all_are_whole(
+    lines: list[float], kind: str
+) -> None:
     column = build_typed_frame(pa.table({"line": lines}))["line"]
     assert (column.tolist(), str(column.dtype)) == (lines, kind)
 

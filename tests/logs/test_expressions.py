@@ -45,7 +45,7 @@ def test_an_expression_computes_its_values(text: str, expected: list[float]) -> 
     assert_allclose(evaluate(text, COLUMNS), expected)
 
 
-def test_every_function_is_tried() -> None:
+def test_every_function_of_expressions_has_a_test_case() -> None:
     assert all(any(f"{name}(" in text for text in VALUES) for name in FUNCTIONS)
 
 

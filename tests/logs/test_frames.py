@@ -91,7 +91,7 @@ def test_read_log_takes_the_choices_of_the_commands(
         "time": ({"time": "zeit"}, "no column 'zeit'"),
     },
 )
-def test_a_choice_that_read_log_refuses(
+def test_read_log_refuses_wrong_choices_with_a_reason(
     tmp_path: Path, choices: dict[str, Any], message: str
 ) -> None:
     path = tmp_path / "a.txt"

@@ -126,7 +126,7 @@ def test_chosen_header_and_columns_decide(
     assert values(log, names[0])[0] == first
 
 
-def test_words_below_a_chosen_heading(tmp_path: Path) -> None:
+def test_a_row_of_units_below_the_heading_is_skipped_and_noted(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("Lab 3\ntime;red\nseconds;percent\n0;5,5\n1;6,5\n")
     log = open_log(path)
@@ -160,7 +160,7 @@ def test_the_second_table_of_a_file_is_read_when_chosen(tmp_path: Path) -> None:
         open_log(path, ReadChoices(table=3))
 
 
-def test_a_line_that_is_not_there(tmp_path: Path) -> None:
+def test_a_chosen_heading_line_beyond_the_file_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_bytes(b"time,red\n" + ROWS)
     with pytest.raises(LogError, match="no line 50"):

@@ -92,6 +92,6 @@ def test_infinite_numbers_are_compared_without_a_warning() -> None:
     assert log_of(a=[infinite, infinite, 3.0], b=[1.0, 2.0, 3.0]).names == ("a", "b")
 
 
-def test_what_comes_before_the_first_time_stands_there() -> None:
+def test_samples_before_the_first_valid_time_get_that_time() -> None:
     log = log_of(time=[float("inf"), 7.0, float("nan"), 8.0], a=[1.0, 2.0, 3.0, 4.0])
     assert log.series("a").time_s.tolist() == [7.0, 7.0, 7.0, 8.0]

@@ -62,7 +62,7 @@ def test_huge_levels_are_found(values: Sequence[float]) -> None:
     assert np.isfinite(found.level).all() and np.isfinite(found.spread).all()
 
 
-def test_usual_numbers_are_not_scaled() -> None:
+def test_numbers_of_usual_size_are_not_scaled() -> None:
     assert find_scale(-1e100, 1e100) == find_scale(0.0, 0.0) == find_scale(1e-100, 1e-90) == 1.0
     drawn = limit_drawn(np.array([-HUGE, math.nan, -math.inf, 1.0]))
     assert np.array_equal(drawn, [-MAX_DRAWN, math.nan, -math.inf, 1.0], equal_nan=True)
@@ -74,7 +74,9 @@ def test_usual_numbers_are_not_scaled() -> None:
 @example(values=[1e308, -1e308], times_s=[float(at) for at in range(40)])
 @example(values=[HUGE, -HUGE, 1.0], times_s=[float(at) for at in range(40)])
 @example(values=[5e-324, 0.0, math.nan], times_s=[5e-324 * at for at in range(40)])
-def test_every_number_is_drawn(values: Sequence[float], times_s: Sequence[float]) -> None:
+def test_charts_can_draw_every_finite_or_infinite_number(
+    values: Sequence[float], times_s: Sequence[float]
+) -> None:
     times_s = times_s[: len(values)]
     traces = Traces()
     traces.append("A", times_s, values)
@@ -100,7 +102,7 @@ def test_every_number_is_drawn(values: Sequence[float], times_s: Sequence[float]
 
 
 @pytest.mark.parametrize("suffix", EXPORTERS)
-def test_every_number_is_exported(tmp_path: Path, suffix: str) -> None:
+def test_every_number_is_exported_and_read_back_equal(tmp_path: Path, suffix: str) -> None:
     of = compute_statistics(_printed([HUGE, -HUGE, 5e-324, 1e155]))["A"]
     columns = {"values": [math.nan, math.inf, -math.inf, HUGE, -HUGE, 5e-324, of.mean, of.std]}
     path = tmp_path / f"every{suffix}"
@@ -114,7 +116,7 @@ def test_every_number_is_exported(tmp_path: Path, suffix: str) -> None:
 @example(values=[HUGE, -HUGE])
 @example(values=[4.90790065654301e16] * 3)
 @example(values=[4.907900656543009e16, 4.90790065654301e16, 4.90790065654301e16])
-def test_every_number_is_summed(values: Sequence[float]) -> None:
+def test_statistics_of_any_numbers_are_finite_and_ordered(values: Sequence[float]) -> None:
     samples = np.array(values, np.float64)
     for found in (
         compute_summary(samples),

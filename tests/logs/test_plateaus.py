@@ -15,20 +15,20 @@ from tuisim.logs.plateaus import find_plateaus, find_plateaus_in_subprocess
 
 
 @pytest.mark.slow
-def test_finds_the_same_as_here() -> None:
+def test_plateaus_found_in_a_subprocess_equal_those_found_directly() -> None:
     rng = np.random.default_rng(4)
     values = np.repeat(rng.uniform(0.0, 100.0, 30), 40) + rng.normal(0.0, 0.3, 1200)
     values[[3, 700]] = np.nan, 500.0
     assert find_plateaus_in_subprocess(values, lambda: False) == find_plateaus(values) != []
 
 
-def test_says_that_the_process_has_died(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_death_of_the_search_process_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "executable", "/bin/false")
     with pytest.raises(LogError, match="exit code 1"):
         find_plateaus_in_subprocess(np.zeros(9), lambda: False)
 
 
-def test_ends_when_nobody_waits_for_it() -> None:
+def test_the_search_process_stops_when_its_search_is_cancelled() -> None:
     values = np.random.default_rng(4).integers(0, 5, 2_000_000).astype(np.float64)
     with pytest.raises(LogError, match="stopped"):
         find_plateaus_in_subprocess(values, lambda: True)
@@ -48,7 +48,7 @@ def test_the_search_process_imports_the_package_of_this_process() -> None:
         (pieces_module, "_MAX_SAMPLES_TOGETHER", 1),
     ],
 )
-def test_how_much_is_looked_at_together_changes_nothing(
+def test_the_size_of_stretches_searched_together_does_not_change_plateaus(
     module: ModuleType, name: str, number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rng = np.random.default_rng(5)

@@ -366,7 +366,7 @@ def test_a_file_that_is_no_log_is_refused(
         open_log(tmp_path / "a.csv")
 
 
-def test_a_pipe_that_ends(tmp_path: Path) -> None:
+def test_a_log_from_a_pipe_is_read_until_the_pipe_closes(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
 
@@ -392,7 +392,7 @@ def test_a_pipe_that_ends(tmp_path: Path) -> None:
     ],
     ids=["time", "value", "words"],
 )
-def test_columns_that_are_not_there(
+def test_choosing_a_missing_or_text_column_is_refused_with_a_hint(
     tmp_path: Path, time: str | None, columns: tuple[str, ...], expected: str
 ) -> None:
     path = tmp_path / "a.csv"
@@ -412,13 +412,17 @@ def test_chosen_columns_are_time_and_values(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "content", [parquet(), arrow(), gzip.compress(CSV.encode())], ids=["parquet", "arrow", "gzip"]
 )
-def test_a_pipe_brings_text_only(content: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pipe_that_brings_anything_but_text_is_refused(
+    content: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(content)))
     with pytest.raises(LogError, match="only text can be read from a pipe"):
         open_log("-")
 
 
-def test_standard_input_that_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_reading_a_log_from_closed_standard_input_is_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr("sys.stdin", None)
     with pytest.raises(LogError, match="is closed"):
         open_log("-")

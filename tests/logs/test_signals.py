@@ -35,7 +35,7 @@ class TestSummary:
         assert got.std == pytest.approx(math.sqrt(5 / 3))
         assert got.quantiles == pytest.approx((1.15, 1.75, 2.5, 3.25, 3.85))
 
-    def test_equal_values_are_exact(self) -> None:
+    def test_mean_and_spread_of_equal_values_are_exact(self) -> None:
         got = compute_summary(np.full(1001, 86.27450980392157))
         assert (got.mean, got.std) == (86.27450980392157, 0.0)
 
@@ -46,7 +46,7 @@ class TestSummary:
 
 
 class TestSignals:
-    def test_derivative_of_a_parabola(self) -> None:
+    def test_the_derivative_of_a_parabola_is_a_straight_line(self) -> None:
         time = column(0, 0.5, 2, 3, 3.25)
         assert_allclose(compute_derivative(time, time**2)[1:-1], 2 * time[1:-1])
 
@@ -54,7 +54,7 @@ class TestSignals:
         assert_allclose(compute_derivative(column(0, 1, 1, 2), column(0, 2, 9, 4)), [2, 2, 2, 2])
 
     @pytest.mark.parametrize("values", [column(), column(3.0)], ids=["none", "one"])
-    def test_derivative_of_too_little(
+    def test_the_derivative_of_fewer_than_two_samples_is_nan(
         self, values: np.ndarray[tuple[int], np.dtype[np.float64]]
     ) -> None:
         assert np.isnan(compute_derivative(values, values)).all()
@@ -72,7 +72,7 @@ class TestSignals:
     def test_moving_average_shrinks_at_the_ends(self) -> None:
         assert_allclose(compute_moving_average(column(1, 2, 6, NAN, 2), 3), [1.5, 3, 4, 4, 2])
 
-    def test_moving_average_keeps_digits(self) -> None:
+    def test_the_moving_average_keeps_digits_beside_large_values(self) -> None:
         values = 1e9 + np.tile(column(0, 1), 500)
         assert_allclose(
             compute_moving_average(values, 3)[1:-1] - 1e9,
@@ -86,7 +86,7 @@ class TestSignals:
         assert_allclose(compute_moving_average(values, 5)[6:], 50.0)
 
     @pytest.mark.parametrize("width", [1, 3, 7, 8001])
-    def test_moving_average_of_any_width(self, width: int) -> None:
+    def test_a_moving_average_of_any_width_equals_the_naive_one(self, width: int) -> None:
         values = np.arange(20.0) ** 2
         half = width // 2
         expected = [values[max(at - half, 0) : at + half + 1].mean() for at in range(20)]
@@ -106,7 +106,7 @@ class TestSignals:
         times, _ = resample(np.arange(31, dtype=np.float64) * 0.1, np.zeros(31), 0.1)
         assert len(times) == 31
 
-    def test_value_before_the_first_sample(self) -> None:
+    def test_a_value_before_the_first_sample_is_nan(self) -> None:
         got = sample_signal(column(1, 2), column(5, 7), column(0.5, 1.5, 9), Between.LINEAR)
         assert_allclose(got, [NAN, 6, 7])
 
@@ -123,7 +123,7 @@ BACK = column(0, 2, 1, 3), column(0, 4, 1, 9)
 
 
 class TestOrder:
-    def test_empty_cells_are_passed_over(self) -> None:
+    def test_empty_cells_of_a_signal_are_skipped(self) -> None:
         assert_allclose(compute_derivative(*SPARSE), [1, NAN, 1.5, NAN, 2, NAN])
         assert_allclose(compute_integral(*SPARSE), [0, NAN, 4, NAN, 14, NAN])
         assert_allclose(compute_integral(*SPARSE, Between.HOLD), [0, NAN, 2, NAN, 8, NAN])
@@ -133,7 +133,7 @@ class TestOrder:
             sample_unsorted_signal(*SPARSE, moments_s, Between.LINEAR), [1, 2, 3, 5, 7, 7]
         )
 
-    def test_times_may_go_back(self) -> None:
+    def test_derivative_integral_resampling_and_crossings_allow_times_that_go_back(self) -> None:
         assert_allclose(compute_derivative(*BACK), [1, 4, 2, 5])
         assert_allclose(compute_integral(*BACK), [0, 3, 0.5, 9.5])
         assert_allclose(resample(*BACK, 1)[1], [0, 1, 4, 9])
@@ -151,10 +151,10 @@ class TestCrossings:
         found = find_crossings(column(0, 1, 2, 3), column(0, 10, 10, 0), 5)
         assert [(c.sample, c.time_s, c.rising) for c in found] == [(1, 0.5, True), (3, 2.5, False)]
 
-    def test_a_touch_from_above_is_none(self) -> None:
+    def test_touching_a_threshold_from_above_is_no_crossing(self) -> None:
         assert find_crossings(column(0, 1, 2), column(9, 5, 9), 5) == []
 
-    def test_what_stays_within_the_hysteresis_crosses_nothing(self) -> None:
+    def test_values_that_stay_within_the_hysteresis_cross_nothing(self) -> None:
         times_s = column(*range(7))
         values = column(0, 10, 4, 10, 0, 6, 0)
         found = find_crossings(times_s, values, 5, hysteresis=2)
@@ -167,10 +167,10 @@ class TestCrossings:
         found = find_crossings(time, values, 5, hysteresis=1)
         assert [(c.sample, c.rising) for c in found] == [(4, True), (7, False)]
 
-    def test_values_that_are_no_numbers_are_passed_over(self) -> None:
+    def test_crossings_skip_missing_values(self) -> None:
         found = find_crossings(column(0, 1, 2), column(0, NAN, 10), 5)
         assert [(c.sample, c.time_s) for c in found] == [(2, 1.0)]
 
-    def test_refuses_a_negative_hysteresis(self) -> None:
+    def test_a_negative_hysteresis_is_refused(self) -> None:
         with pytest.raises(LogError, match="negative"):
             find_crossings(column(0), column(0), 5, -1)

@@ -13,7 +13,7 @@ from tuisim.logs import table as rows_module
 from tuisim.logs.table import TableTask, parse_conditions
 
 
-def test_a_search_goes_round_in_stretches(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_of_a_table_wraps_around(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rows_module, "_STRETCH", 3)
     model = model_of(long_log())
     rows = model.rows
@@ -40,7 +40,9 @@ def test_a_search_goes_round_in_stretches(monkeypatch: pytest.MonkeyPatch) -> No
     assert rows.find("nowhere", 4, 1) is None
 
 
-def test_a_search_tells_how_far_it_is_and_can_be_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_of_a_table_reports_its_progress_and_can_be_stopped(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(rows_module, "_STRETCH", 5)
     rows = model_of(long_log()).rows
     task = TableTask("searching …")
@@ -63,7 +65,7 @@ def values(model: AnalysisModel) -> list[float]:
     ],
     ids=["and", "comma", "equal", "not equal"],
 )
-def test_rows_that_fulfil_all_conditions(text: str, found: list[float]) -> None:
+def test_a_filter_shows_the_rows_that_meet_all_conditions(text: str, found: list[float]) -> None:
     model = model_of(long_log())
     model.rows.view = model.rows.build_filtered_view(
         tuple(parse_conditions(text, model.rows.columns))
@@ -72,7 +74,7 @@ def test_rows_that_fulfil_all_conditions(text: str, found: list[float]) -> None:
 
 
 @pytest.mark.parametrize("text", ["value", "nothing > 3", "value > x", "> 3"])
-def test_a_condition_that_is_none_is_said(text: str) -> None:
+def test_a_faulty_filter_condition_is_refused_and_keeps_all_rows(text: str) -> None:
     model = model_of(long_log())
     with pytest.raises(LogError):
         model.rows.view = model.rows.build_filtered_view(

@@ -50,7 +50,7 @@ def test_a_table_of_one_row_is_read(
     check_input(tmp_path / name, content, expected)
 
 
-def test_a_second_line_that_comes_later(tmp_path: Path) -> None:
+def test_a_second_line_arriving_later_in_a_pipe_is_read(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
 
