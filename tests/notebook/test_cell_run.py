@@ -60,7 +60,7 @@ def test_a_line_that_is_nearly_a_sample_is_told_in_the_status(cell: Cell) -> Non
         "in the display": (Stage, "show"),
     },
 )
-def test_an_interrupt_stops_the_program(
+def test_an_interrupt_of_a_cell_stops_its_program(
     holder: Any, name: str, cell: Cell, shell: InteractiveShell, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # As a kernel's shell, which draws while the program runs.
@@ -74,7 +74,7 @@ def test_an_interrupt_stops_the_program(
     check_that_all_is_well(cell)
 
 
-def test_an_interrupt_reaches_the_responder(cell: Cell) -> None:
+def test_an_interrupt_of_a_cell_reaches_its_responder(cell: Cell) -> None:
     cell("%sim_magic -b Grey_bands -x 700 -W")
     cell(
         "import signal, time\nwent_on = False\ndef strike(text):\n    global went_on\n"
@@ -87,7 +87,7 @@ def test_an_interrupt_reaches_the_responder(cell: Cell) -> None:
     check_that_all_is_well(cell)
 
 
-def test_an_interrupt_before_the_run_leaves_everything_as_it_was(
+def test_an_interrupt_before_a_cells_run_changes_nothing(
     cell: Cell, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import tuisim.engine.runs.run_folder
@@ -123,7 +123,7 @@ def test_an_interrupt_before_the_run_leaves_everything_as_it_was(
         ),
     },
 )
-def test_a_kernel_is_interrupted(text: str, kernel: Kernel) -> None:
+def test_interrupting_a_kernel_stops_its_program(text: str, kernel: Kernel) -> None:
     parent = kernel.begin(text)
     kernel.message(parent, lambda m: "Colour: 1" in str(m["content"].get("text")))
     kernel.manager.interrupt_kernel()

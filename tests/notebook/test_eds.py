@@ -28,7 +28,7 @@ CHARTS: dict[str, Callable[[], Any]] = {
 
 
 @cases("draw", CHARTS)
-def test_an_axis_of_spans_is_in_seconds(draw: Callable[[], Any]) -> None:
+def test_a_chart_axis_of_time_spans_is_in_seconds(draw: Callable[[], Any]) -> None:
     mpl.use("Agg")
     use_seconds()
     plt.figure()
@@ -42,7 +42,7 @@ def test_an_axis_of_spans_is_in_seconds(draw: Callable[[], Any]) -> None:
     plt.close("all")
 
 
-def test_an_axis_of_numbers_gets_no_seconds() -> None:
+def test_a_chart_axis_of_plain_numbers_is_not_labelled_in_seconds() -> None:
     use_seconds()
     _, axes = plt.subplots()
     axes.plot([0, 1, 2], [0, 1, 2])

@@ -55,7 +55,7 @@ def test_no_cell_of_the_lesson_prints_an_error(done: Done) -> None:
     assert [name for name in ("load", "clear", "clear again") if done[name].outputs] == []
 
 
-def test_instruments_and_world_are_shown(done: Done) -> None:
+def test_the_lesson_shows_instruments_and_world(done: Done) -> None:
     assert kinds(done["instruments"]) == ["image/png", "text/html", "text/html"]
     assert texts(done["instruments"]) == [
         WORLD,
@@ -83,7 +83,7 @@ def test_instruments_and_world_are_shown(done: Done) -> None:
     assert {world.getpixel((RIM + 152, RIM + row)) for row in (84, 144)} == {COLORED.wheel}
 
 
-def test_arrays_show_what_the_sensors_see(done: Done) -> None:
+def test_the_picture_of_sensor_arrays_shows_what_the_sensors_see(done: Done) -> None:
     assert texts(done["arrays"]) == [WORLD, "<sensor arrays, 280 × 220 pixels>"]
     world, arrays = pictures(done["arrays"])
     assert (world.size, arrays.size) == (WORLD_SIZE, (280, 220))
@@ -97,7 +97,7 @@ def test_arrays_show_what_the_sensors_see(done: Done) -> None:
     ]
 
 
-def test_the_loop_reads_until_black(done: Done) -> None:
+def test_the_lessons_loop_reads_until_black(done: Done) -> None:
     read = levels(done["until black"])
     assert (len(read), read[0], read[-1]) == (530, 100.0, 0.0)
     assert set(PLATEAUS) <= set(read)
@@ -107,7 +107,7 @@ def test_the_loop_reads_until_black(done: Done) -> None:
     assert greys == [(grey,) * 3 for grey in (255, 220, 211, 128, 0)]
 
 
-def test_loggers_with_and_without_set_up_log_the_same(done: Done) -> None:
+def test_loops_with_and_without_the_loggers_set_up_log_the_same(done: Done) -> None:
     assert result(done["none"]) == "0"
     for name in ("logger", "logger with set-up"):
         assert levels(done[name])[0::50] == [100.0, 0.0]
@@ -140,14 +140,14 @@ def test_a_cleared_log_has_the_last_run_only(done: Done) -> None:
 
 
 @pytest.mark.parametrize("name", ["lineplot", "grid"])
-def test_a_chart_is_drawn(name: str, done: Done) -> None:
+def test_seaborn_charts_of_logged_data_are_drawn(name: str, done: Done) -> None:
     (chart,) = pictures(done[name])
     assert min(chart.size) > 200
     # seaborn's and matplotlib's first colour: the line itself.
     assert colours_of(chart)[31, 119, 180] > 100
 
 
-def test_the_charts_hold_the_data(done: Done) -> None:
+def test_charts_in_the_lesson_hold_the_logged_data(done: Done) -> None:
     assert result(done["line"]) == "True"
     assert result(done["marks"]) == "((1, 1), 'x', 51)"
 

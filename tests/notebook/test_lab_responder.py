@@ -191,7 +191,9 @@ OLD_MISTAKES = [
 
 @pytest.mark.slow_cases("a key")
 @pytest.mark.parametrize("responder, told", MISTAKES)
-def test_a_wrong_responder_is_one_line(responder: str, told: str, cell: Cell) -> None:
+def test_setting_a_wrong_responder_is_refused_in_one_line(
+    responder: str, told: str, cell: Cell
+) -> None:
     cell(f"roboSim.responder = {responder}")
     shown = cell("%%sim_magic -RWL --speed 1\nprint('PY::?')\nwhile True:\n    pass\n")
     assert shown.err.startswith(f"tuisim: {told}")
@@ -242,7 +244,7 @@ def failing(error: type[Exception]) -> Callable[[str], str]:
 
 
 @pytest.mark.parametrize("error", [EOFError, OSError])
-def test_where_nobody_can_answer_it_is_said(
+def test_a_cell_says_so_where_nobody_can_answer_its_program(
     error: type[Exception], cell: Cell, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("builtins.input", failing(error))
@@ -254,7 +256,7 @@ def test_where_nobody_can_answer_it_is_said(
 
 
 @pytest.mark.slow
-def test_a_kernel_asks_its_user(kernel: Kernel) -> None:
+def test_a_kernel_asks_its_user_for_a_programs_input(kernel: Kernel) -> None:
     parent = kernel.client.execute(ASKS, allow_stdin=True)
     question = kernel.client.get_stdin_msg(timeout=PATIENCE_S)
     assert question["content"]["prompt"] == "Name? "

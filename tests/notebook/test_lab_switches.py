@@ -206,19 +206,21 @@ FLAGS = [(flag, case) for case in CASES for flag in case.flags]
 
 
 @pytest.mark.parametrize("flag, case", with_slow(FLAGS, lambda one: one[0] == one[1].flags[0]))
-def test_a_switch_does_what_it_says(flag: str, case: Case, cell: Cell) -> None:
+def test_each_switch_of_sim_magic_does_what_it_says(flag: str, case: Case, cell: Cell) -> None:
     cell(PROGRAM)
     assert case.probe(cell, f"{flag} {case.value}") == case.seen
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", [pytest.param(case, id=case.flags[0]) for case in CASES])
-def test_without_it_that_is_not_so(case: Case, cell: Cell) -> None:
+def test_sim_magic_without_a_switch_does_not_do_what_the_switch_does(
+    case: Case, cell: Cell
+) -> None:
     cell(PROGRAM)
     assert case.probe(cell, "") != case.seen
 
 
-def test_every_switch_is_here() -> None:
+def test_every_switch_of_sim_magic_has_a_test_case() -> None:
     known = {flag for param in _build_command("sim_magic").params for flag in param.opts}
     assert known == {flag for case in CASES for flag in case.flags} | OF_TERMINALS
 
@@ -233,7 +235,7 @@ COMPOUNDS = [
 
 
 @pytest.mark.parametrize("together, apart", with_slow(COMPOUNDS, lambda one: one[0] == "-OHR"))
-def test_switches_may_be_put_together(together: str, apart: str, cell: Cell) -> None:
+def test_short_switches_of_sim_magic_may_be_joined(together: str, apart: str, cell: Cell) -> None:
     cell(PROGRAM)
     one = cell(f"%sim_magic {together}")
     cell("%sim_magic -CWH")
@@ -258,7 +260,7 @@ print(Button().wait_for_pressed('enter', timeout_ms=3000))
 
 
 @pytest.mark.slow
-def test_a_hand_presses_as_the_cell_of_the_program_says(cell: Cell) -> None:
+def test_presses_planned_in_a_cells_magic_line_happen_in_its_run(cell: Cell) -> None:
     assert cell(WAITS).out == "True\n"
     assert cell("%sim_magic -R").out == "True\n"
     assert cell("%sim_magic -R --press up@1").out == "False\n"
@@ -266,7 +268,7 @@ def test_a_hand_presses_as_the_cell_of_the_program_says(cell: Cell) -> None:
     assert cell(WAITS.replace(" --press enter@1", "")).out == "False\n"
 
 
-def test_a_wrong_press_is_told_in_the_cell(cell: Cell) -> None:
+def test_a_wrong_press_in_a_magic_line_is_told_in_the_cell(cell: Cell) -> None:
     shown = cell(WAITS.replace("enter@1", "entre@1"))
     assert (shown.out, shown.err) == (
         "",

@@ -159,7 +159,7 @@ def test_the_app_shows_the_run_of_the_cells_above_as_long_as_nothing_has_replace
     assert [state.run_id for state in view.states] == runs
 
 
-def test_only_the_newest_offer_is_answered(run: Run, front: Front) -> None:
+def test_only_the_newest_offer_of_the_app_is_answered(run: Run, front: Front) -> None:
     old = offer_of(run(cell_id="a"))
     new = offer_of(run(cell_id="a"))
     assert [front.ask(offer) for offer in (old, "tuisim-0")] == [{}, {}]
@@ -197,7 +197,7 @@ def test_an_app_that_its_user_has_ended_is_not_offered_unasked(run: Run, front: 
     assert lab.roboSim._live.view is not view
 
 
-def test_a_switch_turns_it_off_and_on(run: Run, front: Front) -> None:
+def test_sim_app_off_ends_the_app_and_sim_app_offers_it_again(run: Run, front: Front) -> None:
     front.ask(offer_of(run(cell_id="a")))
     view: Any = lab.roboSim._live.view
     assert run("%sim_app --off", "a") == ""
@@ -206,7 +206,7 @@ def test_a_switch_turns_it_off_and_on(run: Run, front: Front) -> None:
     assert "height: 300px" in run("%sim_app --height 300")
 
 
-def test_turned_off_above_the_first_picture_it_writes_nothing_into_the_notebook(run: Run) -> None:
+def test_sim_app_off_before_the_first_picture_writes_nothing_into_the_notebook(run: Run) -> None:
     assert (run("%sim_app --off"), run()) == ("", "")
 
 
@@ -215,13 +215,13 @@ def test_without_a_picture_only_the_magic_of_the_app_offers_it(run: Run) -> None
     assert run("%sim_app -W")
 
 
-def test_a_further_origin_may_show_it(run: Run) -> None:
+def test_sim_app_origin_lets_another_origin_show_the_app(run: Run) -> None:
     assert '"http://127.0.0.1:8888", "https://hub.example"]' in run(
         "%sim_app --origin https://hub.example/"
     )
 
 
-def test_a_kernel_of_no_known_server_only_says_so(
+def test_a_kernel_without_a_known_server_only_says_that_it_cannot_show_the_app(
     run: Run, front: Front, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("JPY_PARENT_PID", "8")
@@ -229,7 +229,7 @@ def test_a_kernel_of_no_known_server_only_says_so(
     assert (run(), front.control_handlers) == ("", {})
 
 
-def test_without_the_extra_a_sentence_says_what_to_install(
+def test_without_textual_serve_sim_app_says_what_to_install(
     run: Run, front: Front, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "textual_serve", None)
@@ -238,12 +238,12 @@ def test_without_the_extra_a_sentence_says_what_to_install(
     assert ("script" in page, front.control_handlers) == (False, {})
 
 
-def test_a_shell_without_a_page_is_offered_nothing(cell: Cell) -> None:
+def test_in_a_shell_without_a_page_sim_app_shows_a_plain_picture(cell: Cell) -> None:
     (picture, *_) = cell("%sim_app").bundles
     assert "image/png" in picture
 
 
-def test_a_cell_that_says_drag_says_how(cell: Cell, front: Front) -> None:
+def test_a_cell_that_mentions_dragging_explains_how_to_drag(cell: Cell, front: Front) -> None:
     front.code = "# Drag the robot.\n%sim_magic"
     assert live_robot.HOW_TO_DRAG in cell(front.code).plain
     front.code = "%sim_magic"
@@ -262,7 +262,9 @@ WRONG = {
 
 @cases("line, says", {line: (line, says) for line, says in WRONG.items()})
 @pytest.mark.usefixtures("front")
-def test_wrong_words_offer_nothing(line: str, says: str, cell: Cell) -> None:
+def test_sim_app_with_wrong_words_says_why_and_offers_no_app(
+    line: str, says: str, cell: Cell
+) -> None:
     shown = cell(line)
     assert says in shown.err
     assert not shown.bundles

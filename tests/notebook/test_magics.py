@@ -86,7 +86,7 @@ def test_a_switch_hides_pictures_and_status(
         ("sim_magic_preloaded", "print('MoveTank' in dir(), 'tank_drive' in dir())", "True True\n"),
     ],
 )
-def test_each_magic_gives_its_names(magic: str, text: str, out: str, cell: Cell) -> None:
+def test_each_magic_predefines_its_names(magic: str, text: str, out: str, cell: Cell) -> None:
     assert cell(f"%%{magic} -R\n{text}\n").out == out
 
 
@@ -113,7 +113,7 @@ def test_the_program_of_the_cell_before_is_run(cell: Cell) -> None:
     assert cell("%sim_magic -RW").out == "ran\n"
 
 
-def test_a_simulator_can_run_all_cells_at_once(cell: Cell) -> None:
+def test_autorun_runs_the_program_of_each_cell_at_once(cell: Cell) -> None:
     cell("get_ipython().magics_manager")
     cell("from tuisim.notebook.magics import roboSim\nroboSim.autorun = True")
     assert cell(program("")).out == "ran\n"
@@ -135,7 +135,9 @@ MISTAKES = [
 
 
 @pytest.mark.parametrize("words, told", MISTAKES, ids=[words for words, _ in MISTAKES])
-def test_a_mistake_is_one_line_and_changes_nothing(words: str, told: str, cell: Cell) -> None:
+def test_a_mistake_in_sim_magic_is_told_in_one_line_and_changes_nothing(
+    words: str, told: str, cell: Cell
+) -> None:
     cell(program("-b Grey_bands -x 300 -WH"))
     before = cell("roboSim.state").result
     shown = cell(program(f"-R -y 77 {words}", "print('never')"))
@@ -165,7 +167,7 @@ def test_other_magics_tell_mistakes_in_one_line(line: str, cell: Cell) -> None:
     assert shown.err.count("\n") == 1
 
 
-def test_what_is_not_logged_is_told_in_words(cell: Cell) -> None:
+def test_magics_for_pixel_arrays_say_so_if_none_are_logged(cell: Cell) -> None:
     assert "no pixel arrays are logged" in cell("%sim_image_pair").err
     cell(program("-RWH", "print('image_data left')"))
     assert "no pixel arrays 1 (0 … 0 are logged" in cell("%sim_bw_image_data -i 1").err
@@ -216,7 +218,9 @@ OLD_SWITCHES = [
 
 
 @pytest.mark.parametrize("line, size", OLD_SWITCHES, ids=[line for line, _ in OLD_SWITCHES])
-def test_the_old_switches_of_a_log_are_there(line: str, size: object, cell: Cell) -> None:
+def test_the_old_switches_of_magics_for_logs_are_accepted(
+    line: str, size: object, cell: Cell
+) -> None:
     cell("from tuisim.notebook.lab import Lab\nother = Lab()")
     cell(program("-WRH", "print('Colour: 1')\nprint('image_data both')"))
     shown = cell(line)
@@ -227,7 +231,7 @@ def test_the_old_switches_of_a_log_are_there(line: str, size: object, cell: Cell
 @pytest.mark.parametrize(
     "magic", ["sim_data", "sim_robot_state", "sim_image_pair", "sim_bw_image_data"]
 )
-def test_a_magic_of_a_log_has_a_help(magic: str, cell: Cell) -> None:
+def test_magics_for_logged_data_print_their_help(magic: str, cell: Cell) -> None:
     assert cell(f"%{magic} -h").out.startswith(f"Usage: %{magic} ")
 
 

@@ -31,16 +31,16 @@ PARTS = [
 
 
 @pytest.mark.parametrize("mode, part", PARTS, ids=[mode for mode, _ in PARTS])
-def test_a_mode_takes_its_part_of_the_numbers(mode: str, part: str) -> None:
+def test_each_mode_of_an_image_frame_takes_its_channel(mode: str, part: str) -> None:
     assert process_raw_image_data(PIXELS, mode) == part
     assert process_raw_image_data(PIXELS, mode=mode, to_str=False) == part.split(",")
 
 
-def test_the_first_mode_is_rgb() -> None:
+def test_an_image_frames_default_mode_is_rgb() -> None:
     assert process_raw_image_data(PIXELS) == PARTS[0][1]
 
 
-def test_an_unknown_mode_is_named() -> None:
+def test_an_unknown_mode_of_an_image_frame_is_named() -> None:
     with pytest.raises(ConfigError, match="no such mode 'grey'"):
         process_raw_image_data(PIXELS, "grey")
 
@@ -56,12 +56,12 @@ def array(side: str, time_ns: int = 0, grey: int = 128) -> LoggedArray:
     "time_ns, clock",
     [(0, "0"), (33_333_333, "0"), (33_333_334, "1"), (500_000_000, "15"), (1_233_333_334, "37")],
 )
-def test_a_clock_counts_the_old_ticks(time_ns: int, clock: str) -> None:
+def test_the_clock_of_a_record_counts_ticks_of_the_old_simulator(time_ns: int, clock: str) -> None:
     side, values, told = record_text(array("left", time_ns)).split(" ")
     assert (side, told, len(values.split(","))) == ("left", clock, 1600)
 
 
-def test_a_frame_holds_texts() -> None:
+def test_the_frame_of_sensor_arrays_holds_pixels_and_clock_as_text() -> None:
     frame = build_image_frame(
         [record_text(array("left")), record_text(array("right", 10**9))], mode="greyscale"
     )
@@ -93,13 +93,13 @@ def test_pairs_are_what_was_logged_of_both_at_one_time() -> None:
 
 
 @pytest.mark.parametrize("threshold, white", [(127, 395), (128, 0), (0, 395), (255, 0)])
-def test_a_picture_is_white_above_the_threshold(threshold: int, white: int) -> None:
+def test_a_black_and_white_picture_is_white_above_the_threshold(threshold: int, white: int) -> None:
     picture = draw_bw_picture([array("left")], threshold=threshold)
     assert picture.mode == "1"
     assert np.count_nonzero(np.asarray(picture)) == white
 
 
-def test_a_part_must_lie_inside_the_picture() -> None:
+def test_a_cut_out_part_must_lie_inside_the_picture() -> None:
     assert draw_bw_picture([array("left")], crop=(0, 0, 5, 1)).size == (5, 1)
     with pytest.raises(LogError, match="20 × 20 pixels"):
         draw_bw_picture([array("left")], crop=(3, 3, 21, 17))

@@ -11,7 +11,7 @@ from tests.notebook.lesson import execute, stream
 from tuisim.notebook.progress_bar import RATE_HZ, build_tone
 
 
-def test_a_tone_is_a_short_sound() -> None:
+def test_the_tone_of_a_notebooks_progress_bar_is_a_short_sound() -> None:
     with wave.open(io.BytesIO(build_tone())) as sound:
         assert (sound.getnchannels(), sound.getsampwidth(), sound.getframerate()) == (1, 2, RATE_HZ)
         assert sound.getnframes() / RATE_HZ == 0.4
@@ -26,7 +26,7 @@ CELLS = {
 
 
 @pytest.mark.slow
-def test_a_bar_counts_and_sounds_once_at_its_end(course_kernel: str) -> None:
+def test_a_notebooks_progress_bar_counts_and_sounds_once_at_its_end(course_kernel: str) -> None:
     done = execute(CELLS, course_kernel)
     assert (stream(done["kind"]), stream(done["bar"]), stream(done["hidden"])) == (
         "True\n",
