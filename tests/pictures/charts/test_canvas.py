@@ -19,7 +19,7 @@ def text(rows: list[list[tuple[str, tuple[int, int, int] | None]]]) -> list[str]
     return ["".join(part for part, _ in row) for row in rows]
 
 
-def test_rows_have_the_width_and_values_their_heights() -> None:
+def test_a_drawn_curve_has_its_points_at_their_times_and_heights() -> None:
     rows = text(draw_canvas([curve([0.0, 5.0, 10.0])], 9, 3, (0.0, 2.0), (0.0, 10.0)))
     assert rows == ["        o", "    o    ", "o        "]
 
@@ -86,7 +86,7 @@ def test_one_variable_against_another_has_a_title_and_marks_the_point() -> None:
 @pytest.mark.parametrize(
     "ys", [np.full(3, np.nan), np.array([np.nan, 1.0, np.nan])], ids=["none", "not together"]
 )
-def test_samples_that_have_not_both_are_told(ys: np.ndarray) -> None:
+def test_an_xy_chart_without_common_samples_says_so(ys: np.ndarray) -> None:
     lines = draw_xy_chart(np.array([1.0, np.nan, 2.0]), ys, None, ("x", "y"), RED, "o", 20, 10)
     assert lines[1][0][0] == "no sample has both"
 
@@ -99,7 +99,7 @@ def test_a_line_over_time_is_two_dots_thick(value: float) -> None:
     assert sum((ord(sign) - 0x2800).bit_count() for sign in middle if sign != " ") == 4
 
 
-def test_a_line_is_drawn_around_its_place() -> None:
+def test_a_braille_line_is_centred_on_its_value() -> None:
     def dots(value: float) -> list[int]:
         rows = draw_canvas(
             [curve([value, value], marker="braille")], 9, 11, (0.0, 1.0), (0.0, 100.0)
@@ -119,7 +119,7 @@ def test_a_line_is_drawn_around_its_place() -> None:
     assert max(dots(50.0)) < min(dots(44.0))
 
 
-def test_equal_lines_are_seen_in_turns() -> None:
+def test_of_two_equal_curves_both_colours_are_seen_in_turns() -> None:
     level = [5.0] * 4
     (row,) = draw_canvas(
         [curve(level, marker="braille"), curve(level, BLUE, "braille")],

@@ -107,6 +107,6 @@ def test_the_last_value_stands_at_the_end_of_each_line(
 
 
 @pytest.mark.parametrize("value", [99.5, 100.0])
-def test_the_canvas_keeps_its_size_while_values_come_in(value: float) -> None:
+def test_the_chart_keeps_its_columns_when_labels_get_longer(value: float) -> None:
     made = traces({"Colour": [0.0, 100.0, value]})
     assert ChartPainter().paint(made, ChartState(), 80, 14).columns == 70

@@ -24,7 +24,9 @@ each_format = pytest.mark.parametrize("suffix", CHART_FORMATS)
 
 @each_format
 @pytest.mark.parametrize("facets", [False, True], ids=["one", "facets"])
-def test_every_format_has_a_size_of_its_own(tmp_path: Path, suffix: str, facets: bool) -> None:
+def test_every_format_of_chart_files_has_its_own_default_size(
+    tmp_path: Path, suffix: str, facets: bool
+) -> None:
     kind = CHART_FORMATS[suffix]
     assert all(
         low <= side <= high
@@ -44,7 +46,7 @@ def full(_: int) -> None:
 
 
 @each_format
-def test_a_failed_chart_leaves_what_was_there(
+def test_a_failed_chart_export_leaves_the_old_file(
     tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     target = tmp_path / f"x{suffix}"
@@ -55,7 +57,7 @@ def test_a_failed_chart_leaves_what_was_there(
     assert (target.read_text(), list(tmp_path.iterdir())) == ("old", [target])
 
 
-def test_a_failed_report_leaves_what_was_there(
+def test_a_failed_report_leaves_the_old_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     target = tmp_path / "x.html"
@@ -74,7 +76,7 @@ def test_a_report_is_called_after_its_log(file: str, name: str) -> None:
     assert build_default_name(OpenedLog(LogRequest(file=file), long_log())) == name
 
 
-def test_what_an_export_says_of_its_runs_may_be_anything() -> None:
+def test_a_report_of_a_log_with_odd_metadata_escapes_it_and_does_not_fail() -> None:
     log = long_log()
     odd = {
         "runs": [
@@ -90,13 +92,13 @@ def test_what_an_export_says_of_its_runs_may_be_anything() -> None:
     )
 
 
-def test_nothing_is_nothing_to_report_on() -> None:
+def test_a_report_of_a_log_without_rows_is_refused() -> None:
     empty = Log("test", long_log().table.slice(0, 0), long_log().layout)
     with pytest.raises(LogError, match="no rows"):
         build_report(OpenedLog(LogRequest(), empty))
 
 
-def test_what_is_drawn_has_its_size_in_the_picture() -> None:
+def test_each_shape_of_a_drawing_has_its_size_in_the_image() -> None:
     points = np.array([[10.0, 10.0], [30.0, 10.0]])
     shapes = (
         Stroke(points, (255, 0, 0), dots=True),
@@ -122,5 +124,5 @@ def test_what_is_drawn_has_its_size_in_the_picture() -> None:
         ("800", None),
     ],
 )
-def test_a_size_has_limits(text: str, size: tuple[int, int] | None) -> None:
+def test_the_size_of_a_chart_picture_has_limits(text: str, size: tuple[int, int] | None) -> None:
     assert parse_size(text, (200, 150), (6000, 6000)) == size

@@ -73,7 +73,9 @@ def log_of(columns: dict[str, object]) -> AnalysisModel:
 @pytest.mark.quick_cases("two scales-*", "no number-*")
 @cases("view", VIEWS)
 @cases("columns", COLUMNS)
-def test_every_format_is_whole(columns: dict[str, object], view: View) -> None:
+def test_a_chart_in_svg_png_and_text_stays_within_its_size(
+    columns: dict[str, object], view: View
+) -> None:
     model = log_of(columns)
     for width, height in ((200, 150), (960, 420)):
         drawing = lay_out_chart(build_chart(model, view, width, height), width, height)
@@ -127,7 +129,7 @@ def test_a_chart_is_cut_off_at_its_limits() -> None:
     assert (line.xs.tolist(), line.ys.tolist()) == ([2.0, 4.0], [20.0, 40.0])
 
 
-def test_held_values_have_corners() -> None:
+def test_lines_of_held_values_are_drawn_as_steps() -> None:
     (line,) = build_chart(
         log_of({"time": [0.0, 1.0], "a": [3.0, 5.0]}), View(hold=True), 800, 400
     ).lines
@@ -168,7 +170,7 @@ def test_facets_stand_below_each_other() -> None:
 @pytest.mark.parametrize(
     "view", [View(), View(facets=True), View(against=("x_mm", "Colour"))], ids=str
 )
-def test_only_data_have_colours_for_any_ground(view: View) -> None:
+def test_a_printed_chart_colours_only_its_data(view: View) -> None:
     text = draw_text(build_chart(model_of(long_log()), view, 160, 96), 80, 24, colors=True)
     styles = {str(span.style) for span in text.spans}
     assert {f"#{bytes(rgb).hex()}" for rgb in COLORS[: 1 if view.against else 2]} <= styles
@@ -240,7 +242,7 @@ def two_facets() -> Drawing:
     return lay_out_chart(ChartData("", lines, (0.0, 49.0), "time (s)", facets=True), 400, 300)
 
 
-def test_a_chart_is_drawn_until_an_instant() -> None:
+def test_a_chart_cut_at_an_instant_ends_there_with_a_rule() -> None:
     whole = two_facets()
     for time_s, count in ((20.0, 21), (0.0, 1), (49.0, 50)):
         part = cut_drawing(whole, time_s)
@@ -254,7 +256,7 @@ def test_a_chart_is_drawn_until_an_instant() -> None:
         ]
 
 
-def test_a_picture_is_drawn_at_another_place() -> None:
+def test_moving_a_drawing_moves_all_its_shapes() -> None:
     whole = two_facets()
     for before, after in zip(whole.shapes, move_shapes(whole, 10.0, -5.0), strict=True):
         match before, after:
@@ -267,7 +269,7 @@ def test_a_picture_is_drawn_at_another_place() -> None:
                 assert (after.x - before.x, after.y - before.y) == pytest.approx((10.0, -5.0))
 
 
-def test_a_span_is_shaded_as_far_as_it_goes() -> None:
+def test_a_span_is_shaded_in_proportion_to_its_length() -> None:
     chart = build_chart(log_of({"time": [0.0, 10.0], "a": [1.0, 2.0]}), View(), 800, 400)
     whole = Span(0.0, 10.0, ("all",), "a")
     part = Span(2.0, 4.0, ("part",), "a")

@@ -55,13 +55,13 @@ DRAWN = {
 
 
 @cases("plot, rgb, expected", DRAWN)
-def test_everything_is_where_it_belongs(
+def test_each_part_of_a_pixel_chart_is_in_its_cells(
     plot: Plot, rgb: Rgb, expected: set[tuple[int, int]]
 ) -> None:
     assert cells_with(plot, rgb) == expected
 
 
-def test_the_grid_is_at_the_labels() -> None:
+def test_grid_lines_of_a_pixel_chart_are_at_the_labels() -> None:
     limits = 0.0, 100.0
     grid = 48, 56, 64
     plot = replace(

@@ -180,13 +180,13 @@ def test_a_variable_with_the_name_of_a_column_is_the_programs() -> None:
     assert (trace.logged, trace.values.tolist()) == (True, [2.0])
 
 
-def test_telemetry_is_not_ticked_at_first() -> None:
+def test_traces_of_telemetry_are_not_ticked_at_first() -> None:
     rows = text(ChartPainter().paint(traces("gyro_deg", "Colour"), ChartState(), 80, 16))
 
     assert rows[0].startswith("[x] Colour  [ ] gyro_deg")
 
 
-def test_the_selected_box_is_in_sight() -> None:
+def test_the_selected_tick_box_is_in_sight() -> None:
     names = [f"Trace_number_{number}" for number in range(9)]
 
     picture = ChartPainter().paint(traces(*names), ChartState("Trace_number_8"), 40, 8)
@@ -217,14 +217,14 @@ def test_names_of_bands_have_the_colour_of_their_curve_beside_others(other: str)
     assert (color == build_style(next(iter(made)).rgb).color) is bool(other)
 
 
-def test_values_at_the_cursor() -> None:
+def test_format_values_names_the_value_of_each_trace_at_the_cursor() -> None:
     assert (
         format_values(list(traces("Colour", "way_mm")), 1.25, "s", 80)
         == "1.25 s  Colour 100  way_mm 101mm"
     )
 
 
-def test_values_that_do_not_fit_are_counted() -> None:
+def test_values_at_the_cursor_that_do_not_fit_are_counted() -> None:
     drawn = list(traces("Colour", "Light_left", "Light_right"))
 
     assert format_values(drawn, 1.0, "s", 24) == "1.00 s  Colour 100 +2"
@@ -257,7 +257,7 @@ def test_the_canvas_is_kept_while_only_the_cursor_moves(monkeypatch: pytest.Monk
     assert len(calls) == 2
 
 
-def test_limits_stay_while_frozen() -> None:
+def test_limits_of_a_frozen_chart_stay_as_they_are() -> None:
     made = traces("Colour")
     made.append("Colour", [100.0], [1.0])
 
@@ -268,7 +268,7 @@ def test_limits_stay_while_frozen() -> None:
     assert ChartPainter().paint(made, ChartState(), 80, 16).x_limits == (0.0, 100.0)
 
 
-def test_points_out_of_order_and_numbers_that_are_none() -> None:
+def test_a_trace_sorts_its_points_and_drops_values_that_are_not_finite() -> None:
     made = Traces()
     made.append("t", [3.0, 1.0, float("nan")], [30.0, 10.0, 5.0])
     made.append("t", [2.0], [float("inf")])

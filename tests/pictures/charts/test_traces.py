@@ -15,7 +15,7 @@ TIMES = np.arange(200_000) / 1000.0
 @pytest.mark.parametrize(
     "limits", [(0.0, 200.0), (50.0, 150.0), (10.0, 10.05), (-5.0, 500.0)], ids=str
 )
-def test_few_points_reach_as_far_as_all(limits: tuple[float, float]) -> None:
+def test_points_thinned_for_drawing_keep_the_extremes(limits: tuple[float, float]) -> None:
     values = np.sin(TIMES)
     values[123_456] = 9.0
     times_s, drawn = Pyramid(TIMES, values).select_points(limits, 100)
@@ -32,7 +32,7 @@ def test_a_ramp_of_many_points_is_drawn_as_a_ramp(sign: int) -> None:
     assert (sign * np.diff(drawn) >= 0).all()
 
 
-def test_what_is_not_finite_or_not_in_order_is_put_right() -> None:
+def test_a_pyramid_of_samples_drops_missing_values_and_sorts_by_time() -> None:
     pyramid = Pyramid(np.array([3.0, 1.0, 2.0, 5.0]), np.array([30.0, 10.0, np.nan, 50.0]))
     assert pyramid.times_s.tolist() == [1.0, 3.0, 5.0]
     assert [pyramid.find_nearest(time_s) for time_s in (-9.0, 1.9, 2.1, 4.1, 99.0)] == [
@@ -56,7 +56,7 @@ def test_figures_of_a_span_are_those_of_its_points(span: tuple[float, float]) ->
     assert astuple(found)[:6] == pytest.approx(astuple(expected)[:6], rel=1e-9, nan_ok=True)
 
 
-def test_equal_values_have_no_spread() -> None:
+def test_the_spread_of_equal_values_in_a_trace_is_zero() -> None:
     found = Pyramid(TIMES, np.full(len(TIMES), 0.1)).compute_summary(0.0, 150.0)
     assert (found.mean, found.std) == (0.1, 0.0)
 
@@ -69,7 +69,7 @@ def test_traces_end_where_the_longest_ends() -> None:
     assert traces.end_s() == 12
 
 
-def test_no_points_at_all() -> None:
+def test_a_pyramid_without_valid_points_selects_none() -> None:
     assert not len(Pyramid(np.array([np.nan]), np.array([1.0])).select_points((0.0, 1.0), 10)[0])
 
 

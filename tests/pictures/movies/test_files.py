@@ -21,7 +21,7 @@ def clip(recorded: ClipRun) -> Clip:
     return Clip(recorded, (ClipPanel.WORLD,), (0.0, 0.5), fps=4.0, size=(160, 160))
 
 
-def test_a_movie_is_a_gif_and_says_how_far_it_is(clip: Clip, tmp_path: Path) -> None:
+def test_a_movie_is_saved_as_gif_and_reports_each_drawn_frame(clip: Clip, tmp_path: Path) -> None:
     drawn: list[tuple[int, int]] = []
     path = tmp_path / "a.GIF"
     assert clip.save(path, lambda done, total: drawn.append((done, total))) == path.stat().st_size
@@ -30,7 +30,7 @@ def test_a_movie_is_a_gif_and_says_how_far_it_is(clip: Clip, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("suffix, magic", [(".png", b"\x89PNG"), (".svg", b"<svg ")])
-def test_a_picture_is_of_pixels_or_of_shapes(
+def test_a_run_picture_is_of_pixels_in_png_and_of_shapes_in_svg(
     suffix: str, magic: bytes, recorded: ClipRun, tmp_path: Path
 ) -> None:
     path = tmp_path / f"a{suffix}"
@@ -44,7 +44,7 @@ def test_a_suffix_that_no_format_has_is_refused(tmp_path: Path) -> None:
     assert "(a movie ends in .gif)" in str(caught.value)
 
 
-def test_too_many_frames_are_refused(
+def test_a_movie_of_too_many_frames_is_refused(
     clip: Clip, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "a.gif"

@@ -101,7 +101,7 @@ def test_rings_are_means_from_the_inside() -> None:
         (LightRead.MEAN, False, "33 33 33"),
     ],
 )
-def test_rings_of_an_even_red_are_the_value_that_the_program_gets(
+def test_rings_of_an_evenly_red_disc_show_the_value_that_the_program_gets(
     read: LightRead, is_hubs: bool, words: str
 ) -> None:
     seen = ColorReading(255.0, 0.0, 0.0, is_hubs=is_hubs)
@@ -120,11 +120,13 @@ def test_rings_of_an_even_red_are_the_value_that_the_program_gets(
         (LightRead.MEAN, 255, "mean 82.7 %"),
     ],
 )
-def test_the_value_is_what_the_program_gets(read: LightRead, most: int, words: str) -> None:
+def test_the_value_beside_a_disc_is_what_the_program_gets(
+    read: LightRead, most: int, words: str
+) -> None:
     assert replace(FACE, read=read, reflected_max=most).value_words == words
 
 
-def test_thresholds_say_whether_they_hold_now() -> None:
+def test_thresholds_beside_a_disc_say_whether_they_hold_now() -> None:
     thresholds = (
         ProgramThreshold(LightRead.PERCENT, ">", 90, 15),
         ProgramThreshold(LightRead.COLOR, "==", 6, 16),
@@ -143,7 +145,7 @@ def test_thresholds_say_whether_they_hold_now() -> None:
     assert face.limit_shares == (0.9, 0.5)
 
 
-def test_shrinking_gives_the_mean_of_each_cell() -> None:
+def test_a_disc_shrunk_to_cells_has_the_mean_of_each_cell() -> None:
     pixels = np.arange(24, dtype=np.uint8).reshape(4, 6)
     assert shrink_pixels(pixels, 2, 3).tolist() == [[3.5, 5.5, 7.5], [15.5, 17.5, 19.5]]
     assert shrink_pixels(pixels, 4, 1).tolist() == [[2.5], [8.5], [14.5], [20.5]]

@@ -20,7 +20,7 @@ from tuisim.pictures.scene.view import fit_field, follow_robot
         "one cell": (1, 2),
     },
 )
-def test_whole_field_is_inside(width: int, height: int) -> None:
+def test_fit_field_shows_the_whole_field_in_its_proportions(width: int, height: int) -> None:
     view = fit_field(width, height)
 
     left, bottom = view.to_px(0, 0)
@@ -37,7 +37,7 @@ def test_whole_field_is_inside(width: int, height: int) -> None:
     st.integers(1, 200),
     st.integers(1, 80),
 )
-def test_to_px_and_back(x_mm: float, y_mm: float, width: int, rows: int) -> None:
+def test_to_mm_inverts_to_px(x_mm: float, y_mm: float, width: int, rows: int) -> None:
     view = fit_field(width, 2 * rows)
 
     assert view.to_mm(*view.to_px(x_mm, y_mm)) == pytest.approx((x_mm, y_mm), abs=1e-6)

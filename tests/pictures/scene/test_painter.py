@@ -55,7 +55,7 @@ def test_thin_obstacles_are_drawn(width_mm: float) -> None:
     assert at(painter().paint(VIEW, scene), 301, 350) != (255, 255, 255)
 
 
-def test_a_painter_shows_each_scene_as_a_new_one_does() -> None:
+def test_a_reused_painter_draws_each_scene_as_a_new_one_would() -> None:
     shared = painter()
     beacon = BeaconSpec(1700, 800)
     boxes = Obstacle(300, 200, 200, 300), Obstacle(900, 700, 100, 300)
@@ -90,7 +90,7 @@ def test_a_bumper_is_a_bar_in_front_and_red_while_it_is_pressed() -> None:
     assert at(free, 1090, 540, CLOSE) == at(free, 1110, 526, CLOSE) == (255, 255, 255)
 
 
-def test_an_infrared_sensor_is_drawn_where_it_is() -> None:
+def test_an_infrared_sensor_is_drawn_at_its_position_on_the_robot() -> None:
     assert at(painter().paint(CLOSE, SceneState(TOUCHES, HERE)), 1030, 450, CLOSE) == COLORED.spot
 
 
@@ -145,7 +145,7 @@ EVERYTHING = SceneState(
     ],
     ids=["middle", "for a file", "octants", "coarse", "small and grey", "mono", "close"],
 )
-def test_a_scene_with_everything_is_drawn_as_it_was(
+def test_a_scene_with_everything_is_drawn_with_the_recorded_pixels(
     view: Viewport, options: dict[str, bool], checksum: int
 ) -> None:
     trace = PenTrace()
