@@ -115,7 +115,7 @@ def test_functions_of_another_file_go_along_by_whatever_name(load: Import) -> No
     assert tuisim.simulate(main.go).output == "A: 10\n"
 
 
-def test_a_class_of_two_names_is_one(load: Import) -> None:
+def test_a_class_imported_under_two_names_stays_one_class(load: Import) -> None:
     main = load(
         own_helpers="class Side: pass\n",
         own_main="from own_helpers import Side as Way, Side\ndef go(): print(Side is Way)\n",
@@ -197,7 +197,7 @@ def go(start: np.ndarray = None):
 """
 
 
-def test_own_classes_go_along_with_what_they_use(load: Import) -> None:
+def test_classes_that_a_function_uses_go_along_with_what_they_use(load: Import) -> None:
     assert tuisim.simulate(load(controller=CONTROLLER, study=STUDY).go).output == "inf 10.0 1\n"
 
 
@@ -406,6 +406,6 @@ def _without_source() -> Any:
         "no function": (3, "3 is not a program"),
     },
 )
-def test_what_is_no_program_is_refused_by_name(program: Any, words: str) -> None:
+def test_simulate_refuses_by_name_what_is_no_program(program: Any, words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         read_function(program)

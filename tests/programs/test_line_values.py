@@ -69,7 +69,7 @@ def test_globals_stand_beside_the_lines_that_use_them(
     assert shown(TEXT, inspected([(MODULE, line)], variables)) == beside
 
 
-def test_locals_and_globals_in_a_function() -> None:
+def test_locals_and_globals_stand_beside_the_lines_of_a_paused_function() -> None:
     state = inspected(
         [("add", 4), (MODULE, 7)],
         {"a": "1", "b": "1", "c": "2", "d": "9"},

@@ -87,7 +87,9 @@ def test_two_ways_that_do_the_same_are_named(text: str, equal: tuple[int, str] |
         "nothing": ("import a\n", None),
     },
 )
-def test_a_program_that_only_defines_is_told(text: str, definition: tuple[int, str] | None) -> None:
+def test_a_program_that_only_defines_functions_is_told_of(
+    text: str, definition: tuple[int, str] | None
+) -> None:
     idle = read_facts(Program("p.py", text)).idle_definition
     if definition is None:
         assert idle is None
@@ -112,7 +114,7 @@ def test_a_program_that_only_defines_is_told(text: str, definition: tuple[int, s
         "a wait of something else": ("robot.drive(200, 0)\nself.wait(3)\nrobot.stop()\n", None),
     },
 )
-def test_a_move_that_stops_after_some_milliseconds_is_named(
+def test_a_wait_of_a_few_milliseconds_meant_as_seconds_is_named(
     text: str, slip: tuple[int, str] | None
 ) -> None:
     assert find_slip(text) == slip

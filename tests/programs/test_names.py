@@ -79,14 +79,14 @@ def test_names_that_nobody_defined_are_found(
         "for i in range(3):\n    del i",
     ],
 )
-def test_no_name_is_unknown(text: str) -> None:
+def test_names_that_are_defined_in_any_way_are_not_called_unknown(text: str) -> None:
     assert found(text) == []
 
 
 @pytest.mark.parametrize(
     "text", ["from helper import *\nfoo", "exec('foo = 1')\nfoo", "globals()['foo'] = 1\nfoo"]
 )
-def test_nothing_is_told_where_names_may_come_from_elsewhere(text: str) -> None:
+def test_names_are_not_checked_where_they_may_come_from_elsewhere(text: str) -> None:
     assert found(text) is None
 
 

@@ -53,7 +53,7 @@ def test_attributes_that_an_object_lacks_are_found(
     assert all(lines[one.row][one.start : one.end] == one.name for one in found)
 
 
-def test_an_object_is_asked_for_once() -> None:
+def test_an_objects_attributes_are_looked_up_once() -> None:
     asked: list[tuple[int, int]] = []
 
     def known(text: str, path: str, row: int, column: int) -> frozenset[str]:

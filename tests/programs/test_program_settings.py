@@ -238,7 +238,7 @@ MISFITS: Mapping[str, tuple[str, dict[str, Any], str]] = {
 
 
 @pytest.mark.parametrize("case", MISFITS)
-def test_what_is_for_the_other_library_is_refused(case: str) -> None:
+def test_a_profile_or_prelude_for_another_library_than_the_programs_is_refused(case: str) -> None:
     text, above, told = MISFITS[case]
     with pytest.raises(ProfileError, match=told):
         build_program_settings(parse_program(text, "p.py"), above)
@@ -251,7 +251,7 @@ SPIKE: Mapping[str, str] = {
 
 
 @pytest.mark.parametrize("case", SPIKE)
-def test_nothing_that_cannot_help_is_advised_to_a_program_for_another_hub(case: str) -> None:
+def test_a_program_for_another_hub_gets_no_advice_that_cannot_help(case: str) -> None:
     source = parse_program(SPIKE[case], "p.py")
     told = f"p.py: it is {FOR_SPIKE}"
     assert build_program_settings(source).decided.note == ""
@@ -341,7 +341,7 @@ def test_a_course_program_has_the_settings_that_it_had() -> None:
     assert build_program_settings(parse_program(text, "p.py")).settings == Settings()
 
 
-def test_a_module_of_the_program_may_import_the_library_and_define_what_a_prelude_has(
+def test_an_imported_module_may_bring_the_library_and_predefined_names(
     tmp_path: Path,
 ) -> None:
     (tmp_path / "hardware.py").write_text(f"{BRICK}gyro = MediumMotor(OUTPUT_A)\n")
@@ -363,7 +363,7 @@ def test_a_course_program_may_have_a_module_that_imports_the_library(tmp_path: P
     assert build_program_settings(source).settings == Settings()
 
 
-def test_the_line_names_what_was_built_and_how_to_change_it() -> None:
+def test_the_line_about_the_robot_names_what_was_built_and_how_to_change_it() -> None:
     source = parse_program(CLAW, "my claw.py", "a folder/my claw.py")
     assert build_program_settings(source).decided.note == (
         "my claw.py runs on a robot built from it: medium motor on outA; as on a brick (profile ev3). "

@@ -211,7 +211,9 @@ WITH_WORLD = ("a world", "a world in the app", "a task", "a batch of a task", "m
 
 
 @pytest.mark.parametrize("program, option", TABLE)
-def test_every_door_gives_the_same_run(program: str, option: str, folder: Path) -> None:
+def test_command_app_notebook_and_api_give_a_program_the_same_run(
+    program: str, option: str, folder: Path
+) -> None:
     runs = runs_of(folder, program, OPTIONS[option])
     given_in_world = {"floor": False, **read_options(OPTIONS[option].choices)}
     source = read_program(folder / "p.py")

@@ -72,7 +72,9 @@ def _mutants(count: int, seed: int) -> Iterator[str]:
 @pytest.mark.parametrize(
     ("count", "seed"), [(100, 1), pytest.param(500, 26, marks=pytest.mark.slow)]
 )
-def test_no_text_makes_the_reader_fail(count: int, seed: int, tmp_path: Path) -> None:
+def test_reading_the_robot_from_a_mutated_program_never_fails(
+    count: int, seed: int, tmp_path: Path
+) -> None:
     path = str(tmp_path / "p.py")
     read = [
         (text, read_source_facts(Program("p.py", text, path=path)))

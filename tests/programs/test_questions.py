@@ -74,11 +74,11 @@ def test_a_reading_that_decides_something_is_waited_for(text: str) -> None:
 
 
 @cases("text", LOGS)
-def test_what_is_only_shown_or_stored_is_not(text: str) -> None:
+def test_a_reading_that_is_only_shown_or_stored_is_not_waited_for(text: str) -> None:
     assert not ask(text).decides
 
 
-def test_where_the_text_does_not_tell_it_may_be_waited_for() -> None:
+def test_a_reading_counts_as_waited_for_where_the_text_does_not_tell() -> None:
     assert read("while True:\n    pass").find_question(7) == Question()
     assert read("while True").find_question(1) == Question()
 
@@ -95,7 +95,7 @@ def test_where_the_text_does_not_tell_it_may_be_waited_for() -> None:
         ("while True:\n    while not b.any():  # reads\n        play()\n    go()", False),
     ],
 )
-def test_what_only_ends_the_program_is_known(text: str, is_last: bool) -> None:
+def test_a_press_that_only_ends_the_program_is_recognized(text: str, is_last: bool) -> None:
     assert ask(text).is_last is is_last
 
 
@@ -177,7 +177,7 @@ def test_the_colours_that_are_asked_for_are_known(text: str, colors: tuple[str, 
     assert ask(text).colors == colors
 
 
-def test_a_limit_is_the_first_number_that_is_compared() -> None:
+def test_the_limit_of_a_wait_is_the_first_number_that_is_compared() -> None:
     assert ask("while us.distance_centimeters > 8:  # reads\n    pass").find_limit() == 8
     assert ask("LIMIT = 12.5\nwhile us.value(0) > LIMIT:  # reads\n    pass").find_limit() == 12.5
     assert ask("while us.distance() > limit:  # reads\n    pass").find_limit() is None

@@ -94,7 +94,7 @@ def test_a_comparison_with_a_constant_is_waited_for(
         "while True:\n    if gyro.angle > 90:\n        stop()",
     ],
 )
-def test_other_loops_end_who_knows_how(text: str) -> None:
+def test_no_end_is_named_for_loops_whose_condition_is_not_a_simple_comparison(text: str) -> None:
     assert read(text).loop_ends == ()
 
 
@@ -120,7 +120,9 @@ def test_a_loop_that_only_computes_is_silent_and_inner_loops_come_first() -> Non
         "seconds": ("m.on_for_seconds(30, 5)", None),
     },
 )
-def test_a_call_turns_so_far(call: str, turns: tuple[float, str] | None) -> None:
+def test_the_angle_or_rotations_of_a_motor_call_are_found(
+    call: str, turns: tuple[float, str] | None
+) -> None:
     assert read(f"# first\n{call}\n").find_turns(2) == turns
     assert read(call).find_turns(2) is None
 

@@ -26,7 +26,7 @@ from tests.programs.robot.reading import built
     ],
     ids=["wheels", "pairs", "kinds", "gyros"],
 )
-def test_another_reading_is_told(text: str, doubt: str) -> None:
+def test_a_doubtful_choice_of_the_wheels_motors_is_told(text: str, doubt: str) -> None:
     found = built(text)
     assert found is not None
     assert any(doubt in one for one in found.doubts)
@@ -47,7 +47,7 @@ def test_a_program_that_cannot_be_read_has_no_robot(text: str) -> None:
     assert built(text) is None
 
 
-def test_the_parts_of_a_hub_are_told_by_the_names_that_they_have_there() -> None:
+def test_parts_of_a_hubs_robot_are_listed_by_their_names_on_the_hub() -> None:
     robot = built(
         "from pybricks.hubs import PrimeHub\nfrom pybricks.pupdevices import ForceSensor, Motor\n"
         "from pybricks.parameters import Port\nbumper, arm = ForceSensor(Port.E), Motor(Port.C)",

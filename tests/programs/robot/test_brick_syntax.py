@@ -39,7 +39,7 @@ def found(text: str) -> list[tuple[int, str]]:
         ("import usys\nusys.exit()", "sys.exit"),
     ],
 )
-def test_a_refused_line_is_found(text: str, what: str) -> None:
+def test_a_line_that_the_bricks_python_would_refuse_is_found(text: str, what: str) -> None:
     assert {one for _, one in found(text)} == {what}
 
 
@@ -59,11 +59,11 @@ def test_a_refused_line_is_found(text: str, what: str) -> None:
         "def f():\n    nonlocal_ = yield from g()",
     ],
 )
-def test_what_the_brick_takes_is_not_refused(text: str) -> None:
+def test_syntax_that_the_bricks_python_takes_is_not_refused(text: str) -> None:
     assert found(text) == []
 
 
-def test_the_lines_are_told_in_order_with_their_file() -> None:
+def test_refused_lines_are_listed_in_order_with_their_file() -> None:
     modules = [
         Module("", "p.py", ast.parse("x = f''\n\ny: int = f''")),
         Module("m", "m.py", ast.parse("f''")),

@@ -28,11 +28,11 @@ from tuisim.programs.robot.library import (
     ],
     ids=str,
 )
-def test_the_port_in_a_text(text: object, port: str) -> None:
+def test_parse_port_reads_port_names_and_refuses_other_text(text: object, port: str) -> None:
     assert parse_port(text) == port
 
 
-def test_kinds_by_driver_and_by_mode() -> None:
+def test_the_kind_of_a_device_is_found_by_its_driver_or_mode() -> None:
     assert find_driver_kind("lego-ev3-m-motor") is DeviceKind.MEDIUM
     assert [find_driver_kind(text) for text in ("lego-nxt-us", "lego-ev3", 3)] == [None] * 3
     assert [

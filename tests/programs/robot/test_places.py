@@ -29,7 +29,7 @@ def test_bumpers_reach_to_the_corners_of_the_robot() -> None:
     ("name", "angle_deg"),
     [("side", -90.0), ("us_left", 90.0), ("right_eye", -90.0), ("rear", 180.0), ("front", 0.0)],
 )
-def test_a_sensor_looks_where_its_name_says_on_every_port(
+def test_a_sensor_is_placed_to_look_where_its_name_says_on_every_port(
     port: str, name: str, angle_deg: float
 ) -> None:
     found = built(f"{name} = UltrasonicSensor('{port}')")

@@ -30,7 +30,7 @@ OF_4 = {
 
 
 @pytest.mark.parametrize("text", OF_4)
-def test_a_name_of_version_4_is_found(text: str) -> None:
+def test_a_name_that_only_pybricks_4_has_is_found(text: str) -> None:
     assert find_version_4_name(read_modules(Program("p.py", text)).values()) == OF_4[text]
 
 
@@ -49,5 +49,5 @@ def test_a_name_of_version_4_is_found(text: str) -> None:
         "class Color:\n    NONE = 0\nColor.NONE",
     ],
 )
-def test_version_2_has_the_others(text: str) -> None:
+def test_names_that_pybricks_2_has_are_not_taken_for_version_4(text: str) -> None:
     assert find_version_4_name(read_modules(Program("p.py", text)).values()) == ""

@@ -48,7 +48,9 @@ FOUND = {
 
 
 @pytest.mark.parametrize("case", FOUND)
-def test_folders_that_the_program_adds(folder: Path, case: str) -> None:
+def test_modules_in_folders_that_the_program_adds_to_sys_path_are_read(
+    folder: Path, case: str
+) -> None:
     head = "import os, sys\nfrom pathlib import Path\n"
     assert _ports(folder, f"{head}{FOUND[case]}\n{_USE}") == ["outD"]
 
@@ -64,21 +66,25 @@ def test_folders_in_the_home_folder_of_the_brick_are_beside_the_program(
     assert _ports(Path("prog"), text) == ["outD"]
 
 
-def test_what_only_a_run_could_tell_is_not_searched(folder: Path) -> None:
+def test_folders_added_by_an_expression_that_only_a_run_can_tell_are_not_searched(
+    folder: Path,
+) -> None:
     for added in ("input()", "unknown", "x.parent", "'../' + find()", "[].parents[0]"):
         assert _ports(folder, f"import sys\nsys.path.append({added})\n{_USE}") == []
 
 
-def test_a_name_that_stands_for_itself_ends(folder: Path) -> None:
+def test_a_folder_name_defined_by_itself_does_not_loop_for_ever(folder: Path) -> None:
     assert _ports(folder, f"import sys\nhere = here + 'x'\nsys.path.append(here)\n{_USE}") == []
 
 
-def test_a_module_adds_folders_too(folder: Path) -> None:
+def test_folders_that_an_imported_module_adds_to_sys_path_are_searched(folder: Path) -> None:
     (folder / "paths.py").write_text("import sys\nsys.path.append('../libs')\n")
     assert _ports(folder, f"import paths\n{_USE}") == ["outD"]
 
 
-def test_folders_of_the_users_path(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_modules_in_folders_of_pythonpath_are_read(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("PYTHONPATH", str(folder.parent / "libs"))
     assert _ports(folder, _USE) == ["outD"]
 

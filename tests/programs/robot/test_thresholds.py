@@ -69,11 +69,13 @@ def found(text: str, prelude: str = "none") -> dict[str, list[str]]:
         ),
     },
 )
-def test_of_a_program_with_the_prelude(text: str, expected: dict[str, list[str]]) -> None:
+def test_thresholds_of_a_program_with_predefined_sensors_are_found(
+    text: str, expected: dict[str, list[str]]
+) -> None:
     assert found(text, "preloaded") == expected
 
 
-def test_of_ports_in_a_class() -> None:
+def test_thresholds_of_a_sensor_created_in_a_class_are_found() -> None:
     text = EV3DEV2 + (
         "class Eyes:\n    limit = 30\n    def __init__(self):\n        self.eye = ColorSensor(INPUT_3)\n"
         "    def on_line(self):\n        return self.eye.reflected_light_intensity < self.limit\n"
@@ -103,7 +105,7 @@ def test_the_kind_of_light_that_a_program_reads_is_found(text: str, read: LightR
     assert find_light_read(text) is read
 
 
-def test_each_sensor_has_the_number_that_the_program_reads_of_it() -> None:
+def test_the_light_value_that_the_program_reads_is_found_for_each_sensor() -> None:
     text = (
         "def look():\n    return colorRight.reflected_light_intensity\n"
         "print(colorLeft.color, colorLeft.reflected_light_intensity_pc, look())\n"

@@ -95,7 +95,7 @@ SIZES: Mapping[str, tuple[str, tuple[float, float, float]]] = {
 
 
 @pytest.mark.parametrize("case", SIZES)
-def test_what_a_differential_drive_says_about_its_wheels(case: str) -> None:
+def test_wheel_sizes_given_to_a_differential_drive_are_those_of_the_robot(case: str) -> None:
     text, expected = SIZES[case]
     found = built(text)
     robot = found.choice.spec if found else USUAL
@@ -133,7 +133,7 @@ DOUBTS: Mapping[str, tuple[str, tuple[str, ...]]] = {
 
 
 @pytest.mark.parametrize("case", DOUBTS)
-def test_what_the_robot_here_cannot_do_is_said(case: str) -> None:
+def test_motors_that_the_robot_cannot_have_as_wheels_are_named(case: str) -> None:
     text, doubts = DOUBTS[case]
     found = built(text)
     assert found is not None

@@ -118,7 +118,7 @@ def test_a_drive_base_gives_motors_and_sizes_of_the_wheels(case: str) -> None:
     ) == expected
 
 
-def test_a_drive_base_in_a_module_of_the_program(tmp_path: Path) -> None:
+def test_a_drive_base_in_an_imported_module_gives_the_robots_wheels(tmp_path: Path) -> None:
     (tmp_path / "hardware.py").write_text(
         PYBRICKS_HEAD
         + "left = Motor(Port.A)\nright = Motor(Port.D)\nrobot = DriveBase(left, right, 43.2, 110)\n"
@@ -156,7 +156,7 @@ def test_gears_of_both_wheels_are_those_of_the_robot(case: str) -> None:
     )
 
 
-def test_different_gears_are_told() -> None:
+def test_different_gears_of_the_two_wheels_are_told() -> None:
     found = built("DriveBase(Motor(Port.A, gears=[1, 2]), Motor(Port.D), 56, 100)", PYBRICKS_HEAD)
     assert found is not None
     assert found.doubts == ("the gears of the two wheels differ: none are built",)

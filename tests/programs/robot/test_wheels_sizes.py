@@ -80,7 +80,7 @@ def test_constants_count_on_the_usual_ports_too() -> None:
 @pytest.mark.parametrize(
     "named", ["WHEEL_RAD = 3.44  # cm", "wheel_radius_mm = 34.4", "wheelR = 3.44"]
 )
-def test_a_radius_is_half_a_diameter(ports: str, named: str) -> None:
+def test_a_constant_for_the_wheel_radius_gives_the_wheel_diameter(ports: str, named: str) -> None:
     found = built(f"{named}\nMoveTank({ports})")
     assert found is not None
     assert found.choice.spec.wheel_diameter_mm == 68.8
