@@ -84,7 +84,7 @@ def test_each_shell_completes_the_words_of_a_command(
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_a_script_is_printed(shell: str, here: Command) -> None:
+def test_completion_prints_a_script_for_each_shell(shell: str, here: Command) -> None:
     done = here("completion", shell)
     assert (done.returncode, f"{shell}_complete" in done.stdout) == (0, True)
 
@@ -169,7 +169,7 @@ def test_options_may_stand_before_the_command(words: str, found: str) -> None:
     assert group.insert_command(context, words.split()) == found.split()
 
 
-def test_words_of_the_command_without_some_options() -> None:
+def test_drop_options_removes_options_with_their_values_from_the_words() -> None:
     words = ("mark", "--resume", "a.py", "--jobs", "2", "--keep=all", "--seeds", "0")
     options = [click.Option(["--resume"], is_flag=True), click.Option(["--jobs"])]
     with click.Context(click.Command("mark")) as context:

@@ -15,7 +15,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TUISIM_HOME", str(tmp_path / "home"))
 
 
-def test_what_is_kept_is_found_and_leaves_the_rest() -> None:
+def test_a_stored_preference_is_found_and_leaves_the_others() -> None:
     keep("cells", "octant")
     keep("theme", "light")
     keep("cells", None)
@@ -23,7 +23,7 @@ def test_what_is_kept_is_found_and_leaves_the_rest() -> None:
     assert (get_preference("cells"), get_preference("theme")) == (None, "light")
 
 
-def test_an_app_that_begins_afresh_finds_nothing_of_other_ones_and_leaves_them_nothing(
+def test_an_app_in_its_own_session_shares_no_preferences_or_drafts_with_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     keep("theme", "light")
@@ -39,7 +39,7 @@ def test_an_app_that_begins_afresh_finds_nothing_of_other_ones_and_leaves_them_n
 @pytest.mark.parametrize(
     "text", ["", "{", "[1]", "\udc80"], ids=["empty", "cut off", "a list", "no UTF-8"]
 )
-def test_a_damaged_file_is_an_empty_one(text: str) -> None:
+def test_a_damaged_file_of_preferences_counts_as_empty(text: str) -> None:
     find_preferences_file().parent.mkdir()
     find_preferences_file().write_bytes(text.encode("utf-8", "surrogateescape"))
 

@@ -23,7 +23,7 @@ GIVEN = {
 
 
 @cases("text, press", GIVEN)
-def test_a_press_is_read(text: str, press: Press) -> None:
+def test_each_form_of_a_planned_press_is_parsed(text: str, press: Press) -> None:
     assert parse_press(text) == press
 
 
@@ -46,7 +46,7 @@ WRONG = {
 
 
 @cases("text, message", WRONG)
-def test_a_wrong_press_says_what_is_allowed(text: str, message: str) -> None:
+def test_a_wrong_planned_press_says_what_is_allowed(text: str, message: str) -> None:
     with pytest.raises(ConfigError) as raised:
         parse(PRESSES, text, "--press")
     assert str(raised.value) == message

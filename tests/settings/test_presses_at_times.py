@@ -28,5 +28,5 @@ def test_presses_become_changes_at_ticks(
     assert found == tuple(UserAction(tick, SetButtons(pressed)) for tick, pressed in changes)
 
 
-def test_ticks_are_those_of_the_profile() -> None:
+def test_planned_presses_happen_at_ticks_of_the_profile() -> None:
     assert [change.tick for change in press_actions(["up@1-2"], 30)] == [30, 60]

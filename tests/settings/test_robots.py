@@ -54,7 +54,9 @@ PRESETS = {
 
 
 @pytest.mark.parametrize("name", PRESETS)
-def test_a_preset_that_was_saved_there_is_the_one_here(name: str, tmp_path: Path) -> None:
+def test_a_preset_saved_by_the_old_simulator_equals_the_built_in_one(
+    name: str, tmp_path: Path
+) -> None:
     file = tmp_path / f"{name}.json"
     file.write_text(json.dumps(PRESETS[name]))
     choice = choose_robot(str(file))
@@ -62,7 +64,9 @@ def test_a_preset_that_was_saved_there_is_the_one_here(name: str, tmp_path: Path
     assert (choice.motor_noise, choice.light_noise, choice.notes) == (0, 0, ())
 
 
-def test_unknown_keys_are_noted_once_in_the_shell(here: Command, tmp_path: Path) -> None:
+def test_unknown_keys_of_a_robot_file_are_noted_once_in_the_shell(
+    here: Command, tmp_path: Path
+) -> None:
     (tmp_path / "mine.json").write_text(json.dumps({**LARGE, "owner": "Ann"}))
     (tmp_path / "p.py").write_text("print('ran')")
     done = here("run", "p.py", "-r", "mine.json")

@@ -62,7 +62,7 @@ def _home(home: Path) -> None:
         "no keys": ("[keys]\nrun = []", "keys.run: must be a key or a list of keys, got []"),
     },
 )
-def test_what_is_wrong_is_named_and_counts_as_missing(text: str, problem: str) -> None:
+def test_a_wrong_setting_in_the_config_file_is_named_and_ignored(text: str, problem: str) -> None:
     found = parse_config(f"{text}\n", PATH)
 
     (error,) = map(str, found.problems)
@@ -142,7 +142,7 @@ def test_a_change_keeps_comments_and_what_else_is_in_the_file() -> None:
     assert tomllib.loads(text)["simulation"] == {"robot": "Small_Robot"}
 
 
-def test_a_wrong_value_is_not_written() -> None:
+def test_a_wrong_value_is_not_written_into_the_config_file() -> None:
     with pytest.raises(ConfigError, match=r"app\.fps: must be a whole number"):
         save_setting(SETTINGS["app.fps"], 100)
     assert not find_config_file().exists()

@@ -197,13 +197,13 @@ def test_settings_build_the_recorded_run(name: str, folder: Path, home: Path) ->
 
 @pytest.mark.quick_cases("everything in a world", "a cell with noise")
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_program_gives_what_it_gave(name: str, folder: Path) -> None:
+def test_each_golden_program_gives_its_recorded_output(name: str, folder: Path) -> None:
     case = CASES[name]
     lay_out(case, folder)
     assert differences(case["gives"], do_program(case, folder)) == {}
 
 
-def test_the_cases_are_of_many_kinds() -> None:
+def test_golden_cases_are_of_many_kinds() -> None:
     assert len(CASES) == len(GOLDEN["cases"]) == 30
     assert {CASES[name]["gives"]["json"]["profile"] for name in PROGRAMS} == {
         "robolab",
@@ -213,7 +213,7 @@ def test_the_cases_are_of_many_kinds() -> None:
     assert sum("err" in CASES[name]["gives"] for name in SETTINGS) >= 12
 
 
-def test_the_form_of_numbers_counts() -> None:
+def test_golden_comparison_tells_integers_from_floats_and_booleans() -> None:
     assert differences({"light": [0, 1]}, {"light": [0.0, 1]}) == {"light.0": (0, 0.0)}
     assert differences({"light": 0}, {"light": False}) == {"light": (0, False)}
     assert differences({"light": 0}, {}) == {"light": (0, None)}
