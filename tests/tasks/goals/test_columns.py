@@ -133,7 +133,7 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Iterator[StoredRun]:
 
 
 @cases("lines, reason", GOALS)
-def test_a_goal_on_what_happened(
+def test_goals_about_columns_of_a_run_are_met_or_missed_with_the_reason(
     lines: str, reason: str, tmp_path: Path, driven: StoredRun
 ) -> None:
     goals = goals_of(tmp_path, f"[[goal]]\nname = 'a'\n{lines}\n{OTHERS}")

@@ -165,7 +165,9 @@ def test_points_are_those_of_met_goals(home: Path, tmp_path: Path) -> None:
     assert compute_points(judged(finished(home), tmp_path, GOALS).values()) == 7.5
 
 
-def test_lines_that_come_once_are_told_of_when_they_came(home: Path, tmp_path: Path) -> None:
+def test_a_goal_on_lines_printed_once_has_the_time_at_which_they_came(
+    home: Path, tmp_path: Path
+) -> None:
     goals = "[[goal]]\nname = 'it'\nprint = { lines = ['one'], once = true }\n"
     found = judged(finished(home), tmp_path, goals)["it"]
     # The end decides; the line came where the robot had driven 200 mm.
@@ -173,7 +175,7 @@ def test_lines_that_come_once_are_told_of_when_they_came(home: Path, tmp_path: P
     assert [found.changes[0].x_mm, found.event.x_mm] == pytest.approx([900, 700], abs=12)
 
 
-def test_state_at_earlier_ticks(home: Path, tmp_path: Path) -> None:
+def test_a_goals_state_at_an_earlier_tick_is_that_of_then(home: Path, tmp_path: Path) -> None:
     found = judged(finished(home), tmp_path, GOALS)
     change = found["a"].changes[0]
     assert (change.state, change.tick, change.y_mm) == ("met", 108, 500)
@@ -206,7 +208,9 @@ RUNNING = {
 
 
 @cases("condition, state", RUNNING)
-def test_state_while_it_runs(condition: str, state: str, home: Path, tmp_path: Path) -> None:
+def test_a_goal_of_a_running_program_is_open_until_decided(
+    condition: str, state: str, home: Path, tmp_path: Path
+) -> None:
     run = finished(home)
     goals = goals_of(
         tmp_path,
@@ -217,7 +221,9 @@ def test_state_while_it_runs(condition: str, state: str, home: Path, tmp_path: P
     assert bool(found.changes) == (state != "open")
 
 
-def test_states_as_of_then_are_those_that_were_shown_then(home: Path, tmp_path: Path) -> None:
+def test_states_looked_up_for_a_past_instant_equal_those_shown_live(
+    home: Path, tmp_path: Path
+) -> None:
     conditions = [condition for condition, *_ in (*CASES.values(), *RUNNING.values())]
     text = "".join(
         f"[[goal]]\nname = '{number}'\n{each}\n" for number, each in enumerate(conditions)
@@ -248,7 +254,7 @@ ENDS = {end.value: end for end in End if end is not End.FINISHED}
 
 
 @cases("end", ENDS)
-def test_no_other_end_is_a_finish(end: End, home: Path, tmp_path: Path) -> None:
+def test_only_the_end_finished_meets_a_goal_to_finish(end: End, home: Path, tmp_path: Path) -> None:
     run = Run(RunStore(), world(), "")
     run.do((drive(10, 10, 0.1),))
     (found,) = judge(

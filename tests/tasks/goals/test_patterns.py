@@ -35,14 +35,14 @@ TEXTS = {
 
 
 @pytest.mark.parametrize("pattern", TEXTS)
-def test_the_same_is_found_as_by_the_standard_library(pattern: str) -> None:
+def test_patterns_find_the_same_as_the_re_module(pattern: str) -> None:
     search = build_search(pattern)
     assert [search(text) for text in TEXTS[pattern]] == [
         bool(re.search(pattern, text)) for text in TEXTS[pattern]
     ]
 
 
-def test_what_would_take_years_elsewhere_is_found_at_once() -> None:
+def test_a_pattern_that_takes_the_re_module_for_ever_is_searched_at_once() -> None:
     search = build_search("^(a+)+$")
     assert [search(text) for text in ("aaa", ENDLESS)] == [True, False]
 
@@ -56,12 +56,12 @@ def test_the_time_limit_of_a_pattern_covers_all_texts(monkeypatch: pytest.Monkey
             search(text)
 
 
-def test_what_only_the_standard_library_reads_is_not_searched_for() -> None:
+def test_a_pattern_that_cannot_be_searched_for_is_called_a_fault_of_the_task() -> None:
     with pytest.raises(UnjudgedError, match=r"cannot be searched for: .* a fault of the task"):
         build_search("[[:foo:]]")
 
 
-def test_the_rest_of_a_class_of_goals_is_judged(
+def test_a_goal_with_a_faulty_pattern_does_not_keep_other_goals_from_being_judged(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(patterns, "LIMIT_S", 0.02)

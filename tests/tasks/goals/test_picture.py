@@ -31,7 +31,7 @@ TO_BLACK = (ahead(1400, line=3), wait(2, line=4))
         (500, 12, -90),
     ],
 )
-def test_what_is_off_the_mat_is_black(
+def test_off_the_mat_counts_as_black_in_goals_about_lines(
     start: tuple[float, float, float], home: Path, tmp_path: Path
 ) -> None:
     run = Run(RunStore(), world(*start), "")
@@ -78,7 +78,9 @@ def test_a_followed_line_is_met_or_missed_with_its_reason(
     assert reason in found.reason
 
 
-def test_follow_counts_only_after_and_until(home: Path, tmp_path: Path) -> None:
+def test_a_goal_to_follow_a_line_counts_only_between_after_and_until(
+    home: Path, tmp_path: Path
+) -> None:
     text = "follow = { sensors = 'left', darker_than = 50, share = 1 }\nafter = 8\nuntil = 9\n"
     (goal,) = goals_of(tmp_path, f"[[goal]]\nname = 'it'\n{text}")
     run = Run(RunStore(), BANDS, "")

@@ -192,7 +192,7 @@ NOTES = {
 
 
 @cases("note, words", NOTES)
-def test_why_a_note_does_not_pass(note: Noted, words: str) -> None:
+def test_a_note_that_does_not_pass_is_answered_with_the_reason(note: Noted, words: str) -> None:
     found = note_fault(NOTE, note)
     assert found.startswith(words)
     assert bool(found) is bool(words)

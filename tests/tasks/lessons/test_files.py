@@ -229,7 +229,7 @@ def test_a_lesson_is_named_by_its_file_without_the_number(file: str, name: str) 
     assert get_lesson_name(Path(file)) == name
 
 
-def test_parts_of_a_lesson(tmp_path: Path) -> None:
+def test_each_part_of_a_lesson_file_is_read(tmp_path: Path) -> None:
     path = tmp_path / "it.md"
     body = (
         "Hello\n```python program\nprint(0)\n```\n## One\nDo\n```python\n## shown\n```\n## Two\n"
@@ -254,7 +254,7 @@ def test_parts_of_a_lesson(tmp_path: Path) -> None:
     assert found.model_answer == "print(1)\n"
 
 
-def test_skeleton_describes_every_check() -> None:
+def test_the_skeleton_of_a_new_lesson_describes_every_check() -> None:
     assert [kind for kind in CHECKS if f"#   {kind} = " not in SKELETON] == []
 
 
@@ -283,7 +283,9 @@ WAYS = {
 
 
 @cases("keys, missing", WAYS)
-def test_wrong_ways_that_are_missing(keys: str, missing: list[str], tmp_path: Path) -> None:
+def test_wrong_ways_that_a_lessons_step_lacks_are_listed(
+    keys: str, missing: list[str], tmp_path: Path
+) -> None:
     path = tmp_path / "it.md"
     path.write_text(
         step(keys)

@@ -26,7 +26,7 @@ def told(folder: Path, front: str) -> Lesson:
     return load_lesson(folder / "it-other.md")
 
 
-def test_what_a_telling_does_not_say_is_that_of_the_lesson(tmp_path: Path) -> None:
+def test_what_a_lessons_version_leaves_out_is_taken_from_the_lesson(tmp_path: Path) -> None:
     found = told(tmp_path, "tells = 'it.md'\ntitle = 'U'\n[[step]]\nname = 'a'\nhints = ['b']\n")
     assert (found.name, found.title, found.why, found.minutes, found.settings) == (
         "it-other",
@@ -82,5 +82,7 @@ MERGED = {
 
 
 @cases("other, own, both", MERGED)
-def test_own_values_take_precedence(other: object, own: object, both: object) -> None:
+def test_values_in_a_lessons_version_take_precedence(
+    other: object, own: object, both: object
+) -> None:
     assert merge_telling(other, own) == both

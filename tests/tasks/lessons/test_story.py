@@ -49,14 +49,16 @@ SAID: dict[str, tuple[Condition, str]] = {
 
 
 @cases("condition, words", SAID)
-def test_the_story_of_a_run_says_how_its_goal_was_met(condition: Condition, words: str) -> None:
+def test_the_sentence_about_a_run_says_how_its_goal_was_met(
+    condition: Condition, words: str
+) -> None:
     met = Judgement(
         Goal("a", condition), (Change(542, 5.42, GoalState.MET, 1152.9, 500.0),), line=3
     )
     assert build_story([met, met]) == f"Your run: {words}."
 
 
-def test_what_the_end_decides_is_told_of_the_moment_when_it_happened() -> None:
+def test_the_sentence_about_a_goal_decided_at_the_end_names_when_it_happened() -> None:
     said = Change(542, 5.42, GoalState.MET, 1120.0, 500.0)
     end = Change(900, 9.0, GoalState.MET, 1420.0, 500.0)
     met = Judgement(
@@ -67,7 +69,7 @@ def test_what_the_end_decides_is_told_of_the_moment_when_it_happened() -> None:
     )
 
 
-def test_of_several_goals_about_a_variable_the_last_is_told() -> None:
+def test_of_several_goals_about_a_variable_the_sentence_names_the_last() -> None:
     goals = [
         Judgement(
             Goal(name, LogCondition("Colour", (50,))),
@@ -82,7 +84,7 @@ def test_of_several_goals_about_a_variable_the_last_is_told() -> None:
     )
 
 
-def test_nothing_is_said_of_what_was_not_met() -> None:
+def test_the_sentence_about_a_run_leaves_out_goals_not_met() -> None:
     assert (
         build_story(
             [

@@ -37,7 +37,7 @@ def test_copies_are_writable_and_have_only_files(tmp_path: Path) -> None:
     assert (tmp_path / "copy" / "data" / "log.txt").read_text() == "data/log.txt"
 
 
-def test_holes_are_not_copied(tmp_path: Path) -> None:
+def test_a_sparse_files_holes_are_not_copied_as_bytes(tmp_path: Path) -> None:
     (tmp_path / "class").mkdir()
     with open(tmp_path / "class" / "data", "wb") as file:
         file.write(b"first")
@@ -66,7 +66,9 @@ ZIPS = {
 
 
 @cases("name, kind, problem", ZIPS)
-def test_a_zip_stays_in_its_folder(tmp_path: Path, name: str, kind: int, problem: str) -> None:
+def test_a_zip_with_a_path_or_link_out_of_its_folder_is_refused(
+    tmp_path: Path, name: str, kind: int, problem: str
+) -> None:
     with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
         archive.writestr("main.py", "")
         entry = zipfile.ZipInfo(name)
@@ -91,7 +93,9 @@ def test_a_zip_that_grows_beyond_measure_is_refused(
     assert not (tmp_path / "other").exists()
 
 
-def test_a_zip_has_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_zip_with_too_many_bytes_or_files_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with zipfile.ZipFile(tmp_path / "a.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("zeros", bytes(3 << 20))
     with pytest.raises(ConfigError, match=r"a\.zip: cannot be unpacked: it has more than 2 MiB"):

@@ -90,7 +90,7 @@ def test_hidden_goals_and_points_taken_off_are_only_in_the_total(tmp_path: Path)
     assert _rows(tmp_path / "m.csv")[0][-2:] == ["Section", "Grey bands"]
 
 
-def test_no_cell_is_a_formula(tmp_path: Path) -> None:
+def test_no_cell_of_an_exported_gradebook_is_a_formula(tmp_path: Path) -> None:
     roster = _roster(tmp_path, 'submission,Email address\nada,"=cmd()"\nben,\'=cmd()\n')
     for kind in GradebookKind:
         write_gradebook(tmp_path / "x.csv", kind, SHEET, SOURCES, roster, goals=True)
@@ -98,7 +98,7 @@ def test_no_cell_is_a_formula(tmp_path: Path) -> None:
         assert not [cell for cell in cells if re.match(r"[=+@\t\r-]", cell)]
 
 
-def test_who_is_missing_and_who_is_absent(tmp_path: Path) -> None:
+def test_a_class_list_tells_who_handed_in_nothing_and_who_is_not_listed(tmp_path: Path) -> None:
     roster = _roster(tmp_path, "submission,username\nben,b\n,nobody\nzoe,z\n\n")
     names = [row.name for row in SHEET.rows]
     assert roster.absent(names) == ["zoe"] and set(roster.missing(names)) == set(names) - {"ben"}

@@ -48,7 +48,7 @@ def _request(folder: Path) -> MarkRequest:
     )
 
 
-def test_what_is_known_of_a_class_while_it_is_marked(
+def test_a_marking_reports_progress_absent_students_and_unjudged_runs(
     home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def outcomes(*_: object) -> Iterator[tuple[str, Outcome]]:

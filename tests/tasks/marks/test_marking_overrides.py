@@ -31,7 +31,7 @@ def _sheet(tmp_path: Path, text: str = TEXT) -> Sheet:
     return apply_overrides(SHEET, read_overrides(path, COLUMNS, NAMES))
 
 
-def test_points_of_a_goal_and_of_the_task(tmp_path: Path) -> None:
+def test_a_teacher_can_override_points_of_a_goal_or_the_whole_task(tmp_path: Path) -> None:
     frame = _sheet(tmp_path).build_frame().set_index("student")
     columns = ["points", "earned", "goal_place", "goal_wall", "comment"]
     assert frame.loc[["ada", "ben", "cleo"], columns].to_numpy().tolist() == [
@@ -41,7 +41,7 @@ def test_points_of_a_goal_and_of_the_task(tmp_path: Path) -> None:
     ]
 
 
-def test_page_and_feedback_show_them(tmp_path: Path) -> None:
+def test_page_and_feedback_show_the_teachers_points_and_comments(tmp_path: Path) -> None:
     sheet = _sheet(tmp_path)
     page = build_page(sheet)
     assert '<div class="comment">Neat.</div>' in page and "the runs have earned 8.25" in page
@@ -59,6 +59,8 @@ def test_page_and_feedback_show_them(tmp_path: Path) -> None:
         ("", "is empty"),
     ],
 )
-def test_a_wrong_file_says_where(tmp_path: Path, text: str, what: str) -> None:
+def test_a_faulty_file_of_overridden_points_names_student_and_key(
+    tmp_path: Path, text: str, what: str
+) -> None:
     with pytest.raises(ConfigError, match=re.escape(what)):
         _sheet(tmp_path, text)

@@ -59,7 +59,9 @@ FAILURES = {
 
 
 @cases("result, failure", FAILURES)
-def test_why_a_program_did_not_finish(result: Result, failure: str) -> None:
+def test_each_end_of_a_marked_run_has_its_words_for_the_failure(
+    result: Result, failure: str
+) -> None:
     assert build_outcome(result, 3, FOLDER).failure == failure
 
 

@@ -11,7 +11,7 @@ from tuisim.tasks.marks.page import build_page, compute_distribution, compute_go
 from tuisim.tasks.marks.sheet import build_sheet
 
 
-def test_statistics_of_the_goals() -> None:
+def test_goal_statistics_count_who_met_them_and_why_others_missed() -> None:
     place, wall = compute_goal_statistics(SHEET)
     assert (place.met, place.partly, wall.met, wall.partly) == (1, 1, 3, 0)
     assert (place.mean, wall.mean) == ((7 + 5.25) / 5, 9 / 5)
@@ -24,7 +24,7 @@ def test_every_student_is_in_the_distribution_of_points() -> None:
     assert parts[0][2] == 2 and parts[8] == (8.0, 9.0, 1) and parts[9] == (9.0, 10.0, 1)
 
 
-def test_goals_and_similar_programs_are_told() -> None:
+def test_the_page_of_marks_shows_goal_statistics_and_similar_programs() -> None:
     page = build_page(
         SHEET, similar=find_similar({"ada": [LINE], "ben": [RENAMED], "cleo": [OTHER]})
     )

@@ -13,7 +13,7 @@ from tuisim.tasks.goals.files import list_example_names
 
 @pytest.mark.slow_cases("*")
 @pytest.mark.parametrize("name", list_example_names())
-def test_an_example_gives_nothing_for_nothing(name: str, here: Command) -> None:
+def test_goals_try_finds_no_fault_in_the_examples_of_goals(name: str, here: Command) -> None:
     done = here("goals", "try", name, "--jobs", "1", "--seeds", "0")
     assert (done.returncode, done.stderr) == (0, ""), done.stdout
     assert done.stdout.endswith("_goals.toml: all is well\n")
@@ -40,7 +40,7 @@ finish = true
 MODEL = "tank_drive.on_for_rotations(30, 30, 1.2)\nprint('home')\n"
 
 
-def test_what_is_earned_for_nothing_is_named(tmp_path: Path, here: Command) -> None:
+def test_goals_try_names_points_that_a_useless_program_earns(tmp_path: Path, here: Command) -> None:
     (tmp_path / "task.toml").write_text(TASK)
     (tmp_path / "model.py").write_text(MODEL)
     (tmp_path / "wrong").mkdir()
@@ -75,7 +75,9 @@ def test_what_is_earned_for_nothing_is_named(tmp_path: Path, here: Command) -> N
     assert "task.toml: the wrong example same.py gets all points" in said
 
 
-def test_a_model_that_fails_is_a_fault(tmp_path: Path, here: Command) -> None:
+def test_goals_try_reports_a_model_program_that_misses_points(
+    tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "task.toml").write_text(TASK.partition('[[goal]]\nname = "said"')[0])
     (tmp_path / "model.py").write_text("tank_drive.on_for_rotations(30, 30, 0.5)\n")
     done = here("goals", "try", "task.toml", "--jobs", "1", "--seeds", "0")
@@ -91,7 +93,9 @@ BAD = {
 
 
 @cases("words, message", BAD)
-def test_bad_input_is_refused(tmp_path: Path, here: Command, words: str, message: str) -> None:
+def test_goals_try_refuses_bad_input(
+    tmp_path: Path, here: Command, words: str, message: str
+) -> None:
     (tmp_path / "task.toml").write_text(TASK)
     if "model" not in message and words != "task.toml":
         (tmp_path / "model.py").write_text(MODEL)

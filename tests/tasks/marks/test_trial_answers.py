@@ -26,12 +26,12 @@ PATTERNS = [
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)
-def test_a_line_fits_its_pattern(pattern: str) -> None:
+def test_a_line_built_for_a_pattern_matches_it(pattern: str) -> None:
     line = build_matching_line(pattern)
     assert re.search(pattern, line) and "\n" not in line
 
 
-def test_a_pattern_that_nothing_fits_gives_its_words() -> None:
+def test_a_pattern_that_no_line_matches_gives_its_plain_words() -> None:
     assert build_matching_line("(?=a)b") == "=ab"
 
 
@@ -52,6 +52,6 @@ when = ["sample Red > 3", "sample Blue", "left_red_pc < 3"]
 """
 
 
-def test_what_comes_after_something_is_said_after_it(tmp_path: Path) -> None:
+def test_lines_that_a_goal_wants_after_others_are_printed_after_them(tmp_path: Path) -> None:
     lines = answer_lines(goals_of(tmp_path, TASK))
     assert lines == ["Grey: 50.2", "Grey: 7", "home", ASK, "25", ASK, "Red: 4", "Blue: 1"]

@@ -256,7 +256,7 @@ def test_reasons_are_ordered_and_hidden_goals_left_out(tmp_path: Path) -> None:
     assert find_reasons(run, (), mine) == find_reasons(run)
 
 
-def test_a_run_of_another_text_is_no_measure() -> None:
+def test_a_run_of_another_program_text_is_not_compared_for_reasons() -> None:
     run = run_text("tank_drive.on_for_seconds(20, 20, 1)\n")
     for text in ("tank_drive.on_for_seconds(20, 30, 1)\n", "# -x 700\ntank_drive.off()\n"):
         assert find_reasons(run, (), Recording(run_text(text))) == ()

@@ -74,7 +74,7 @@ VAIN = {
 
 
 @cases("text, words", VAIN)
-def test_what_did_not_come_is_named_with_what_came(text: str, words: str) -> None:
+def test_a_wait_in_vain_is_named_with_the_values_that_came_instead(text: str, words: str) -> None:
     wait = find_unmet(load(text))
     assert wait is not None
     assert wait.text.startswith(words)

@@ -272,7 +272,7 @@ VAIN = {
 
 
 @cases("text, press, sentence", VAIN)
-def test_a_press_that_did_not_help_is_named(
+def test_a_press_that_did_not_end_the_wait_is_named(
     tmp_path: Path, here: Command, text: str, press: str, sentence: str
 ) -> None:
     (tmp_path / "prog.py").write_text(text)
@@ -334,7 +334,7 @@ MEASURED = {
 
 
 @cases("text, sentence", MEASURED)
-def test_what_never_came_near_or_turned_is_named(
+def test_a_reading_that_never_came_is_named_with_how_near_it_came(
     tmp_path: Path, here: Command, text: str, sentence: str
 ) -> None:
     (tmp_path / "prog.py").write_text(text)
@@ -377,7 +377,7 @@ def test_the_remote_drives_while_it_is_pressed(tmp_path: Path, here: Command) ->
 
 
 @pytest.mark.slow
-def test_a_batch_says_it_in_a_column(tmp_path: Path, here: Command) -> None:
+def test_a_batch_has_a_column_of_what_each_run_waited_for(tmp_path: Path, here: Command) -> None:
     (tmp_path / "prog.py").write_text(WAIT_TOUCH)
     here("batch", "prog.py", "--seeds", "0..1", "--timeout", 6, "--out", "rows.csv")
     header, first, _ = (tmp_path / "rows.csv").read_text().splitlines()

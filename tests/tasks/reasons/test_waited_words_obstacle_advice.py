@@ -39,7 +39,7 @@ INFRARED = InfraredSpec(port="in4")
         (FRONT, replace(MIDDLE, x_mm=4000.0), None, ""),
     ],
 )
-def test_what_stands_before_the_sensor_is_named(
+def test_the_advice_names_an_obstacle_that_stands_before_the_waiting_sensor(
     sensor: UltrasonicSpec | InfraredSpec, pose: Pose, limit: float | None, options: str
 ) -> None:
     assert find_obstacle(sensor, SPEC, pose, limit) == options

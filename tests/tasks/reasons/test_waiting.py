@@ -12,7 +12,7 @@ SENTENCE = (
 )
 
 
-def test_what_a_standing_robot_waits_for_is_said_once(record: Record) -> None:
+def test_what_a_standing_robot_waits_for_is_told_once_in_the_app(record: Record) -> None:
     watch = WaitWatch()
     recorder = record(SPEC)
     poll(recorder, "in1", "TOUCH")
