@@ -84,7 +84,7 @@ async def test_without_a_terminal_of_its_own_there_is_none_to_lend() -> None:
         assert not app.lend_terminal(["true"])
 
 
-def test_controls_are_left_out_and_nothing_moves() -> None:
+def test_control_characters_are_not_drawn_and_text_keeps_its_width() -> None:
     bold = Style(bold=True)
     before = [Segment("Größe 😀", bold), Segment("a\x1b[31m\x9bb\u202e\x07\n")]
     after = Sanitize().apply(before, Color(0, 0, 0))

@@ -50,7 +50,7 @@ FILLED = {
 
 
 @pytest.mark.parametrize("name", FILLED)
-def test_blocks_fill_their_part(name: str) -> None:
+def test_block_characters_in_a_screenshot_fill_their_part_of_the_cell(name: str) -> None:
     char, parts = FILLED[name]
     width, height = CELL_PX
     wanted = np.zeros((height, width), bool)
@@ -79,7 +79,7 @@ LINES = {
 
 
 @pytest.mark.parametrize("name", LINES)
-def test_lines_reach_the_edges(name: str) -> None:
+def test_line_characters_in_a_screenshot_reach_the_cells_edges(name: str) -> None:
     char, edges = LINES[name]
     light = pixels([cells(char)])[..., 0] > 128
     width, height = CELL_PX
@@ -93,7 +93,7 @@ def test_lines_reach_the_edges(name: str) -> None:
 
 
 @pytest.mark.parametrize("char, count", [("⠁", 1), ("⣿", 8), ("⠀", 0)])
-def test_braille_has_its_dots(char: str, count: int) -> None:
+def test_braille_characters_in_a_screenshot_have_their_dots(char: str, count: int) -> None:
     light = pixels([cells(char)])[..., 0] > 128
     width, height = CELL_PX
     dots = light.reshape(4, height // 4, 2, width // 2).any(axis=(1, 3))
@@ -101,7 +101,7 @@ def test_braille_has_its_dots(char: str, count: int) -> None:
     assert not count or dots[0, 0]
 
 
-def test_colours_are_those_of_the_cells() -> None:
+def test_a_screenshot_has_the_colours_of_the_cells() -> None:
     top, bottom = pixels([[("▀", Look(RED, BLUE)), (" ", Look(RED, WHITE))]]).reshape(
         2, CELL_PX[1] // 2, -1, 3
     )
@@ -114,7 +114,7 @@ def test_colours_are_those_of_the_cells() -> None:
     [LOOK, Look(WHITE, BLACK, bold=True), Look(WHITE, BLACK, italic=True)],
     ids=["plain", "bold", "italic"],
 )
-def test_letters_are_drawn_within_their_cell(look: Look) -> None:
+def test_letters_in_a_screenshot_stay_within_their_cell(look: Look) -> None:
     shown = pixels([cells(" g ", look)])[..., 0]
     (left, middle, right) = np.split(shown, 3, axis=1)
     assert (middle > 128).sum() > 20
@@ -125,7 +125,7 @@ def test_letters_are_drawn_within_their_cell(look: Look) -> None:
     } == dict.fromkeys("äЖλ→●✗", True)
 
 
-def test_bold_is_bolder_and_lines_are_drawn() -> None:
+def test_bold_text_in_a_screenshot_is_bolder_and_underlines_are_drawn() -> None:
     plain, bold, under, strike = (
         pixels([cells("m", look)])[..., 0].astype(int)
         for look in (

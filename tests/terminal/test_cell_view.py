@@ -25,7 +25,7 @@ from tuisim.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, KITTY_QUE
 
 @pytest.mark.quick_cases("kitty")
 @pytest.mark.parametrize("protocol", Protocol)
-async def test_what_the_terminal_shows_is_what_was_drawn(protocol: Protocol) -> None:
+async def test_each_graphics_protocol_shows_the_drawn_pixels(protocol: Protocol) -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await answered(pilot, ANSWERS[protocol])
         for key in ("right", "a", "a", "up"):
@@ -101,7 +101,7 @@ async def test_an_error_of_kitty_brings_the_cells_back_at_once() -> None:
 
 
 @pytest.mark.slow
-async def test_one_key_switches_to_characters_and_back() -> None:
+async def test_one_key_switches_pictures_to_characters_and_back_to_pixels() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await answered(pilot, ANSWERS[Protocol.SIXEL])
         assert any(action.id == "pixels" for action in lab(pilot).key_footer._actions)

@@ -305,7 +305,7 @@ def test_ctrl_z_stops_the_app_and_it_goes_on_with_the_run_paused(
         "a program while it is edited",
     ],
 )
-async def test_where_ctrl_z_suspends(
+async def test_ctrl_z_suspends_the_app_everywhere_but_while_typing_in_the_editor(
     places: tuple[tuple[str, ...], ...], suspends: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     suspended: list[App[None]] = []

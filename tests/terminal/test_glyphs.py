@@ -38,7 +38,9 @@ def shown(cells: CellSet) -> dict[str, str]:
         "dots 478": (CellSet.BRAILLE, "\N{BRAILLE PATTERN DOTS-478}", ".#....##"),
     },
 )
-def test_the_points_of_a_glyph(cells: CellSet, glyph: str, points: str) -> None:
+def test_each_glyph_is_chosen_for_its_pattern_of_points(
+    cells: CellSet, glyph: str, points: str
+) -> None:
     assert shown(cells)[glyph] == points
 
 

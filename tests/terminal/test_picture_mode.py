@@ -60,7 +60,7 @@ def test_each_sign_keeps_its_width(text: str, plain: str) -> None:
         ("xterm-256color", "auto"),
     ],
 )
-def test_colours_of_a_kind_of_terminal(terminal: str, colors: str) -> None:
+def test_the_number_of_colours_follows_the_kind_of_terminal(terminal: str, colors: str) -> None:
     assert read_colors({"TERM": terminal, "COLORTERM": "truecolor"}) == colors
 
 

@@ -103,7 +103,7 @@ class Answers:
         "no answer at all": ({}, CellSet.QUADRANT, False),
     },
 )
-def test_a_terminal_is_asked(
+def test_the_set_of_glyphs_follows_the_terminals_answers(
     answers: Mapping[bytes, bytes], cells: CellSet, asks_name: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     terminal = Answers(answers)

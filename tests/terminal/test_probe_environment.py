@@ -43,7 +43,7 @@ def tmux(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         "tmux reduces colours itself": ({"TERM": "tmux-256color", **TMUX}, "256", "auto"),
     },
 )
-def test_the_colours_in_a_multiplexer(
+def test_the_number_of_colours_in_screen_or_tmux_follows_its_settings(
     tmux: Path, environment: Mapping[str, str], features: str, colors: str
 ) -> None:
     tmux.write_text(f"{features}\n")
@@ -60,7 +60,7 @@ def test_the_colours_in_a_multiplexer(
         "no tmux": ("foot(1.22.0)", TMUX, "kitty(0.42.1)", "foot(1.22.0)"),
     },
 )
-def test_the_terminal_around_tmux(
+def test_the_name_of_the_terminal_around_tmux_is_found(
     tmux: Path, name: str, environment: Mapping[str, str], told: str, around: str
 ) -> None:
     tmux.write_text(f"{told}\n")

@@ -108,7 +108,7 @@ def test_the_answers_decide_how_pixels_are_drawn(answers: str, expected: Graphic
     assert choose_graphics(_facts(answers), AUTO, (9, 18)) == expected
 
 
-def test_the_user_may_know_better() -> None:
+def test_a_graphics_protocol_that_the_user_chooses_is_used() -> None:
     assert choose_graphics(TerminalFacts(), Protocol.SIXEL, None) == Graphics(
         Protocol.SIXEL, (8, 16)
     )
@@ -124,11 +124,11 @@ def test_the_user_may_know_better() -> None:
 @pytest.mark.parametrize(
     "answers", [OLD_KITTY + OLD_KITTY_AGAIN, KITTY + KITTY_YES + KITTY_ERROR], ids=["no", "error"]
 )
-def test_the_user_does_not_know_better_than_an_answer(answers: str) -> None:
+def test_a_chosen_protocol_is_not_used_if_the_terminal_answers_that_it_cannot(answers: str) -> None:
     assert choose_graphics(_facts(answers), Protocol.KITTY, None) is None
 
 
-def test_kitty_is_asked_once() -> None:
+def test_kitty_graphics_are_asked_for_once() -> None:
     assert _facts(OLD_KITTY).asks_for_kitty
     assert not _facts(OLD_KITTY + OLD_KITTY_AGAIN).asks_for_kitty
     assert not _facts(KITTY + KITTY_YES).asks_for_kitty
@@ -145,7 +145,7 @@ def test_another_page_is_asked_for_kitty_again() -> None:
     [((960, 640), (8, 16)), ((120, 40), None), ((0, 0), None), ((65535, 65535), None)],
     ids=["pixels", "cells", "nothing", "too large"],
 )
-def test_the_kernel_may_tell_nonsense(
+def test_a_nonsensical_cell_size_from_the_kernel_is_ignored(
     size_px: tuple[int, int], expected: tuple[int, int] | None
 ) -> None:
     main, other = os.openpty()

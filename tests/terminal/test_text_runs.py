@@ -15,7 +15,7 @@ PLAIN, BOLD = Style(), Style(bold=True)
     "text, width, shown",
     [("name", 4, "name"), ("names", 4, "nam…"), ("names", 1, "…"), ("names", 0, ""), ("", 0, "")],
 )
-def test_a_text_is_cut(text: str, width: int, shown: str) -> None:
+def test_a_text_that_is_too_wide_is_cut_with_an_ellipsis(text: str, width: int, shown: str) -> None:
     assert cut(text, width) == shown
 
 
@@ -30,7 +30,7 @@ def test_a_text_is_cut(text: str, width: int, shown: str) -> None:
     ],
     ids=["fits", "in a piece", "between pieces", "blanks", "one piece"],
 )
-def test_a_line_is_cut(texts: list[str], shown: list[str]) -> None:
+def test_a_line_of_several_runs_is_cut_with_an_ellipsis(texts: list[str], shown: list[str]) -> None:
     line = [(text, BOLD if at else PLAIN) for at, text in enumerate(texts)]
     assert [text for text, _ in cut_line(line, 6)] == shown
 
@@ -38,5 +38,5 @@ def test_a_line_is_cut(texts: list[str], shown: list[str]) -> None:
 @pytest.mark.parametrize(
     "text", ["a[b]", "[bold]x[/]", "[ ]", "\\[a]", "[@click=app.quit]", '["=[(\\', "@=\\", "[/a"]
 )
-def test_markup_shows_the_text(text: str) -> None:
+def test_escaped_text_is_shown_by_markup_as_it_is(text: str) -> None:
     assert Content.from_markup(escape_markup(text)).plain == text

@@ -20,7 +20,7 @@ from tuisim.web.server import Server, ServerLimits, run_server
 assert visited
 
 
-async def test_who_asks_for_nothing_is_sent_away_and_who_has_the_link_stays(
+async def test_a_connection_without_a_request_is_closed_and_visitors_stay_connected(
     visited: Visited, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(gate, "STRANGER_S", 0.05)
@@ -34,7 +34,9 @@ async def test_who_asks_for_nothing_is_sent_away_and_who_has_the_link_stays(
     assert (await socket.receive(PATIENCE_S)).data == '["pong", "1"]'
 
 
-async def test_of_many_who_ask_for_nothing_the_first_go(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_of_many_connections_without_a_request_the_oldest_are_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(gate, "MAX_STRANGERS", 3)
     async with AsyncExitStack() as stack:
         server = Server(stand_in(), Gate("127.0.0.1", TOKEN), ServerLimits(1))
@@ -49,7 +51,7 @@ async def test_of_many_who_ask_for_nothing_the_first_go(monkeypatch: pytest.Monk
             writer.close()
 
 
-async def test_that_there_is_no_room_is_told_once_a_minute() -> None:
+async def test_the_server_says_at_most_once_a_minute_that_it_is_full() -> None:
     now_s, reports = [0.0], list[str]()
     loop = asyncio.get_running_loop()
     hears = Door(reports.append, lambda: now_s[0])._hear

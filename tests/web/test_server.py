@@ -137,7 +137,7 @@ STRANGERS: dict[str, tuple[str, Mapping[str, str]]] = {
 @pytest.mark.quick_cases("*-script")
 @cases("place", PLACES)
 @cases("path, headers", STRANGERS)
-async def test_a_stranger_gets_nothing(
+async def test_a_request_without_the_token_or_from_another_origin_gets_403(
     path: str, headers: Mapping[str, str], place: str, visited: Visited
 ) -> None:
     visitor = await visited()
@@ -154,7 +154,7 @@ async def test_a_stranger_gets_nothing(
     [*STRANGERS.values(), ("/the-token/{place}", {"Origin": ""})],
     ids=[*STRANGERS, "without a page"],
 )
-async def test_a_stranger_gets_no_app(
+async def test_a_websocket_without_the_token_or_from_another_origin_starts_no_app(
     path: str, headers: Mapping[str, str], visited: Visited, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     started: list[AppService] = []

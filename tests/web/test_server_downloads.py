@@ -29,7 +29,9 @@ async def _offer(files: Downloads, app: Any, key: str) -> None:
     await files.create_download(app_service=app, delivery_key=key, file_name="a.csv", **about)
 
 
-async def test_only_what_was_asked_for_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_server_takes_only_bytes_of_a_download_it_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(server, "ANSWER_WITHIN_S", 0.05)
     files = Downloads()
     await _offer(files, _App(files, "a", (b"one", b"unasked"), ("2",), (b"",)), "key")

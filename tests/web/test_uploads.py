@@ -28,7 +28,7 @@ async def _pieces(*pieces: bytes, error: Exception | None = None) -> AsyncIterat
         raise error
 
 
-async def test_a_file_that_breaks_off_is_none_and_takes_no_room(
+async def test_an_upload_that_breaks_off_leaves_no_file_and_uses_no_quota(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(uploads, "MAX_BYTES", 4)
@@ -48,7 +48,7 @@ async def test_a_file_that_breaks_off_is_none_and_takes_no_room(
         "a long name": ("é" * 190, 1, "not a name for a file"),
     },
 )
-async def test_what_has_no_room_is_refused_without_a_path(
+async def test_an_upload_beyond_the_limits_is_refused_without_naming_a_path(
     name: str, size: int, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(uploads, "MAX_FILE_BYTES", 4)
@@ -87,7 +87,7 @@ async def test_a_visitor_who_leaves_while_a_file_comes_leaves_nothing(
     assert os.listdir(tmp_path) == ["b.py"]
 
 
-def test_no_file_is_replaced(tmp_path: Path) -> None:
+def test_an_upload_replaces_no_existing_file(tmp_path: Path) -> None:
     for data in (b"one", b"two", b"one"):
         keep_file(tmp_path, "lab.py", BytesIO(data))
     (tmp_path / "link.py").symlink_to(tmp_path / "lab.py")
