@@ -170,7 +170,9 @@ def test_bad_input_is_refused_in_one_line_and_writes_nothing(
 
 
 @pytest.mark.slow
-def test_home_that_cannot_be_used(folder: Path, tuisim: Command) -> None:
+def test_a_home_folder_that_cannot_be_used_is_refused_in_one_line(
+    folder: Path, tuisim: Command
+) -> None:
     (folder / "occupied").write_text("a file")
     done = tuisim("run", "prog.py", TUISIM_HOME=str(folder / "occupied"))
     (line,) = done.stderr.splitlines()

@@ -246,7 +246,7 @@ def neutral(found: Any) -> Any:
 
 
 @pytest.mark.parametrize("row", ROWS, ids=[row["line"] for row in ROWS])
-def test_a_line_parses_to_what_it_did(
+def test_each_recorded_command_line_is_parsed_to_the_recorded_settings(
     row: dict[str, Any],
     tmp_path: Path,
     stored: Path,

@@ -28,7 +28,7 @@ SIBLINGS = {
 
 @pytest.mark.slow_cases("missing name")
 @cases("text, code, out, told", SIBLINGS)
-def test_a_module_called_as_one_of_pythons(
+def test_a_program_beside_a_module_named_like_one_of_pythons_is_told_so(
     here: Command, tmp_path: Path, text: str, code: int, out: str, told: str
 ) -> None:
     (tmp_path / "random.py").write_text("x = 1\n")
@@ -39,7 +39,9 @@ def test_a_module_called_as_one_of_pythons(
 
 
 @pytest.mark.slow
-def test_the_command_itself_does_not_mind_such_a_module(tuisim: Command, tmp_path: Path) -> None:
+def test_the_command_runs_beside_modules_named_like_pythons(
+    tuisim: Command, tmp_path: Path
+) -> None:
     for name in ("random", "json", "select"):
         (tmp_path / f"{name}.py").write_text("x = 1\n")
     (tmp_path / "main.py").write_text("print('A: 1')")
@@ -48,7 +50,7 @@ def test_the_command_itself_does_not_mind_such_a_module(tuisim: Command, tmp_pat
 
 
 @pytest.mark.parametrize("name", ["errors", "core", "source"])
-def test_a_program_does_not_find_our_modules_as_its_own(
+def test_a_program_cannot_import_the_simulators_modules_as_its_own(
     here: Command, tmp_path: Path, name: str
 ) -> None:
     (tmp_path / "main.py").write_text(f"import {name}")

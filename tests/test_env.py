@@ -38,7 +38,7 @@ def test_gymnasium_finds_nothing_wrong(task: str) -> None:
 
 @pytest.mark.parametrize("background", ["Lollipop", "Square"])
 @pytest.mark.parametrize("task", TASKS)
-def test_a_task_runs_on_any_mat(task: str, background: str) -> None:
+def test_a_gym_task_runs_on_any_mat(task: str, background: str) -> None:
     env = gymnasium.make(f"tuisim/{task}-v0", background=background, profile="ev3")
     env.reset(seed=1)
     observation, reward, *_ = env.step(np.ones(2, np.float32))
@@ -84,7 +84,7 @@ def _is_repeated(seeds: int) -> bool:
     return first == second and len(set(first)) > 1
 
 
-def test_the_same_seed_gives_the_same_episode() -> None:
+def test_the_gym_environment_gives_the_same_episode_for_the_same_seed() -> None:
     assert _is_repeated(30)
 
 
@@ -107,7 +107,7 @@ def test_the_follower_ends_off_the_mat_and_shows_itself() -> None:
     assert pictures[0].ndim == 3 and (pictures[0] != pictures[-1]).any()
 
 
-def test_a_function_rewards_and_ends() -> None:
+def test_functions_given_to_the_environment_set_reward_and_end() -> None:
     env = LabEnv(
         "left_red_pc",
         lambda before, after: after["x_mm"] - before["x_mm"],
@@ -134,7 +134,9 @@ def test_a_reward_that_is_no_number_is_refused_by_its_name() -> None:
 
 
 @pytest.mark.parametrize("speed, points", [(0.2, 3.0), (0.0, 0.0)])
-def test_goals_reward_and_end(speed: float, points: float, tmp_path: Path) -> None:
+def test_goals_given_to_the_environment_set_reward_and_end(
+    speed: float, points: float, tmp_path: Path
+) -> None:
     (tmp_path / "goals.toml").write_text(GOALS)
     env = gymnasium.make(
         "tuisim/Goals-v0", goals=tmp_path / "goals.toml", columns=("ultrasonic_mm",)

@@ -87,7 +87,9 @@ def test_an_example_finishes_under_each_profile(name: str, profile: str, here: C
     ],
     ids=lambda value: str(value),
 )
-def test_colour_is_named_and_said(x_mm: int, name: str, code: int, here: Command) -> None:
+def test_an_example_names_the_colour_and_speaks_it(
+    x_mm: int, name: str, code: int, here: Command
+) -> None:
     done = here("run", "name_colour", "-x", x_mm)
     assert done.stdout == f"This is code {code}\nI see {name}\n"
     assert f"says: I see {name}\n" in done.stderr
@@ -98,7 +100,9 @@ def test_colour_is_named_and_said(x_mm: int, name: str, code: int, here: Command
     [(125, 255), (1125, 128), (1525, 0)],
     ids=lambda value: str(value),
 )
-def test_all_properties_of_a_grey(x_mm: int, value: int, here: Command) -> None:
+def test_the_example_read_once_prints_every_reading_of_a_grey(
+    x_mm: int, value: int, here: Command
+) -> None:
     code, name = (6, "White") if value else (1, "Black")
     assert here("run", "read_once", "-x", x_mm).stdout.splitlines() == [
         f"reflected_light_intensity: {value}",

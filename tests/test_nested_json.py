@@ -89,7 +89,7 @@ def of_batch(_folder: Path) -> object:
         (of_batch, None),
     ],
 )
-def test_what_can_be_left_out_is_left_out(
+def test_optional_files_of_deeply_nested_json_are_ignored(
     read: Callable[[Path], object], nothing: object, tmp_path: Path
 ) -> None:
     assert read(tmp_path) == nothing
@@ -105,7 +105,7 @@ def test_what_can_be_left_out_is_left_out(
         "stop-at-infinity": (STOP_FILE, b'{"tick": 1e999}', read_stop_tick),
     },
 )
-def test_what_is_needed_is_an_error_that_names_the_file(
+def test_required_files_of_deeply_nested_json_raise_an_error_naming_the_file(
     name: str, data: bytes, read: Callable[[Path], object], tmp_path: Path
 ) -> None:
     (tmp_path / name).write_bytes(data)

@@ -50,11 +50,11 @@ def is_documented(name: str) -> bool:
 
 
 @pytest.mark.parametrize("what", TABLES)
-def test_everything_in_a_table_is_documented(what: str) -> None:
+def test_every_command_option_profile_and_key_is_documented(what: str) -> None:
     assert [name for name in TABLES[what] if not is_documented(name)] == []
 
 
-def test_the_help_of_a_command_is_not_for_programmers() -> None:
+def test_no_commands_help_has_a_raises_section() -> None:
     helps = {name: entry.load().help or "" for name, entry in COMMANDS.items()}
     assert [name for name, text in helps.items() if "Raises:" in text] == []
 

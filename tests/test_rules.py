@@ -431,14 +431,14 @@ RULES: dict[str, tuple[Callable[[Source], Iterable[object]], list[Path]]] = {
 
 
 @pytest.mark.parametrize("rule", RULES)
-def test_rule(rule: str) -> None:
+def test_each_rule_of_the_code_is_kept_in_every_file(rule: str) -> None:
     find, paths = RULES[rule]
     found = {str(path.relative_to(ROOT)): list(find(source(path))) for path in paths}
     assert paths
     assert {name: places for name, places in found.items() if places} == {}
 
 
-def test_wrong_names_are_no_more_than_before() -> None:
+def test_names_against_the_style_are_no_more_than_before() -> None:
     names = count_faults(map(source, PACKAGE))
     assert {
         kind: f"{len(names[kind])} above {most}"
@@ -465,7 +465,7 @@ def tool(*words: str) -> str:
     return "" if done.returncode == 0 else done.stdout + done.stderr
 
 
-def test_each_door_is_used() -> None:
+def test_every_name_that_a_room_exports_is_used_by_another_room() -> None:
     used = {place for path in PACKAGE for place in entered(source(path))}
     doors = {(room, name) for room in list_rooms(but=OPEN) for name in door_of(room)}
     assert doors == used
@@ -509,7 +509,7 @@ def test_types_are_strict() -> None:
 
 
 @pytest.mark.parametrize("module", ["tuisim.engine.runtime", "tuisim.engine.shim"])
-def test_child_starts_light(module: str) -> None:
+def test_the_process_of_a_program_imports_no_heavy_module(module: str) -> None:
     program = (
         f"import importlib, pkgutil, sys; package = importlib.import_module({module!r})\n"
         f"[importlib.import_module(m.name) for m in pkgutil.walk_packages(package.__path__, {module + '.'!r})"
@@ -522,7 +522,7 @@ def test_child_starts_light(module: str) -> None:
     assert done.stdout.split() == []
 
 
-def test_help_starts_light() -> None:
+def test_help_imports_no_heavy_module() -> None:
     program = "import sys; from tuisim.cli import run_command\ntry: run_command(['--help'])\nexcept SystemExit: pass\n"
     program += "print('LOADED', *sys.modules)"
     done = subprocess.run(
