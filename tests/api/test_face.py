@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import pickle
 import re
 import subprocess
 import sys
@@ -251,6 +252,12 @@ def test_a_stored_run_is_loaded_by_its_number() -> None:
     names: list[Any] = [number, str(number), np.int64(number), made.folder]
     for name in names:
         assert tuisim.load_run(name).stored.id == made.id
+
+
+def test_runs_are_equal_if_they_are_the_same_stored_run() -> None:
+    run, other = tuisim.simulate("print(1)"), tuisim.simulate("print(1)")
+    assert run == tuisim.load_run(run.number) == pickle.loads(pickle.dumps(run)) != other
+    assert len({run, tuisim.load_run(run.stored.folder), other}) == 2
 
 
 NO_RUNS = {

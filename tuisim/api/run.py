@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class Run:
     """A finished run: how it ended, what it recorded, and its picture.
 
-    A notebook shows the run's picture, its end and its samples.
+    A notebook shows the run's picture, its end and its samples. Two objects for the same stored run are equal.
     """
 
     stored: StoredRun
@@ -37,6 +37,12 @@ class Run:
 
     def __repr__(self) -> str:
         return repr(self.stored)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Run) and self.stored.id == other.stored.id
+
+    def __hash__(self) -> int:
+        return hash(self.stored.id)
 
     def _repr_html_(self) -> str:
         """Return the HTML with which a notebook shows the run: picture, end, error and samples."""
