@@ -133,6 +133,16 @@ def test_a_reward_that_is_no_number_is_refused_by_its_name() -> None:
         env.step(np.ones(2, np.float32))
 
 
+@cases(
+    "action", {"one": np.array([0.2]), "three": [0, 0, 0], "no list": 0.2, "a column": np.eye(2)}
+)
+def test_an_action_that_is_not_two_speeds_is_refused(action: Any) -> None:
+    env = LabEnv("x_mm")
+    env.reset(seed=0)
+    with pytest.raises(ConfigError, match="action: must be the speeds of both wheels, from -1 to"):
+        env.step(action)
+
+
 @pytest.mark.parametrize("speed, points", [(0.2, 3.0), (0.0, 0.0)])
 def test_goals_given_to_the_environment_set_reward_and_end(
     speed: float, points: float, tmp_path: Path

@@ -117,8 +117,15 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
 
         Returns:
             The observation, the reward, whether the task has ended, False for `truncated`, and all columns by name.
+
+        Raises:
+            ConfigError: the action has not two numbers, or the reward is none.
         """
-        left, right = (float(share) * self.lab.max_speed_dps for share in action)
+        try:
+            left, right = (float(share) * self.lab.max_speed_dps for share in action)
+        except (TypeError, ValueError):
+            message = f"must be the speeds of both wheels, from -1 to 1, got {action!r}"
+            raise ConfigError(message, key="action") from None
         values = self.lab.step(left, right, period_s=self._period_s)
         points, has_all = self._judge()
         value = self._reward(self._before, values) if self._reward else 0.0
