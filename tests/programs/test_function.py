@@ -392,7 +392,8 @@ def _without_source() -> Any:
     {
         "a value that cannot go along": (use_world, "use_world uses WORLD, a World, which cannot"),
         "a module": (use_module, "a module, which cannot go along .import or make it inside"),
-        "a lambda": (lambda: None, "<lambda> .* is not a program"),
+        "a lambda": (lambda: None, "^a lambda is not a program .give the name of a file"),
+        "a call": (None, "^None is not a program .give the function itself, without brackets"),
         "parameters": (
             build_inner,
             "build_inner as a program takes no arguments: missing a required argument: 'number'",

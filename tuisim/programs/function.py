@@ -39,9 +39,13 @@ def read_function(function: Callable[..., object]) -> ProgramSource:
     method = inspect.unwrap(called.func)
     function = method.__func__ if isinstance(method, MethodType) else method
     if not isinstance(function, FunctionType) or function.__name__ == "<lambda>":
-        raise ConfigError(
-            f"{function!r} is not a program", "give the name of a file, or a function made by def"
+        what = "a lambda" if isinstance(function, FunctionType) else repr(function)
+        hint = (
+            "give the function itself, without brackets"
+            if function is None
+            else "give the name of a file, or a function made by def"
         )
+        raise ConfigError(f"{what} is not a program", hint)
     name = function.__name__
     if inspect.iscoroutinefunction(function) or inspect.isgeneratorfunction(function):
         message = f"{name} does nothing when it is called"
