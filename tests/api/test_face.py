@@ -356,6 +356,8 @@ def test_descriptions_are_one_line_and_compared_by_their_values() -> None:
     assert repr(world) == "World(background='Loop', x=3)"
     assert world == tuisim.World(background="Loop", x=3) != tuisim.World(background="Loop")
     assert len({world, tuisim.World(background="Loop", x=3), tuisim.Robot()}) == 2
+    with pytest.raises(AttributeError, match="World has no attribute 'x'; print it"):
+        print(world.x)  # type: ignore[attr-defined]
 
 
 @cases(
@@ -417,7 +419,7 @@ def test_an_experiment_varies_each_option_that_is_a_list() -> None:
     )
     assert len(frame) == 16
     assert [*frame.columns[:5]] == ["run", "robot", "sensornoise", "noise.motor", "seed"]
-    assert frame["robot"].tolist() == ["Robot(base='Default_Robot')"] * 8 + ["Small_Robot"] * 8
+    assert frame["robot"].tolist() == ["Default_Robot"] * 8 + ["Small_Robot"] * 8
     assert frame["sensornoise"].tolist() == [0] * 4 + [20] * 4 + [0] * 4 + [20] * 4
     assert frame["seed"].tolist() == [5, 3] * 8
     assert set(frame["A_last"]) == {2}

@@ -188,7 +188,7 @@ def test_an_experiment_varies_worlds(tmp_path: Path) -> None:
     (file := tmp_path / "lab.toml").write_text('background = "Loop"\n')
     worlds: list[Path | tuisim.World] = [file, tuisim.World(x=300)]
     frame = tuisim.experiment("A = 1\n", world=worlds, jobs=1)
-    assert frame["world"].tolist() == [str(file), "World(x=300)"]
+    assert frame["world"].tolist() == [str(file), "x=300"]
     assert frame["x_mm"].tolist() == [500, 300]
 
 

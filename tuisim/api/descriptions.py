@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tuisim.base.errors import ConfigError
 from tuisim.batch.parameters import check_seeds
@@ -47,6 +47,22 @@ class Description:
 
     def __hash__(self) -> int:
         return hash(repr(self))
+
+    if not TYPE_CHECKING:  # With `__getattr__`, mypy would accept any name.
+
+        def __getattr__(self, name: str) -> Any:
+            message = f"{type(self).__name__} has no attribute {name!r}; print it to see its values"
+            raise AttributeError(message, name=name, obj=self)
+
+    @property
+    def label(self) -> str:
+        """The values in short, for a cell of a table."""
+        texts = [
+            str(value) if name in ("base", "file") else f"{name}={value}"
+            for name, value in self._values.items()
+            if value != DEFAULT_ROBOT or len(self._values) == 1
+        ]
+        return ", ".join(texts) or repr(self)
 
     def _take(self, arguments: Mapping[str, Any]) -> None:
         """Check and store the arguments of `__init__` that are not None."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from warnings import warn
 
 from tuisim.api.calls import build_run_options, prepare_program, read_source
-from tuisim.api.descriptions import plain, read_options, read_seeds, read_world
+from tuisim.api.descriptions import Description, plain, read_options, read_seeds, read_world
 from tuisim.api.measures import Measures, Metric, show_progress, take_columns
 from tuisim.base.errors import ConfigError, counted
 from tuisim.base.folders import user_path
@@ -332,5 +332,5 @@ def _read_choice(name: str, values: Any) -> Choice:
 
 def _name_value(value: object) -> object:
     """Return a value as a number or a text, for a cell of a table."""
-    cell = plain(value)
+    cell = value.label if isinstance(value, Description) else plain(value)
     return cell if isinstance(cell, bool | int | float | str) else str(cell)
