@@ -97,7 +97,7 @@ class World(WorldDescription):
         file: A world file; the options take precedence over it.
         background: A mat from `tuisim backgrounds`, or an image file.
         mats: Folder of images that `-b` finds by name.
-        obstacles: A set from `tuisim obstacles`, or a file.
+        obstacles: A set from `tuisim obstacles`, or a file of boxes: lower left corner and size.
         walls: Walls on the edges of the field.
         solid: Obstacles and walls stop the robot.
         background_fit: How an image is placed on the field.
@@ -187,7 +187,7 @@ def simulate(
         background: A mat from `tuisim backgrounds`, or an image file.
         mats: Folder of images that `-b` finds by name.
         robot: A robot from `tuisim robots`, or a file.
-        obstacles: A set from `tuisim obstacles`, or a file.
+        obstacles: A set from `tuisim obstacles`, or a file of boxes: lower left corner and size.
         walls: Walls on the edges of the field.
         solid: Obstacles and walls stop the robot.
         background_fit: How an image is placed on the field.
@@ -287,7 +287,7 @@ def experiment(
         background: A mat from `tuisim backgrounds`, or an image file.
         mats: Folder of images that `-b` finds by name.
         robot: A robot from `tuisim robots`, or a file.
-        obstacles: A set from `tuisim obstacles`, or a file.
+        obstacles: A set from `tuisim obstacles`, or a file of boxes: lower left corner and size.
         walls: Walls on the edges of the field.
         solid: Obstacles and walls stop the robot.
         background_fit: How an image is placed on the field.

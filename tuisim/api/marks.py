@@ -47,7 +47,10 @@ def mark(
         resume: Whether an interrupted marking goes on.
 
     Returns:
-        One row for each student, with the points of each goal; columns as in `tuisim mark --export marks.csv`.
+        One row for each student, with the columns of `tuisim mark --export marks.csv`: `student`, `program`, `points`,
+        which are the mean over the runs, `robustness`, the share of the seeds with all points, `runs`, the mean points
+        of each goal as `goal_NAME`, and of the first run without all points `reason`, `line`, `source_line` and
+        `seed`. `earned` and `comment` serve a tutor's own points: here, `earned` equals `points`.
 
     Raises:
         ConfigError: goals, folders or seeds are wrong, or bubblewrap does not start; nothing was run.

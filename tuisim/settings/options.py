@@ -314,7 +314,7 @@ OPTIONS: tuple[Option, ...] = (
         ("-o", "--obstacles"),
         "NAME",
         "the name of a set, or a file",
-        "a set from `tuisim obstacles`, or a file",
+        "a set from `tuisim obstacles`, or a file of boxes: lower left corner and size",
     ),
     *_build_value_options("world.", "robot."),
     _build_word(
