@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from time import perf_counter
 from typing import Any
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 import pytest
@@ -125,6 +126,25 @@ def test_speeds_of_numpy_leave_no_numbers_of_numpy() -> None:
     speeds: Any = np.float64(300), np.float32(300)
     lab.step(*speeds)
     assert "np" not in repr((lab.pose, lab.read()))
+
+
+@pytest.mark.parametrize("profile", ["robolab", "nbev3devsim", "ev3"])
+@cases(
+    "value", {"weight": {"weight": "light"}, "mass": {"mass_kg": 3}, "battery": {"battery_v": 6.5}}
+)
+def test_a_warning_names_each_value_of_a_robot_that_moves_nothing(
+    profile: str, value: dict[str, Any]
+) -> None:
+    with catch_warnings(record=True) as warnings:
+        simplefilter("always")
+        labs = [tuisim.Lab(None, robot, profile=profile) for robot in (None, tuisim.Robot(**value))]
+    x_mm, other_x_mm = (lab.step(1000, 1000, period_s=0.5)["x_mm"] for lab in labs)
+    assert (x_mm == other_x_mm) is bool(warnings)
+    for warning in warnings:
+        assert str(warning.message).startswith(
+            f"{next(iter(value))} has no effect under profile {profile} "
+        )
+        assert warning.filename == __file__
 
 
 def test_no_motor_is_faster_than_it_can() -> None:

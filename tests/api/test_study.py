@@ -265,6 +265,17 @@ def test_an_experiment_with_wrong_arguments_is_refused_before_anything_runs(
         tuisim.experiment(**{"program": PROGRAM, **given})
 
 
+def test_an_experiment_warns_once_of_what_varies_without_effect() -> None:
+    robots = [tuisim.Robot(wheel_diameter_mm=43.2), tuisim.Robot("Small_Robot", weight="heavy")]
+    with pytest.warns(UserWarning) as warnings:
+        frame = tuisim.experiment("print(1)", seeds=[0, 1], robot=robots, profile="ev3", jobs=1)
+    texts = [str(warning.message) for warning in warnings]
+    assert texts == ["weight has no effect under profile ev3 (only robolab, nbev3devsim)"]
+    assert warnings[0].filename == __file__
+    labels = ["wheel_diameter_mm=43.2", "Small_Robot, weight=heavy"]
+    assert [*dict.fromkeys(frame["robot"])] == labels
+
+
 def test_runs_that_raise_are_told_and_make_no_mean_known() -> None:
     how: dict[str, Any] = {"seeds": range(20), "until": "x_mm ± 1", "jobs": 1}
     with pytest.warns(UserWarning) as warnings:

@@ -109,6 +109,16 @@ def test_arguments_in_a_world_file_that_are_no_list_of_texts_are_refused(
     assert (done.returncode, done.stderr.strip()) == (2, f"tuisim: lab.toml: {message}")
 
 
+@pytest.mark.parametrize("command", ["run", "batch"])
+@pytest.mark.parametrize("profile, is_told", [("ev3", True), ("robolab", False)])
+def test_a_weight_that_the_profile_does_not_use_is_told(
+    folder: Path, here: Command, command: str, profile: str, is_told: bool
+) -> None:
+    (folder / "robot.toml").write_text('weight = "light"\n')
+    errors = here(command, "p.py", "-r", "robot.toml", "--profile", profile).stderr
+    assert ("note: weight has no effect under profile ev3 (only robolab" in errors) is is_told
+
+
 @pytest.mark.parametrize("x_mm, is_told", [("9999", True), ("2000", False)])
 def test_a_start_outside_the_mat_is_told(
     folder: Path, here: Command, x_mm: str, is_told: bool

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from tuisim.engine.core.geometry import Pose
@@ -9,9 +11,9 @@ from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, RobotSpec
 from tuisim.engine.mats import catalogue
 from tuisim.engine.obstacles import OBSTACLES
-from tuisim.settings.build import build_run_spec
+from tuisim.settings.build import build_run_spec, list_ineffective
 from tuisim.settings.options import Settings, merge_settings
-from tuisim.settings.robots import ROBOTS
+from tuisim.settings.robots import ROBOTS, RobotChoice
 from tuisim.settings.shared_options import parse_words
 
 SHIPPED = {name: mat for name, mat in catalogue().items() if mat.shipped}
@@ -37,6 +39,28 @@ def test_the_robot_starts_where_solid_walls_let_it_turn(name: str) -> None:
 
 def test_default_robot_is_the_default_of_the_specification() -> None:
     assert ROBOTS["Default_Robot"] == RobotSpec()
+
+
+WEIGHT = "weight has no effect under profile ev3 (only robolab, nbev3devsim)"
+MASS = "mass_kg has no effect under profile robolab (only ev3, lego-micropython, pybricks4)"
+
+
+@pytest.mark.parametrize(
+    "robot, profile, sentences",
+    [
+        (RobotSpec(name="Mine", weight=3), "ev3", [WEIGHT]),
+        (RobotSpec(name="Mine", weight=3, mass_kg=2), "robolab", [MASS]),
+        (RobotSpec(name="Mine"), "ev3", []),
+        (RobotSpec(name="Mine", mass_kg=2, battery_v=7), "pybricks4", []),
+        (ROBOTS["Small_Robot"], "ev3", []),
+        (replace(ROBOTS["Small_Robot"], weight=6), "ev3", [WEIGHT]),
+    ],
+)
+def test_what_a_profile_does_not_use_of_a_robot_is_named(
+    robot: RobotSpec, profile: str, sentences: list[str]
+) -> None:
+    spec = build_run_spec(Settings({"robot": RobotChoice(robot), "profile": profile}))
+    assert list_ineffective(spec) == sentences
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from tuisim.api.descriptions import plain, read_options, read_world
+from tuisim.api.descriptions import plain, read_options, read_world, warn_all
 from tuisim.api.run import Run
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import Program
@@ -18,7 +18,7 @@ from tuisim.programs.function import read_function
 from tuisim.programs.plugged_words import describe_plugged
 from tuisim.programs.program_file import ProgramSource, build_program, find_program, read_program
 from tuisim.programs.program_settings import ProgramSettings, build_program_settings
-from tuisim.settings.build import build_run_spec
+from tuisim.settings.build import build_run_spec, list_ineffective
 from tuisim.settings.presses import press_actions
 
 _NO_NAME = frozenset("\n(=:")
@@ -114,6 +114,7 @@ def run_program(
         read_source(program), arguments, in_world, chosen, constants={}
     )
     spec = build_run_spec(settings.settings)
+    warn_all(list_ineffective(spec))
     actions = press_actions(settings.settings["press"], spec.profile.tick_hz)
     handle = start_run(started, spec, replace(run_options, actions=actions), RunStore())
     try:

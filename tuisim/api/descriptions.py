@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from warnings import warn
 
 from tuisim.base.errors import ConfigError
 from tuisim.batch.parameters import check_seeds
@@ -118,6 +119,18 @@ def plain(value: Any) -> Any:
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     return value.item() if getattr(value, "size", None) == 1 else value
+
+
+def warn_all(remarks: Iterable[str], depth: int = 5) -> None:
+    """Warn of each remark.
+
+    Args:
+        remarks: Sentences.
+        depth: Which call is to blame; by default that of `simulate` or `experiment`, whose body calls the caller of
+            this function.
+    """
+    for remark in remarks:
+        warn(remark, stacklevel=depth)
 
 
 def read_columns(columns: Sequence[str], spec: RunSpec) -> tuple[str, ...]:

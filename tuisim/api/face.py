@@ -42,14 +42,15 @@ class Robot(RobotDescription):
         wheel_spacing_mm: Between the centres of the wheels, in mm.
         wheel_width_mm: Wheel width, in mm.
         back_mm: How far the body reaches behind the axle, as a negative y, in mm.
-        weight: Weightless (0), light (3), medium (6), heavy (9), or a number: wheels gain 5000 / weight °/s².
+        weight: Weightless (0), light (3), medium (6), heavy (9), or a number: wheels gain 5000 / weight °/s²; only
+            under robolab and nbev3devsim.
         left_port: OutA … outD; of a hub A … F.
         right_port: OutA … outD; of a hub A … F.
         left_reversed: Mounted the other way round: positive speeds turn the wheel backwards.
         right_reversed: Mounted the other way round: positive speeds turn the wheel backwards.
         gear_ratio: Motor turns per wheel turn.
-        mass_kg: With brick and battery; only for motors as on the brick, in kg.
-        battery_v: Without a load: it sets the highest speed, in V.
+        mass_kg: With brick and battery; only under ev3, and of Pybricks where a motor runs by dc or coasts, in kg.
+        battery_v: Without a load: it sets the highest speed, only where mass_kg counts, in V.
         hub: The hub of Pybricks in place of the EV3, such as PrimeHub.
         parts: Further keys of a robot file, such as `{"color_sensors.left.diameter_mm": 20}`, with dots for tables.
 

@@ -15,6 +15,7 @@ from tuisim.api.descriptions import (
     read_columns,
     read_options,
     read_world,
+    warn_all,
 )
 from tuisim.api.keywords import build_keyword_error, check_keywords
 from tuisim.base.errors import ConfigError, counted
@@ -22,7 +23,7 @@ from tuisim.engine.core.profile import PYBRICKS_4
 from tuisim.engine.core.sensors import build_reader
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.engine.runs.stepped_run import SteppedRun
-from tuisim.settings.build import build_run_spec, extract_settings
+from tuisim.settings.build import build_run_spec, extract_settings, list_ineffective
 from tuisim.settings.options import merge_settings
 from tuisim.settings.robots import ROBOTS
 from tuisim.tasks.goals.files import load_goals
@@ -86,6 +87,7 @@ class Lab:
         spec = build_run_spec(settings)
         if spec.robot.hub and settings.given.get("profile") is None:
             spec = build_run_spec(merge_settings(_OF_HUB, in_world, chosen))
+        warn_all(list_ineffective(spec), depth=4)
         self._open(spec, columns)
 
     @classmethod

@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING, Any
 from warnings import warn
 
 from tuisim.api.calls import build_run_options, prepare_program, read_source
-from tuisim.api.descriptions import Description, plain, read_options, read_seeds, read_world
+from tuisim.api.descriptions import (
+    Description,
+    plain,
+    read_options,
+    read_seeds,
+    read_world,
+    warn_all,
+)
 from tuisim.api.measures import Measures, Metric, show_progress, take_columns
 from tuisim.base.errors import ConfigError, counted
 from tuisim.base.folders import user_path
@@ -58,6 +65,7 @@ def run_experiment(
     plan = study.build_plan(seeds, keep, returns_files=measures.needs_files)
     plan.check_expressions(expressions)
     measures.check(plan, study.columns)
+    warn_all(plan.remarks)
     own = *metrics, *expressions
     precision = parse_precision(until, "until", plan, own) if until else None
     sweep = open_sweep(plan, expressions, out, measures)

@@ -185,9 +185,8 @@ class Loader:
 
     def set_next_run(self, plan: NextRun) -> None:
         """Set a plan of the next run that has the same start pose; the robot stays where it is."""
-        if plan.robot != self._run_controller.next_run.robot:
-            for note in plan.robot.notes:
-                self._app.say(note)
+        for note in plans.list_notes(self._run_controller.next_run, plan):
+            self._app.say(note)
         self._run_controller.change(plan)
         self._finish_loading()
 

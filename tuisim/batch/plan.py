@@ -19,7 +19,7 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.handle import RunOptions, set_surroundings
 from tuisim.programs.program_settings import require_library
-from tuisim.settings.build import build_run_spec
+from tuisim.settings.build import build_run_spec, list_ineffective
 from tuisim.settings.options import Settings
 from tuisim.settings.overrides import resolve_keys
 from tuisim.settings.presses import press_actions
@@ -109,6 +109,13 @@ class Plan:
     def names(self) -> tuple[str, ...]:
         """The names of the parameters of the batch."""
         return self.grid.names
+
+    @property
+    def remarks(self) -> list[str]:
+        """What is chosen for runs of the batch without effect on them, in sentences."""
+        return [
+            *dict.fromkeys(text for spec in self._specs.values() for text in list_ineffective(spec))
+        ]
 
     def check_expressions(self, expressions: Mapping[str, str]) -> None:
         """Check the expressions for further columns of the table before any run starts.

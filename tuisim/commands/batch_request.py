@@ -142,6 +142,8 @@ def read_request(arguments: Arguments) -> Request:
     )
     expressions = {**file.expressions, **dict(map(_parse_expression, arguments.expressions))}
     plan.check_expressions(expressions)
+    for remark in plan.remarks:
+        echo_error(f"note: {remark}")
     out = arguments.out or file.out
     if arguments.resume and out is None:
         raise ConfigError("needs the table that it continues", "--out FILE", key="--resume")

@@ -32,6 +32,7 @@ from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
+from tuisim.settings.build import list_ineffective
 from tuisim.settings.command_line import Arguments, WordType, argument, choice, command, option
 from tuisim.settings.options import APP, PANEL
 from tuisim.settings.presses import press_actions
@@ -185,9 +186,9 @@ def _tell_notes(prepared: Sequence[Prepared], *, strict: bool) -> None:
     if strict and (refused := next(filter(None, (program.refusal for program in decided)), "")):
         raise ConfigError(refused, "leave out --strict to run it")
     notes = [note for program in decided for note in (program.note, program.refusal)]
-    for note in dict.fromkeys(
-        filter(None, [*notes, *(_describe_start(each.spec) for each in prepared)])
-    ):
+    for each in prepared:
+        notes += [_describe_start(each.spec), *list_ineffective(each.spec)]
+    for note in dict.fromkeys(filter(None, notes)):
         echo_error(f"note: {note}")
 
 

@@ -308,7 +308,7 @@ class Lab:
         from tuisim.engine.runs.run_folder import field_files
         from tuisim.programs.program_file import ProgramSource
         from tuisim.programs.program_settings import build_program_settings
-        from tuisim.settings.build import build_run_spec
+        from tuisim.settings.build import build_run_spec, list_ineffective
         from tuisim.settings.magic_line import update_persistent
         from tuisim.settings.options import merge_settings
         from tuisim.settings.robots import choose_robot
@@ -334,6 +334,8 @@ class Lab:
             if text is not None and effective.decided.note:
                 print(f"tuisim: note: {effective.decided.note}", file=sys.stderr)
         spec = build_run_spec(settings)
+        for remark in list_ineffective(spec):
+            print(f"tuisim: note: {remark}", file=sys.stderr)
         return _CellPlan(persistent, settings, spec, field_files(spec), program)
 
     def _build_listener(self, collaborative: bool) -> Listener:

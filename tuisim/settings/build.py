@@ -28,7 +28,10 @@ from tuisim.engine.mats import Background, find_mat, mat_of_spec
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles
 from tuisim.settings.options import RUN_VALUES, START, Settings
 from tuisim.settings.profiles import load_profile
-from tuisim.settings.robots import ROBOTS, RobotChoice, choose_robot
+from tuisim.settings.robots import DEFAULT_ROBOT, ROBOTS, RobotChoice, choose_robot
+
+_NEEDS_MEASURED = {"weight": False, "mass_kg": True, "battery_v": True}
+"""Values of a robot that only some profiles use, and whether those are the ones with motors as measured on bricks."""
 
 
 def place_robot(choice: RobotChoice, mat: Background) -> RobotSpec:
@@ -132,6 +135,26 @@ def build_run_spec(settings: Settings) -> RunSpec:
     return tree.put(
         spec, "world.start", _start(settings, mat, spec.robot, walled=world.solid and world.walls)
     )
+
+
+def list_ineffective(spec: RunSpec) -> list[str]:
+    """Return a sentence for each chosen value of a run's robot that has no effect under its profile."""
+    usual = ROBOTS.get(spec.robot.name, ROBOTS[DEFAULT_ROBOT])
+    law = spec.profile.motor_law
+    sentences = []
+    for key, needs_measured in _NEEDS_MEASURED.items():
+        if law.is_measured is not needs_measured and getattr(spec.robot, key) != getattr(
+            usual, key
+        ):
+            names = [
+                name
+                for name, profile in PROFILES.items()
+                if profile.motor_law.is_measured is needs_measured
+            ]
+            sentences.append(
+                f"{key} has no effect under profile {spec.profile.name} (only {', '.join(names)})"
+            )
+    return sentences
 
 
 def extract_settings(spec: RunSpec) -> dict[str, Any]:

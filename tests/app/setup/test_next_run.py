@@ -32,6 +32,15 @@ def edited(plan: NextRun, field: str, text: str) -> NextRun:
     return edit.write(plan, text)
 
 
+def test_a_value_without_effect_is_told_when_it_is_chosen_and_not_again() -> None:
+    plan = build_plan(Settings())
+    light = edit_robot(plan, replace(plan.spec.robot, weight=3.0))
+    under_ev3 = plans.change_profile(light, "ev3")
+    (text,) = plans.list_notes(light, under_ev3)
+    assert text.startswith("weight has no effect under profile ev3")
+    assert plans.list_notes(plan, light) == plans.list_notes(under_ev3, under_ev3) == []
+
+
 # What is done after starting on Grey_bands, and where the sensors are then.
 WAYS: dict[str, tuple[list[Callable[[NextRun], NextRun]], list[float]]] = {
     "a mat moves the sensors": ([lambda p: plans.change_mat(p, "Radial_grey")], [-60, 60]),

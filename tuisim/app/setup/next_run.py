@@ -27,7 +27,7 @@ from tuisim.programs.program_settings import (
     decide,
     has_brick_rules,
 )
-from tuisim.settings.build import build_run_spec, extract_settings
+from tuisim.settings.build import build_run_spec, extract_settings, list_ineffective
 from tuisim.settings.options import (
     RESET_BY_MAT,
     RESET_BY_PROFILE,
@@ -272,6 +272,13 @@ def follow_program_robot(plan: NextRun) -> NextRun:
     return replace(
         change_values(plan, {"robot": chosen}), words=words, robot=chosen, from_program=following
     )
+
+
+def list_notes(before: NextRun, plan: NextRun) -> list[str]:
+    """Return what the user should know about the robot of a plan, and has not been told of the plan before."""
+    notes = () if plan.robot == before.robot else plan.robot.notes
+    known = list_ineffective(before.spec)
+    return [*notes, *(text for text in list_ineffective(plan.spec) if text not in known)]
 
 
 def change_mat(plan: NextRun, name: str) -> NextRun:

@@ -394,7 +394,7 @@ class RobotSpec(Spec):
         default=ROBOT_WEIGHTS["medium"],
         label="Weight",
         help=f"{', '.join(f'{name} ({weight:g})' for name, weight in ROBOT_WEIGHTS.items())}, or a number: "
-        "wheels gain 5000 / weight °/s²",
+        "wheels gain 5000 / weight °/s²; only under robolab and nbev3devsim",
     )
     """With 0 the speed changes immediately; otherwise the acceleration is 5000 / weight degrees per second squared."""
     left_port: str = _build_output_port("outB", "Left motor")
@@ -454,7 +454,7 @@ class RobotSpec(Spec):
         unit="kg",
         later=True,
         label="Mass kg",
-        help="with brick and battery; only for motors as on the brick",
+        help="with brick and battery; only under ev3, and of Pybricks where a motor runs by dc or coasts",
     )
     battery_v: float = number(
         5,
@@ -463,7 +463,7 @@ class RobotSpec(Spec):
         unit="V",
         later=True,
         label="Battery V",
-        help="without a load: it sets the highest speed",
+        help="without a load: it sets the highest speed, only where mass_kg counts",
     )
     hub: str = choice(
         ("", *HUBS),
