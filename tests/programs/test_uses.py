@@ -37,6 +37,14 @@ def read(text: str) -> ProgramFacts:
             f"def look():\n    global light\n    {READ}{READ}while light > 20:\n    look()\n",
             [],
         ),
+        "a start value to compare": (
+            "start_light = eye.color\nwhile True:\n    if start_light > 5:\n        pass\n",
+            [],
+        ),
+        "a choice among moves that end": (
+            f"{READ}for i in range(4):\n    if light > 50:\n        t.on_for_seconds(9, 9, 1)\n",
+            [],
+        ),
         "a number": ("limit = 20\nwhile True:\n    if limit < 30:\n        pass\n", []),
     },
 )

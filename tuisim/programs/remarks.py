@@ -25,6 +25,12 @@ _OTHERS = re.compile(
 _ANY_BAND = re.compile(
     r"\b(black|white|gr[ea]y|dark|band|line|schwarz|weiß|grau|linie)\b", re.IGNORECASE
 )
+_BEYOND = re.compile(
+    r"\b(over|behind|past|beyond|across|after|further|more|other|onto|leave|off the|hinter|über|weiter)\b",
+    re.IGNORECASE,
+)
+"""Words of a program that is to drive on after a band."""
+_AROUND_LINES = 8
 _STRAIGHT = re.compile(r"\bstraight\b", re.IGNORECASE)
 _TURNS = re.compile(r"turn|spin|rotat|dance|circle|dreh|kreis|around", re.IGNORECASE)
 _BEFORE_LINES = 4
@@ -60,8 +66,11 @@ class Remarks:
         return colors[0] if len(colors) == 1 and not _OTHERS.search(text) else ""
 
     def names_band(self, first_line: int, last_line: int) -> bool:
-        """Return whether some lines name a band of the mat."""
-        return bool(_ANY_BAND.search(" ".join(self._list_lines(first_line, last_line))))
+        """Return whether some lines name a band of the mat, and none around them says that the robot drives on."""
+        around = self._list_lines(first_line - _AROUND_LINES, last_line + 1)
+        is_beyond = _BEYOND.search(" ".join(around))
+        text = " ".join(self._list_lines(first_line, last_line))
+        return bool(_ANY_BAND.search(text)) and not is_beyond
 
     def goes_straight(self, line: int) -> bool:
         """Return whether a line, or a comment above it, says that the robot drives straight on."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeGuard
 
@@ -19,6 +20,10 @@ _MOVES = (*STARTS, "on_for_degrees", "on_for_rotations", "on_for_seconds")
 STOPS = ("off", "stop", "brake", "hold")
 _PURE = {"abs", "max", "min", "round", "int", "float"}
 """Functions whose values depend only on their arguments."""
+_BEFORE = re.compile(
+    r"start|begin|first|init|base|old|last|prev|calib|white|black|zero", re.IGNORECASE
+)
+"""Names with these words are for readings that are meant to stay, such as the first one."""
 _SPEEDS = "Speed"
 """How the names of classes of speeds begin."""
 
@@ -65,12 +70,20 @@ def _list_reads_before(loop: _Loop, nodes: list[ast.AST]) -> dict[str, ast.Assig
             case ast.Assign(targets=[ast.Name(id=name)]) if node.lineno < loop.lineno:
                 if name not in reads or reads[name].lineno < node.lineno:
                     reads[name] = node
+    if isinstance(loop, ast.For) and not any(map(_is_reaction, ast.walk(loop))):
+        return {}
     renewed = _list_stored(loop)
     return {
         name: node
         for name, node in reads.items()
-        if name not in renewed and find_attribute(node.value)
+        if name not in renewed and find_attribute(node.value) and not _BEFORE.search(name)
     }
+
+
+def _is_reaction(node: ast.AST) -> bool:
+    """Return whether a node starts or stops motors at once, or leaves a loop: what a program does that looks ahead."""
+    is_call = isinstance(node, ast.Expr) and bool(_find_call(node, (*STARTS, *STOPS)))
+    return is_call or isinstance(node, ast.Break)
 
 
 def _list_stored(node: ast.AST) -> set[str]:

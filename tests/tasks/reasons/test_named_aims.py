@@ -54,6 +54,8 @@ def test_what_a_run_did_otherwise_than_its_words_say_is_told(text: str, words: s
     {
         "black": UNTIL.format(10) + "tank_drive.off()\nprint('I am on black')\n",
         "the first grey": UNTIL.format(90) + "tank_drive.off()\nprint('grey, not black')\n",
+        "on to behind a band": UNTIL.format(60)
+        + "print('line: drive over it')\ntime.sleep(1.5)\ntank_drive.off()\n",
         "on to the middle of a band": UNTIL.format(90)
         + "print('grey')\ntime.sleep(0.1)\ntank_drive.off()\n",
         "a turn": f"{BANDS}# turn right\ntank_drive.on_for_seconds(30, -30, 1)\n",
