@@ -107,6 +107,13 @@ def test_the_footer_names_what_the_pause_key_would_do_now(
     assert pause.footer == word
 
 
+@pytest.mark.parametrize("state", [RunPhase.RUNNING, RunPhase.PAUSED, RunPhase.ENDED])
+def test_only_a_stepped_program_offers_the_step_out_of_a_function(state: RunPhase) -> None:
+    now = Situation(state, True, True)
+    names = [action.id for action in list_footer_actions(ACTIONS, list_working(now), now, False)]
+    assert ("step-out" in names) is (state is RunPhase.PAUSED)
+
+
 @pytest.mark.slow
 async def test_letters_and_signs_do_nothing_in_a_field_for_numbers() -> None:
     async with open_lab("pass\n", size=(80, 24)) as (pilot, app):

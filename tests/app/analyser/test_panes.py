@@ -11,7 +11,7 @@ from tests.cases import for_each
 from tuisim.analysis.model import AnalysisModel
 from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.app.analyser.panes import pane_lines
-from tuisim.app.analyser.table_pane import build_heading
+from tuisim.app.analyser.table_pane import build_heading, count_rows
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
@@ -174,6 +174,12 @@ def test_the_column_run_does_not_look_like_the_number_of_a_stored_run(run: Store
     opened = OpenedLog(LogRequest(), build_log((run,)), (run,))
     assert build_heading(AnalysisModel(opened), "run") == "nth run"
     assert build_heading(model_of(opened.log), "run") == "run"
+
+
+def test_the_border_says_what_the_column_index_counts(run: StoredRun) -> None:
+    opened = OpenedLog(LogRequest(), build_log((run,)), (run,))
+    assert count_rows(AnalysisModel(opened)).startswith("index: s since the first sample")
+    assert count_rows(model_of(opened.log)).endswith("rows")
 
 
 @for_each(height=range(6, 12))

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from textual import events
+from textual.geometry import Offset
 from textual.pilot import Pilot
 
 from tests.app.app_help import open_lab, until
@@ -228,6 +229,9 @@ async def test_names_that_nobody_defined_are_marked_and_explained(
         await pilot.press("up")
         await until(pilot, lambda: "did you mean" in str(code.border_subtitle))
         assert str(code.border_subtitle) == "`tank_drve` is not defined: did you mean `tank_drive`?"
+        area.candidates.open((Candidate("tank_drive"),), (0, 0), "tank", Offset(0, 0))
+        assert not code._assistant.describe_cursor(80)
+        area.candidates.close()
         area.replace("tank_drive", (0, 0), (0, 9))
         code._assistant.check_names()
         assert not area.unknown

@@ -263,7 +263,9 @@ async def test_a_draft_is_offered(
         await pilot.pause()
         assert isinstance(app.screen, Question) is (shown is None)
         assert code.query_one(CodeArea).program_text == (shown or TEXT)
-        assert app.document.dirty is (answer == "r")
+        is_restored = answer == "r"
+        assert app.document.dirty is is_restored
+        assert any("unsaved text is back" in words for words in notices(app)) is is_restored
     assert (find_draft(str(path)) is not None) is kept
 
 

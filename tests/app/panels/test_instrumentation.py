@@ -263,6 +263,7 @@ def test_names_of_colors_take_a_row_that_is_free(height: int) -> None:
     rows = text(moment(), 40, height)
     assert rows[3].split() == ["in2", "White", "in3", "Blue"]
     assert not any("White" in row for row in text(moment(), 40, 3))
+    assert text(moment(), 45, height)[3].split() == ["Sensor1", "White", "Sensor2", "Blue"]
 
 
 @pytest.mark.parametrize("size", [(20, 6), (26, 9), (44, 14)], ids=str)

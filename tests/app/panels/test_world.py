@@ -22,6 +22,9 @@ from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_WIDTH_MM
 from tuisim.pictures.scene.pictures import build_scene
+from tuisim.pictures.scene.view import Viewport
+from tuisim.terminal.cells import find_cell_points
+from tuisim.terminal.picture_options import CellSet
 
 POSE = Pose(1000.0, 500.0, 0.0)
 
@@ -89,6 +92,14 @@ def test_the_frame_says_what_the_other_robots_are(
     now_pose: Pose | None, earlier_pose: Pose | None, width: int, words: str
 ) -> None:
     assert build_legend(moment(now_pose=now_pose, earlier_pose=earlier_pose), width) == words
+
+
+@pytest.mark.parametrize("mm_per_px, words", [(30.0, "robot drawn 2.1× its size"), (10.0, "")])
+def test_the_frame_says_that_the_robot_is_larger_than_the_mat_beside_it(
+    mm_per_px: float, words: str
+) -> None:
+    view = Viewport(80, 40, mm_per_px, 0.0, 1000.0, find_cell_points(CellSet.BRAILLE))
+    assert build_legend(moment(), 70, view) == words
 
 
 async def test_the_world_is_blank_until_the_mat_is_there() -> None:

@@ -706,7 +706,8 @@ def list_footer_actions(
 ) -> list[LabAction]:
     """Return actions with the words that the footer shows for them now; the word of the pause key depends on the run.
 
-    Keys of lessons that do nothing in the current step are left out, and so is `run` while a program is paused.
+    Keys of lessons that do nothing in the current step are left out, and so are `run` while a program is paused, and
+    the step out of a function while nothing is stepped.
 
     Args:
         table: The actions by id.
@@ -715,12 +716,18 @@ def list_footer_actions(
         playing: Whether the past is played back.
     """
     word = ""
+    is_paused = now.state == RunPhase.PAUSED
     if now.in_past:
         word = "" if playing else "play"
-    elif now.state == RunPhase.PAUSED:
+    elif is_paused:
         word = "go on"
     # In the footer of a paused program, the steps need the room of `run`, which is left out.
-    steps = [name for name in names if name != "run" or now.state != RunPhase.PAUSED or now.in_past]
+    steps = [
+        name
+        for name in names
+        if (name != "run" or not is_paused or now.in_past)
+        and (name != "step-out" or is_paused or now.looks_back)
+    ]
     return [
         replace(table[name], footer=word) if word and name == "pause" else table[name]
         for name in steps

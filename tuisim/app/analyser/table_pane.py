@@ -125,7 +125,14 @@ def build_heading(model: AnalysisModel, column: str) -> str:
 
 
 def count_rows(model: AnalysisModel) -> str:
-    """Return in words how many rows the table shows, and its filter."""
+    """Return in words how many rows the table shows, its filter, and what the chosen column of a run's log counts."""
+    rows = model.rows
+    if rows.columns and rows.chosen == "index" and model.opened.runs:
+        return f"index: s since the first sample  {_count_shown_rows(model)}"
+    return _count_shown_rows(model)
+
+
+def _count_shown_rows(model: AnalysisModel) -> str:
     rows = model.rows
     total = model.log.rows
     words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else counted(total, "row")

@@ -68,7 +68,8 @@ class Assistant:
             ),
             None,
         )
-        if unknown is not None:
+        # While the list of names is open, the word at the cursor is not complete.
+        if unknown is not None and not self._area.candidates.is_open:
             whole = unknown.message
             hint = unknown.hint or unknown.message
             return Text(cut(whole if len(whole) <= width else hint, width))

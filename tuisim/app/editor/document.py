@@ -262,6 +262,12 @@ class Document:
         elif answer == "r" and draft == find_draft(self._path):
             self._text = draft.text
             self.show()
+            self._show_restored()
+
+    def _show_restored(self) -> None:
+        """Show the code with the restored text, and say that it is not saved yet."""
+        self._panel_area.open("code")
+        self._app.say("The unsaved text is back. {edit} edits it, and ctrl+s then saves it")
 
     def restore(self, draft: Draft) -> None:
         """Open the program of a draft, with the unsaved text of the draft."""
@@ -273,6 +279,7 @@ class Document:
             self._open_new(draft.text)
             self._saved = ""
             self.show()
+        self._show_restored()
 
     def run_when_saved(self, do: Callable[[], None]) -> None:
         """Call a function that replaces the text; if there are unsaved changes, ask the user first."""

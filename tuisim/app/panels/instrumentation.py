@@ -172,7 +172,7 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
             break
     named, _ = _arrange_cells(now, height, detail, with_sensor_names=True)
     named_widths = [max(_measure_line(cell) for cell in column) for column in named]
-    if _measure_columns(named_widths[: len(needed)]) <= width:
+    if is_named := _measure_columns(named_widths[: len(needed)]) <= width:
         columns, widths = named, named_widths
     lines: list[Line] = [[] for _ in range(height)]
     used = 0
@@ -188,7 +188,7 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
             ]
         used += column + _GAP * bool(used)
     if detail < 2 and (below := max(map(len, columns))) < height:
-        lines[below] = _build_color_names(now, width)
+        lines[below] = _build_color_names(now, width, with_sensor_names=is_named)
     return lines
 
 
@@ -196,15 +196,14 @@ def _measure_columns(widths: list[int]) -> int:
     return sum(widths) + _GAP * (len(widths) - 1)
 
 
-def _build_color_names(now: Snapshot, width: int) -> Line:
+def _build_color_names(now: Snapshot, width: int, *, with_sensor_names: bool) -> Line:
     """Return one line with the names of the colours that the sensors see, as many as fit."""
     line: Line = []
-    for sensor in now.spec.robot.color_sensors:
-        seen = now.colors.get(sensor.name)
+    for name, port, seen in list_seen(now):
         more = [
             format_unit(" " * _GAP * bool(line)),
-            format_label(sensor.port, PORT_CELLS),
-            format_value(f"{seen.name if seen else '–':<{MAX_NAME_CELLS}}"),
+            format_label(f"{name if with_sensor_names else port} ", PORT_CELLS),
+            format_value(f"{seen.color.name if seen else '–':<{MAX_NAME_CELLS}}"),
         ]
         if _measure_line(line) + _measure_line(more) <= width:
             line += more

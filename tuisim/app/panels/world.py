@@ -145,7 +145,9 @@ class World(Widget, can_focus=True):
         words = "drag to draw or move an obstacle" if self._edits_boxes else ""
         if (now := self._snapshot) is not None and not words:
             room = self.size.width - _FRAME
-            words = describe_off_field(now.instant.pose, room) or build_legend(now, room)
+            words = describe_off_field(now.instant.pose, room) or build_legend(
+                now, room, self._view._port
+            )
         if self.border_subtitle != words:
             self.border_subtitle = words
 

@@ -61,8 +61,20 @@ def draw_world_text(
     return draw_mono_rows(painter.paint(view, scene), dots)
 
 
-def build_legend(now: Snapshot, width: int) -> str:
-    """Return as many words as fit about the other robots in the picture, such as `grey: the earlier run`; or ""."""
+_MIN_ENLARGED = 1.4
+"""A robot that is drawn larger than by this factor is not to scale with the mat, and the words say so."""
+
+
+def build_legend(now: Snapshot, width: int, view: Viewport | None = None) -> str:
+    """Return as many words as fit about the other robots in the picture, such as `grey: the earlier run`.
+
+    Without others, the words say by how much the robot is enlarged; they are empty if it is to scale.
+
+    Args:
+        now: The instant.
+        width: Columns.
+        view: The visible part of the field; None while it is unknown.
+    """
     drawn = (
         now.now_pose is not None and not describe_off_field(now.now_pose),
         now.earlier_pose is not None,
@@ -80,7 +92,8 @@ def build_legend(now: Snapshot, width: int) -> str:
         case False, True:
             return "grey: the earlier run" if width >= _LEGEND_COLS else "grey: earlier"
         case _:
-            return ""
+            scale = choose_scale(build_outline(now.spec.robot), view) if view else 1.0
+            return f"robot drawn {scale:.1f}× its size" if scale > _MIN_ENLARGED else ""
 
 
 def draw_signs(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
