@@ -43,7 +43,7 @@ def test_a_wrong_threshold_is_refused_with_its_reason(text: str, said: str) -> N
         parse_events(text, long_log())
 
 
-def test_events_stand_where_they_are_in_the_chart_and_in_the_pane() -> None:
+def test_events_are_marked_at_their_times_in_the_chart_and_listed_in_the_pane() -> None:
     model = model_of(long_log(runs=2))
     model.events.thresholds = parse_events("Colour < 45", model.log)
     assert [row[0] for row in PANES["events"].rows(model)] == ["Colour #1", "Colour #2"]

@@ -13,7 +13,7 @@ from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Plateau
 
 
-def test_the_cursor_goes_along_the_selected_variable() -> None:
+def test_cursor_keys_step_along_samples_of_the_selected_variable() -> None:
     model = model_of(long_log())
     model.go_to_time(3.2)
     assert (model.row, model.find_time_s(model.row)) == (6, 3.0)

@@ -33,7 +33,7 @@ def test_a_place_outside_the_picture_is_marked_at_its_edge_with_its_distance() -
     assert ring.pins[0].text == "missed\nrobot off the mat: 10000 mm to the right"
 
 
-def test_places_that_are_one_share_a_ring() -> None:
+def test_goals_at_nearly_the_same_place_share_a_ring() -> None:
     pins = [Pin("1", 900, 500, True, ""), Pin("2", 902, 501, False, "")]
     assert _labels(*pins) == [(False, ["1", "2"])]
     (ring,) = place_pins(pins, build_world_view(RobotSpec()))

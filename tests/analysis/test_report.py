@@ -250,7 +250,7 @@ def test_a_run_without_samples_shows_its_telemetry(
     )
 
 
-def test_a_mat_that_is_gone_costs_only_its_picture(
+def test_a_report_of_a_run_whose_mat_is_gone_lacks_only_the_picture(
     here: Command, home: Path, tmp_path: Path, driven: Driven
 ) -> None:
     folder = home / "runs" / driven.run.id

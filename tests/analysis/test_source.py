@@ -19,7 +19,7 @@ from tuisim.analysis.source import (
 from tuisim.base.errors import LogError
 
 
-def test_notes_are_kept_with_a_file(tmp_path: Path, home: Path) -> None:
+def test_notes_on_a_log_file_are_found_when_it_is_opened_again(tmp_path: Path, home: Path) -> None:
     file = tmp_path / "log.csv"
     file.write_text("time,value\n0,1\n")
     opened = OpenedLog(LogRequest(file=str(file)), long_log())
@@ -39,7 +39,7 @@ def test_a_log_from_a_pipe_keeps_no_notes() -> None:
         model_of(long_log()).add_note("text", 0.0, 0.0, "", 0)
 
 
-def test_damaged_notes_are_said_with_their_row(tmp_path: Path) -> None:
+def test_a_damaged_file_of_notes_is_refused_with_its_row(tmp_path: Path) -> None:
     place = tmp_path / "notes.jsonl"
     write_notes(place, [Note("ü\nx", 0.5, 1.5, "Colour")])
     assert read_notes(place) == (Note("ü\nx", 0.5, 1.5, "Colour"),)

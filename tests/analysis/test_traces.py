@@ -17,7 +17,7 @@ def log_of(**columns: list[float]) -> Log:
     return Log("test", table, guess_columns(table))
 
 
-def test_of_telemetry_only_red_light_is_shown_at_first() -> None:
+def test_only_the_red_light_of_telemetry_is_ticked_at_first() -> None:
     traces = LogTraces(log_of(left_red=[1.0, 2.0], left_green=[1.0, 2.0], x_mm=[5.0, 6.0]))
     assert [trace.name for trace in traces.list_ticked()] == ["left_red"]
 
@@ -27,7 +27,7 @@ def test_of_many_variables_the_first_are_shown() -> None:
     assert [trace.name for trace in traces.list_ticked()] == ["a", "b", "c", "d"]
 
 
-def test_angles_and_places_have_their_own_scales() -> None:
+def test_angles_and_millimetres_have_scales_of_their_own_in_a_chart() -> None:
     traces = LogTraces(log_of(light=[1.0, 2.0], heading_deg=[1.0, 2.0], way_mm=[1.0, 2.0]))
     assert [trace.scale for trace in traces] == ["", "°", "mm"]
 
@@ -42,7 +42,7 @@ def test_a_trace_that_would_look_flat_beside_another_is_not_legible_with_it(
     assert traces.find_trace("new").is_legible([traces.find_trace("light")]) is alike
 
 
-def test_a_value_holds_until_the_next_sample() -> None:
+def test_a_traces_value_holds_until_the_next_sample() -> None:
     trace = LogTraces(log_of(light=[5.0, 7.0])).find_trace("light")
     assert [trace.find_value(time_s) for time_s in (-0.1, 0.0, 0.9, 1.0, 9.0)] == [
         None,
@@ -73,7 +73,7 @@ def test_a_run_without_the_event_is_aligned_like_the_earliest_one() -> None:
     assert first[0] == second[0] == -4.5
 
 
-def test_a_log_without_places_has_no_distances() -> None:
+def test_aligning_a_log_without_positions_by_distance_is_refused() -> None:
     log = log_of(light=[1.0, 2.0])
     with pytest.raises(LogError, match="no distances"):
         align_series(log, [log.series("light")], "distance")

@@ -55,7 +55,7 @@ def test_the_same_seed_gives_equal_sample_frames_and_another_seed_others() -> No
     assert not first.equals(other)
 
 
-def test_an_error_of_the_program_is_in_the_run() -> None:
+def test_a_run_that_simulate_returns_holds_the_programs_error() -> None:
     run = tuisim.simulate("x = 1\n1 / 0\n")
     assert (run.state, "ZeroDivisionError" in run.error) == ("raised", True)
 
@@ -246,7 +246,7 @@ def test_simulate_refuses_a_world_file_that_does_not_exist(tmp_path: Path) -> No
         tuisim.simulate(POSE, world=tmp_path / "nowhere.toml")
 
 
-def test_a_stored_run_is_loaded_by_its_number() -> None:
+def test_load_run_takes_a_number_or_a_folder() -> None:
     made = tuisim.simulate("print('A: 1')\n").stored
     number = tuisim.load_run("last").stored.number
     names: list[Any] = [number, str(number), np.int64(number), made.folder]
@@ -321,7 +321,7 @@ def test_the_package_has_no_other_public_names() -> None:
         "a name": ("tuisim.sim", ["simulate"]),
     },
 )
-def test_an_editor_completes_names_and_options(call: str, expected: list[str]) -> None:
+def test_an_editor_completes_names_and_options_of_the_api(call: str, expected: list[str]) -> None:
     import jedi
 
     completions = jedi.Script(f"import tuisim\n{call}").complete(2, len(call))
@@ -336,7 +336,7 @@ def _misspell() -> None:
     tuisim.experiment("log_greys", sensornoise=[0, 20], robot=tuisim.Robot(gear_ratio=2))
 
 
-def test_a_run_is_one_line_and_a_notebook_shows_it() -> None:
+def test_repr_of_a_run_is_one_line_and_its_html_has_a_picture() -> None:
     run = tuisim.simulate("print('A: 1')\nraise ValueError('<b>')\n")
     assert re.fullmatch(
         r"<run \d+ of program under robolab: raised after 0\.\d\d s: ValueError: <b> \(line 2\)>",
@@ -391,7 +391,7 @@ def test_a_wrong_description_is_refused_where_it_is_written(describe: Any, words
         describe()
 
 
-def test_the_example_of_further_parts_is_a_robot() -> None:
+def test_the_docstrings_example_of_robot_parts_builds_a_robot() -> None:
     example = re.search(r"parts: .*`(.*?)`", tuisim.Robot.__doc__ or "")
     assert example
     assert tuisim.Robot(parts=ast.literal_eval(example[1])) != tuisim.Robot()
@@ -425,7 +425,7 @@ def test_an_experiment_varies_each_option_that_is_a_list() -> None:
     assert set(frame["A_last"]) == {2}
 
 
-def test_the_stored_runs_are_a_table() -> None:
+def test_runs_returns_the_stored_runs_as_a_table() -> None:
     first, second = (tuisim.simulate("print(1)\n", seed=seed).stored for seed in (4, 5))
     table = tuisim.runs().tail(2)
     assert table["number"].tolist() == [first.number, second.number]

@@ -76,7 +76,7 @@ def test_recorded_commands_give_the_same_poses_to_the_bit(
     assert len(np.unique(expected, axis=0)) > 20
 
 
-def test_the_time_of_the_last_tick_leads_to_the_last_pose() -> None:
+def test_a_lab_given_a_runs_commands_and_time_ends_at_the_runs_pose() -> None:
     # It ends between two ticks, while the robot drives.
     run = tuisim.simulate("import time\ntank_drive.on(30, 30)\ntime.sleep(0.517)\n", world=SMOOTH)
     lab = tuisim.Lab.of_run(run)
@@ -84,7 +84,7 @@ def test_the_time_of_the_last_tick_leads_to_the_last_pose() -> None:
     assert lab.pose == run.pose
 
 
-def test_sensors_of_a_lab_see_what_the_pen_draws() -> None:
+def test_sensors_of_a_lab_see_the_line_that_its_pen_draws() -> None:
     pen = {"x_mm": -20, "y_mm": 30, "color": "black", "down": True}
     robot = tuisim.Robot(parts={"pen": pen})
     world = tuisim.World(pen_marks=True)
@@ -113,7 +113,7 @@ def test_a_labs_wheels_turn_at_the_speeds_given_to_step(profile: str) -> None:
     assert lab.time_s == pytest.approx(4)
 
 
-def test_a_hub_goes_by_the_rules_of_its_program() -> None:
+def test_a_labs_robot_with_a_hub_gets_the_profile_of_that_hub() -> None:
     lab = tuisim.Lab(robot=tuisim.Robot("Prime_Robot"))
     run = tuisim.simulate("from pybricks.hubs import PrimeHub\nPrimeHub()\n")
     assert lab.spec.profile == run.stored.spec.profile
@@ -121,7 +121,7 @@ def test_a_hub_goes_by_the_rules_of_its_program() -> None:
     assert tuisim.Lab(robot="Prime_Robot", profile="robolab").spec.profile.name == "robolab"
 
 
-def test_speeds_of_numpy_leave_no_numbers_of_numpy() -> None:
+def test_a_lab_driven_with_numpy_speeds_returns_plain_numbers() -> None:
     lab = tuisim.Lab()
     speeds: Any = np.float64(300), np.float32(300)
     lab.step(*speeds)
@@ -147,7 +147,7 @@ def test_a_warning_names_each_value_of_a_robot_that_moves_nothing(
         assert warning.filename == __file__
 
 
-def test_no_motor_is_faster_than_it_can() -> None:
+def test_a_labs_motor_is_no_faster_than_its_highest_speed() -> None:
     lab = tuisim.Lab(columns=["left_speed_dps"])
     assert lab.step(1e6, 0, period_s=3)["left_speed_dps"] == pytest.approx(lab.max_speed_dps)
 
@@ -174,7 +174,7 @@ def test_repr_of_a_lab_is_one_line_with_robot_mat_and_time() -> None:
     assert (lab.pose.x_mm, lab.pose.y_mm) == (lab.read()["x_mm"], lab.read()["y_mm"])
 
 
-def test_a_lab_says_that_its_robot_and_mat_are_not_the_named_ones() -> None:
+def test_repr_of_a_lab_says_that_robot_and_mat_were_changed() -> None:
     lab = tuisim.Lab(tuisim.World(obstacles="Wall"), tuisim.Robot(wheel_diameter_mm=30))
     robot, place = "Default_Robot of own values", "Empty_Map with 1 box"
     assert repr(lab) == f"<lab with {robot} on {place} after 0.00 s>"
@@ -206,12 +206,12 @@ def test_a_lab_with_wrong_arguments_is_refused(given: dict[str, Any], words: str
         "keyword": ({"period": 1}, "did you mean period_s"),
     },
 )
-def test_a_wrong_step_is_refused(given: dict[str, Any], words: str) -> None:
+def test_a_labs_step_refuses_wrong_arguments(given: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         tuisim.Lab().step(**given)
 
 
-def test_a_lab_without_goals_judges_nothing() -> None:
+def test_judging_a_lab_without_goals_is_refused() -> None:
     with pytest.raises(ConfigError, match="this lab has no goals"):
         tuisim.Lab().judge()
 
@@ -243,7 +243,9 @@ def _time_steps(lab: tuisim.Lab) -> float:
 @pytest.mark.bench
 @pytest.mark.parametrize("motornoise", [0, 40])
 @pytest.mark.parametrize("profile", ["robolab", "ev3"])
-def test_a_step_costs_at_most_twice_the_bare_loop(profile: str, motornoise: int) -> None:
+def test_a_labs_step_takes_at_most_twice_the_time_of_the_bare_simulation(
+    profile: str, motornoise: int
+) -> None:
     lab = tuisim.Lab(tuisim.World(background="Loop", motornoise=motornoise), profile=profile)
     pairs = [(_time_steps(lab), _time_bare_loop(lab.spec)) for _ in range(9)]
     steps, bare = map(min, zip(*pairs, strict=True))

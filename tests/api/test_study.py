@@ -27,7 +27,7 @@ print("Gain:", GAIN)
 
 
 @pytest.mark.slow
-def test_constants_vary_and_functions_measure_each_run() -> None:
+def test_an_experiment_varies_constants_and_applies_metrics_to_each_run() -> None:
     frame = tuisim.experiment(
         PROGRAM,
         seeds=range(2),
@@ -43,7 +43,7 @@ def test_constants_vary_and_functions_measure_each_run() -> None:
 
 
 @pytest.mark.slow
-def test_columns_are_those_of_each_run_over_time() -> None:
+def test_an_experiment_with_columns_gives_each_runs_values_over_time() -> None:
     columns = ["x_mm", "left_red", "line"]
     with_time = ["time", *columns]
     how: dict[str, Any] = {"background": "Grey_bands", "x": 100}
@@ -66,7 +66,7 @@ def build_metric(goal_mm: float, share: float = 1) -> Callable[[Any], float]:
     return measure
 
 
-def test_metrics_are_told_apart_by_what_they_compute() -> None:
+def test_two_metrics_have_equal_descriptions_only_if_they_compute_the_same() -> None:
     texts = [describe(build_metric(goal_mm)) for goal_mm in (3, 3, 4)]
     assert texts[0] == texts[1] != texts[2]
     lambdas: list[Any] = [lambda run: run.a + 1, lambda run: run.a + 2, lambda run: run.b + 1]
@@ -117,7 +117,7 @@ def test_the_spread_of_samples_is_that_of_pandas() -> None:
 
 
 @pytest.mark.slow
-def test_the_number_of_processes_does_not_matter() -> None:
+def test_an_experiment_gives_the_same_table_with_any_number_of_processes() -> None:
     first, second = (
         tuisim.experiment(PROGRAM, seeds=range(6), motornoise=20, columns=["x_mm"], jobs=jobs)
         for jobs in (1, 2)
@@ -126,7 +126,7 @@ def test_the_number_of_processes_does_not_matter() -> None:
 
 
 @pytest.mark.parametrize("columns", [[], ["x_mm", "left_red"]])
-def test_an_interrupted_experiment_goes_on(
+def test_an_interrupted_experiment_resumes_with_the_missing_runs(
     columns: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     out = tmp_path / "runs.parquet"
@@ -163,7 +163,7 @@ def test_an_interrupted_experiment_goes_on(
     pd.testing.assert_frame_equal(frame, tuisim.read_log(out), check_exact=True)
 
 
-def test_an_experiment_with_a_mended_metric_begins_anew(tmp_path: Path) -> None:
+def test_an_experiment_with_a_changed_metric_runs_everything_again(tmp_path: Path) -> None:
     out = tmp_path / "runs.csv"
     how: dict[str, Any] = {"seeds": [0, 1], "out": out, "jobs": 1}
     with pytest.raises(ZeroDivisionError):
@@ -184,7 +184,7 @@ def test_an_experiment_warns_when_it_replaces_another_table(tmp_path: Path) -> N
         tuisim.experiment(PROGRAM, seeds=[0, 1], **how)
 
 
-def test_an_experiment_varies_worlds(tmp_path: Path) -> None:
+def test_an_experiment_can_vary_the_world(tmp_path: Path) -> None:
     (file := tmp_path / "lab.toml").write_text('background = "Loop"\n')
     worlds: list[Path | tuisim.World] = [file, tuisim.World(x=300)]
     frame = tuisim.experiment("A = 1\n", world=worlds, jobs=1)
@@ -276,7 +276,7 @@ def test_an_experiment_warns_once_of_what_varies_without_effect() -> None:
     assert [*dict.fromkeys(frame["robot"])] == labels
 
 
-def test_runs_that_raise_are_told_and_make_no_mean_known() -> None:
+def test_an_experiment_warns_of_runs_that_raised_and_takes_no_mean_of_them() -> None:
     how: dict[str, Any] = {"seeds": range(20), "until": "x_mm ± 1", "jobs": 1}
     with pytest.warns(UserWarning) as warnings:
         frame = tuisim.experiment("print('A: 1')\n\nslep(1)\n", **how)
@@ -287,7 +287,7 @@ def test_runs_that_raise_are_told_and_make_no_mean_known() -> None:
     assert len(frame) == 10
 
 
-def test_a_metric_has_no_value_where_the_program_has_raised_before() -> None:
+def test_a_metric_of_a_run_that_raised_before_is_missing() -> None:
     program = "N = 1\nprint('A: 1') if N > 1 else slep(1)\n"
     metrics: dict[str, Any] = {"a": lambda run: run.samples["value"].iloc[-1]}
     how: dict[str, Any] = {"constants": {"N": [1, 2]}, "metrics": metrics, "jobs": 1}
@@ -299,7 +299,7 @@ def test_a_metric_has_no_value_where_the_program_has_raised_before() -> None:
     assert "1 mean known not at all" in str(warnings[0].message)
 
 
-def test_what_a_metric_raises_ends_the_experiment() -> None:
+def test_an_error_in_a_metric_ends_the_experiment_and_names_it() -> None:
     def fail(run: object) -> None:
         raise LookupError("nothing there")
 

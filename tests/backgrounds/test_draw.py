@@ -40,7 +40,7 @@ def test_every_mat_has_one_picture_and_one_entry() -> None:
 
 
 @pytest.mark.parametrize("name", MATS)
-def test_the_picture_of_a_mat_is_a_small_file(name: str) -> None:
+def test_each_mats_picture_file_is_below_its_size_limit(name: str) -> None:
     # Noise is what no picture format makes small.
     limit = 1_000_000 if name == "Noisy_Lollipop" else 200_000
     assert (FOLDER / f"{name}.png").stat().st_size < limit
@@ -81,7 +81,7 @@ def test_the_drawing_command_refuses_unknown_mats(capsys: pytest.CaptureFixture[
 
 
 @pytest.mark.slow
-def test_the_command_checks_a_copy_of_the_folder(tmp_path: Path) -> None:
+def test_the_drawing_command_checks_and_draws_in_a_copied_folder(tmp_path: Path) -> None:
     for path in FOLDER.glob("*.py"):
         shutil.copy(path, tmp_path)
     command = [sys.executable, "-B", str(tmp_path / "draw.py")]

@@ -113,7 +113,7 @@ def test_readings_on_each_mat_stay_near_the_recorded_ones(name: str) -> None:
         assert np.max(differences) <= limit.largest + ROUNDED, kind
 
 
-def test_every_mat_with_a_model_has_readings() -> None:
+def test_all_22_mats_with_a_model_have_recorded_readings() -> None:
     with_model = {name for name, _ in READINGS}
     assert len(with_model) == 22 and with_model <= set(MATS)
     assert {kind for _, kind in READINGS} == {"random", "edge", "letters", "tile"}

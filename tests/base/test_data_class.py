@@ -145,7 +145,7 @@ def test_our_data_classes_have_the_signature_and_fields_of_dataclasses(
     assert [told(kind) for kind in ours.values()] == [told(kind) for kind in theirs.values()]
 
 
-def test_a_data_class_without_options_counts_and_compares() -> None:
+def test_a_data_class_without_options_can_be_changed_and_compared() -> None:
     @data_class.dataclass
     class Counter:
         """A counter."""
@@ -157,7 +157,7 @@ def test_a_data_class_without_options_counts_and_compares() -> None:
     assert counter == Counter(1)
     assert (
         repr(counter)
-        == "test_a_data_class_without_options_counts_and_compares.<locals>.Counter(count=1)"
+        == "test_a_data_class_without_options_can_be_changed_and_compared.<locals>.Counter(count=1)"
     )
 
 
@@ -174,7 +174,7 @@ def test_data_class_objects_without_eq_equal_only_themselves() -> None:
     assert len({first, other}) == 2
 
 
-def test_each_object_has_its_own_default() -> None:
+def test_objects_of_a_data_class_do_not_share_a_mutable_default() -> None:
     kind: Any = build(data_class.dataclass, True, True)["Plain"]
     assert kind(1).items is not kind(1).items
 

@@ -132,7 +132,9 @@ def test_no_command_waits_for_a_pipe_or_device_in_the_place_of_a_file(
             assert done.stderr.count("\n") <= 3, f"{words}: {done.stderr}"
 
 
-def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(home: Path, here: Command) -> None:
+def test_commands_do_not_wait_for_a_pipe_in_the_place_of_a_run_file(
+    home: Path, here: Command
+) -> None:
     run = record()
     for name in ("notes.jsonl", TELEMETRY_FILE, "lock"):
         (run / name).unlink(missing_ok=True)
@@ -143,7 +145,7 @@ def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(home: Path, here: Comma
         assert here("doctor").returncode == 0
 
 
-def test_a_hole_in_a_recording_is_not_copied(home: Path) -> None:
+def test_reading_a_sparse_recording_does_not_copy_its_hole_into_memory(home: Path) -> None:
     run = record()
     row(Stream.STDOUT, b"last")(run)
     records = TelemetryView(run).count
