@@ -49,7 +49,7 @@ async def test_the_key_of_a_panel_that_is_shown_focuses_it_first(panel: str, key
 
 
 @pytest.mark.slow
-async def test_a_panel_without_room_takes_the_place_of_another() -> None:
+async def test_a_panel_opened_by_key_without_room_replaces_another_panel() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await pilot.press("X")
         await until(pilot, lambda: app.panel_area.find_focused_panel() == "positioning")
@@ -85,7 +85,7 @@ async def test_quit_without_a_run_asks_nothing() -> None:
 
 
 @pytest.mark.slow
-async def test_nothing_is_opened_while_the_app_ends() -> None:
+async def test_no_dialog_opens_while_the_app_is_ending() -> None:
     async with open_lab(LOGS) as (_, app):
         app.exit()
         # What was typed quickly after q, and what was to be done soon after the start.

@@ -20,7 +20,7 @@ async def test_opening_a_program_that_does_not_exist_shows_a_notice(tmp_path: Pa
 
 
 @pytest.mark.slow
-async def test_opening_a_log_shows_how_it_is_read(
+async def test_opening_a_log_file_shows_the_preview_of_how_it_is_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "far.csv").write_text("boot;far\n0;1\n20;2\n")

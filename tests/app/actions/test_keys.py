@@ -51,7 +51,7 @@ async def test_arrow_keys_move_and_turn_the_robot() -> None:
             assert app.run_controller.pose == Pose(150, 500, 0), key
 
 
-async def test_readings_follow_the_robot_at_rest() -> None:
+async def test_placing_the_resting_robot_elsewhere_updates_its_sensor_readings() -> None:
     async with open_lab(LOGS) as (_, app):
         assert app.run_controller.build_snapshot().colors["left"].red == 255
         app.run_controller.place(Pose(300, 500, 0))
@@ -69,7 +69,7 @@ async def test_speed_keys_change_the_speed_by_steps_and_stop_at_the_slowest() ->
 
 
 @pytest.mark.slow
-async def test_pen_is_p_and_not_shift_p() -> None:
+async def test_p_moves_the_pen_and_shift_p_does_not() -> None:
     async with open_lab(LOGS) as (pilot, app):
         await pilot.press("P", "escape")
         after_shift_p = app.run_controller.pen_down
@@ -95,7 +95,9 @@ async def test_help_lists_every_key() -> None:
 
 
 @pytest.mark.parametrize("table", [ACTIONS, ANALYSER_ACTIONS], ids=["app", "analyser"])
-def test_each_group_is_in_one_file_that_names_it(table: Mapping[str, Action[Any, Any]]) -> None:
+def test_each_group_of_actions_is_defined_in_one_file_of_its_name(
+    table: Mapping[str, Action[Any, Any]],
+) -> None:
     functions = {
         (action.group, getattr(action.do, "func", action.do).__module__)
         for action in table.values()
@@ -139,7 +141,7 @@ def test_keys_move_the_robot_unless_a_program_drives_it(state: RunPhase, looks_b
     assert all(bool(action.why_not(now)) is drives for action in moves)
 
 
-async def test_the_key_that_runs_while_one_types_runs_elsewhere_too() -> None:
+async def test_ctrl_r_runs_the_program_also_outside_the_editor() -> None:
     async with open_lab("print('Colour: 1')\n", speed=0.0) as (pilot, app):
         await pilot.press("ctrl+r")
         await until(pilot, lambda: app.run_controller.state is RunPhase.ENDED)

@@ -78,7 +78,7 @@ def last_line(pilot: Pilot[Any]) -> str:
     return text_of(pilot).split("\n")[-1]
 
 
-async def test_the_key_of_a_panel_that_is_not_shown_looks_like_any_other() -> None:
+async def test_the_footer_draws_keys_of_hidden_panels_without_a_colour() -> None:
     async with open_lab(LOGS, autorun=True, speed=0.0, size=(80, 24)) as (pilot, app):
         await until(pilot, lambda: "chart" in app.key_footer.render().plain)
         rendered = app.key_footer.render()

@@ -13,7 +13,7 @@ from tuisim.settings.options import Settings
 
 
 @pytest.mark.slow
-async def test_a_paused_program_starts_again() -> None:
+async def test_the_run_key_starts_a_paused_program_again() -> None:
     async with open_lab(ENDLESS, autorun=True) as (pilot, app):
         await until_state(pilot, RunPhase.RUNNING)
         await pilot.press("space")
@@ -24,7 +24,7 @@ async def test_a_paused_program_starts_again() -> None:
         assert app.run_controller.run_id != before
 
 
-async def test_a_new_program_that_has_run_is_worth_a_question() -> None:
+async def test_quitting_asks_before_dropping_a_new_program_that_has_run() -> None:
     plain = AppSettings(spec=build_run_spec(Settings()), settings=Settings())
     async with open_lab(plain, size=(80, 24)) as (pilot, app):
         app.document.start_new("print(1)\n")

@@ -59,7 +59,7 @@ async def held(pilot: Pilot[Any]) -> LabApp:
 
 
 @pytest.mark.slow
-async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> None:
+async def test_a_robot_moved_during_a_pause_at_a_line_stays_where_it_was_put() -> None:
     async with LabApp(settings(STEPS, autorun=True, speed=8.0)).run_test(size=(120, 40)) as pilot:
         app = await held(pilot)
         tick = app.run_controller.timeline.newest
@@ -129,7 +129,7 @@ def noises(app: LabApp) -> list[int]:
 
 
 @pytest.mark.slow
-async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
+async def test_dragging_a_noise_slider_in_the_past_asks_once_and_sets_once() -> None:
     shown = frozenset({"noise"})
     async with LabApp(settings(STEPS, autorun=True, speed=8.0, panels_on=shown)).run_test(
         size=(120, 40)
@@ -178,7 +178,7 @@ async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
 
 
 @pytest.mark.slow
-async def test_a_run_paused_while_it_asks_goes_on() -> None:
+async def test_a_run_paused_while_it_waits_for_input_can_be_resumed() -> None:
     asks = settings("name = input('Name? ')\nprint('A: 1')\nwhile True:\n    pass\n", autorun=True)
     async with open_lab(asks) as (pilot, app):
         await until_state(pilot, RunPhase.WAITING)
@@ -191,7 +191,7 @@ async def test_a_run_paused_while_it_asks_goes_on() -> None:
 
 
 @pytest.mark.slow
-async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_same_tick() -> None:
+async def test_quick_steps_back_add_up_and_the_end_key_returns_to_now() -> None:
     async with open_lab(LINES) as (pilot, app):
         for line in range(1, 5):
             await pilot.press("n")
@@ -223,7 +223,7 @@ def at_line(app: LabApp, line: int) -> bool:
     return app.debugger.view is not None and app.debugger.view.paused.line == line
 
 
-async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> None:
+async def test_a_change_for_the_next_run_is_shown_also_while_looking_at_the_past() -> None:
     async with LabApp(
         settings(LINES + "tank_drive.on_for_seconds(50, 50, 1)\n", speed=0.0)
     ).run_test() as pilot:

@@ -22,7 +22,7 @@ from tuisim.terminal.queries import TerminalAnswered, parse_facts
 @pytest.mark.quick_cases("kitty-one chart")
 @pytest.mark.parametrize("facets", [False, True], ids=["one chart", "facets"])
 @pytest.mark.parametrize("protocol", Protocol)
-async def test_the_charts_of_the_analyser_are_what_was_drawn(
+async def test_each_graphics_protocol_shows_the_analysers_drawn_charts(
     protocol: Protocol, facets: bool, tmp_path: Path
 ) -> None:
     file = tmp_path / "waves.csv"

@@ -170,7 +170,7 @@ def test_an_empty_log_says_what_else_there_is() -> None:
     assert "T shows the telemetry" in text_of(model)
 
 
-def test_the_column_run_does_not_look_like_the_number_of_a_stored_run(run: StoredRun) -> None:
+def test_the_column_run_of_stored_runs_is_headed_nth_run(run: StoredRun) -> None:
     opened = OpenedLog(LogRequest(), build_log((run,)), (run,))
     assert build_heading(AnalysisModel(opened), "run") == "nth run"
     assert build_heading(model_of(opened.log), "run") == "run"

@@ -67,7 +67,9 @@ async def test_the_first_screen_of_the_analyser_shows_all_its_parts(
         assert ("Sensor arrays" in text) is (size[1] > 30)
 
 
-async def test_a_high_and_narrow_screen_has_all_columns_for_each_view(run: StoredRun) -> None:
+async def test_on_a_high_narrow_screen_each_view_of_the_analyser_has_the_whole_width(
+    run: StoredRun,
+) -> None:
     async with open_analyser(runs=(run.id,), size=(64, 60)) as (pilot, screen, _):
         views = (screen.chart, screen.pane, screen.world)
         await until(pilot, lambda: all(view.region.width == 64 for view in views))
@@ -119,7 +121,7 @@ async def test_a_long_note_goes_on_in_further_lines(run: StoredRun) -> None:
         assert not model.notes
 
 
-async def test_tab_takes_the_word_that_is_offered(run: StoredRun) -> None:
+async def test_tab_accepts_the_suggested_word_in_a_prompt_of_the_analyser(run: StoredRun) -> None:
     async with open_analyser(runs=(run.id,), size=(80, 24)) as (pilot, _, _):
         await pilot.press("d")
         await until(pilot, lambda: isinstance(pilot.app.focused, Input))
@@ -146,7 +148,7 @@ async def test_the_bands_as_shown_are_exported(run: StoredRun, tmp_path: Path) -
 @pytest.mark.parametrize(
     "size, words", [((80, 20), "row 2 of 8"), ((80, 24), "")], ids=["too many", "all fit"]
 )
-async def test_a_pane_tells_which_row_is_selected_where_not_all_fit(
+async def test_a_pane_tells_the_number_of_the_selected_row_if_not_all_rows_fit(
     run: StoredRun, size: tuple[int, int], words: str
 ) -> None:
     async with open_analyser(runs=(run.id,), size=size) as (pilot, screen, model):
@@ -159,7 +161,7 @@ async def test_a_pane_tells_which_row_is_selected_where_not_all_fit(
 
 
 @pytest.mark.slow
-async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun) -> None:
+async def test_the_analyser_lists_stored_runs_and_opens_several_marked_ones(run: StoredRun) -> None:
     handle = start_run(
         program("print('Colour: 7')\n"), build_run_spec(Settings()), RunOptions(speed=0.0)
     )
@@ -178,7 +180,7 @@ async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun)
         await until(pilot, lambda: screen.request.runs == (handle.run_id,))
 
 
-async def test_the_source_shows_a_magic_line_that_is_no_comment() -> None:
+async def test_the_analysers_source_shows_a_magic_line_as_it_was_written() -> None:
     text = parse_program(
         "%%sim_magic_preloaded -b Grey_bands\nprint('Colour: 7')\n", "prog.py"
     ).program.text
@@ -289,7 +291,7 @@ async def test_no_action_of_the_analyser_fails_on_an_empty_log(
 
 
 @pytest.mark.slow
-async def test_a_file_is_read_on_when_it_grows(tmp_path: Path) -> None:
+async def test_the_analyser_reads_new_rows_of_a_growing_log_file(tmp_path: Path) -> None:
     file = tmp_path / "log.txt"
     file.write_text("Colour: 1\nColour: 2\n")
     async with open_analyser(file=str(file), size=(80, 24)) as (pilot, screen, model):

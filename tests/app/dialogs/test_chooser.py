@@ -168,7 +168,7 @@ async def test_an_earlier_notice_covers_no_row_of_a_chooser() -> None:
         assert not [row for screen in app.screen_stack for row in screen.query(NoticeRow)]
 
 
-async def test_short_names_of_a_group_leave_the_room_to_their_titles() -> None:
+async def test_a_choosers_group_of_short_names_gives_the_room_to_titles() -> None:
     long_name = "a name as long as those of lessons are"
     groups = [
         ChoiceGroup("Here", [("skip", "Skip", "leaves one step undone")]),

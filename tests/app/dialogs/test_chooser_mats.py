@@ -50,7 +50,7 @@ async def test_the_dialog_for_mats_shows_a_picture_of_the_selected_mat(
 
 
 @pytest.mark.parametrize("key", ["b", "r"])
-async def test_the_field_is_above_the_list_as_in_other_dialogs(key: str) -> None:
+async def test_the_input_field_is_above_the_list_of_mats_or_robots(key: str) -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await pilot.press(key)
         await until(pilot, lambda: bool(app.screen.query(OptionList)))
@@ -94,7 +94,7 @@ async def enter_path(pilot: Pilot[None], path: Path) -> None:
 
 @pytest.mark.quick_cases("missing")
 @pytest.mark.parametrize("content", [None, "no picture"], ids=["missing", "text"])
-async def test_a_file_that_is_no_image_leaves_the_mat_as_it_is(
+async def test_choosing_a_file_that_is_no_image_keeps_the_mat_and_says_why(
     content: str | None, tmp_path: Path
 ) -> None:
     path = tmp_path / "none.png"
@@ -174,7 +174,7 @@ async def test_a_path_to_nothing_has_no_preview() -> None:
 
 
 @pytest.mark.slow
-async def test_a_picture_that_comes_while_the_dialog_closes_is_dropped() -> None:
+async def test_a_mat_picture_decoded_while_the_dialog_closes_is_dropped() -> None:
     async with open_lab(LOGS) as (pilot, app):
         await pilot.press("b")
         await until(pilot, lambda: bool(app.screen.query(PixelView)))

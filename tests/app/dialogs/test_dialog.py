@@ -46,7 +46,7 @@ def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.quick_cases("palette", "mat", "robot")
 @pytest.mark.parametrize("keys", IN_THE_LAB.values(), ids=list(IN_THE_LAB))
-async def test_a_key_too_many_leaves_the_lab_as_it_is(keys: str) -> None:
+async def test_keys_typed_after_a_dialog_closes_change_nothing_in_the_lab(keys: str) -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         at_once(pilot, keys.split())
         await pilot.pause(0.1)
@@ -56,7 +56,7 @@ async def test_a_key_too_many_leaves_the_lab_as_it_is(keys: str) -> None:
 
 
 @pytest.mark.slow
-async def test_what_is_typed_while_a_dialog_opens_is_typed_into_it() -> None:
+async def test_text_typed_while_a_dialog_opens_goes_into_the_dialog() -> None:
     async with open_lab(size=(80, 24)) as (pilot, app):
         at_once(pilot, "o/tmp")
         await until(pilot, lambda: isinstance(app.screen, Chooser))
@@ -102,7 +102,7 @@ async def test_a_click_beside_the_list_of_a_dialog_leaves_the_keys_to_the_dialog
         assert isinstance(app.focused, OptionList)
 
 
-async def test_a_dialog_gives_its_result_once() -> None:
+async def test_a_dialog_answered_twice_quickly_gives_its_result_once() -> None:
     given: list[str | None] = []
     async with open_lab(size=(80, 24)) as (pilot, app):
         app.push_screen(Question("", "", (("y", ""),)), given.append)
@@ -115,7 +115,7 @@ async def test_a_dialog_gives_its_result_once() -> None:
 
 
 @pytest.mark.slow
-async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
+async def test_a_click_on_a_widget_that_was_just_removed_does_nothing() -> None:
     async with open_lab(size=(80, 24)) as (pilot, app):
         text = Static("gone", id="gone")
         guide = GuideScreen(KeyPage("Help", "", {}), Topic())
@@ -193,7 +193,7 @@ async def test_a_click_on_the_palette_where_the_terminal_was_does_no_harm() -> N
     [lambda: GuideScreen(KeyPage("Help", "", {}), Topic()), lambda: Palette((), None)],
     ids=["help", "palette"],
 )
-async def test_a_dialog_that_is_closed_before_it_is_built_takes_along_what_is_above(
+async def test_closing_a_dialog_before_it_is_built_also_closes_screens_above_it(
     above: Callable[[], Screen[None]],
 ) -> None:
     given: list[str | None] = []
@@ -218,7 +218,7 @@ def _screens() -> Iterator[type[Screen[object]]]:
                 yield found
 
 
-def test_every_screen_closes_once() -> None:
+def test_every_screen_class_is_guarded_against_closing_twice() -> None:
     assert [screen for screen in _screens() if not issubclass(screen, ClosesOnce)] == []
 
 

@@ -41,7 +41,7 @@ async def test_tab_completes_the_name_of_a_column(
     ],
     ids=["watch", "breakpoint"],
 )
-async def test_text_typed_while_the_list_has_the_focus_becomes_an_entry(
+async def test_text_typed_while_a_list_of_breaks_or_watches_is_focused_adds_an_entry(
     dialog: Any, typed: str
 ) -> None:
     entries: list[Any] = []

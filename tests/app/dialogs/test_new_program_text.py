@@ -19,7 +19,7 @@ def test_each_new_program_text_compiles_and_names_its_mat(sensor: str, skeleton:
     assert source.program.prelude == ("none" if brings_library else "preloaded")
 
 
-def test_the_first_offer_logs_every_grey_band(run: Run) -> None:
+def test_the_default_new_program_runs_and_logs_60_light_samples(run: Run) -> None:
     source = parse_program(build_program_text("Grey_bands", "colorLeft", Skeleton.LOG), "new.py")
     done = run(source.program.text, prelude=source.program.prelude, background="Grey_bands")
     assert len(done.lines) == 60

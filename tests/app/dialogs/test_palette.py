@@ -45,11 +45,11 @@ def test_words_that_people_use_find_an_action(typed: str, first: str) -> None:
     assert find_entries(ENTRIES, typed)[0].id == first
 
 
-def test_a_word_like_no_other_finds_nothing() -> None:
+def test_the_palette_finds_nothing_for_an_unknown_word() -> None:
     assert not find_entries(ENTRIES, "xyzz")
 
 
-def test_the_analyser_offers_all_that_saves_a_picture() -> None:
+def test_the_palette_of_the_analyser_finds_every_action_that_saves_a_picture() -> None:
     entries = [
         Entry(one.id, one.title, one.group, one.key_label, one.words)
         for one in ANALYSER_ACTIONS.values()

@@ -36,7 +36,7 @@ async def test_a_prompt_lists_fewer_forms_in_a_low_terminal(rows: int, is_brief:
     "is_edited, restart, answer",
     [(False, True, BRANCH), (True, True, RESTART), (True, False, BRANCH)],
 )
-async def test_enter_runs_an_edited_program_from_its_start_where_that_is_offered(
+async def test_enter_restarts_an_edited_program_if_restarting_is_offered(
     is_edited: bool, restart: bool, answer: str
 ) -> None:
     branch = MagicMock(time_s=2.0, edited=is_edited, goes_on=True)

@@ -179,7 +179,7 @@ def _other_format(folder: Path) -> str:
 
 @pytest.mark.quick_cases("format")
 @pytest.mark.parametrize("damage", [_no_run_file, _other_format], ids=["file", "format"])
-async def test_a_damaged_run_is_a_notice(damage: Callable[[Path], str]) -> None:
+async def test_opening_a_damaged_run_shows_a_notice(damage: Callable[[Path], str]) -> None:
     run_id = stored("print('A: 1')\ntank_drive.on_for_seconds(50, 50, 1)\n")
     said = damage(RunStore().folder(run_id))
     async with open_lab() as (pilot, app):
@@ -250,7 +250,7 @@ def test_a_narrow_list_of_runs_leaves_out_columns(columns: int, names: str) -> N
     ],
     ids=["the end only", "the limit", "an error", "no room", "tags"],
 )
-def test_the_note_of_a_run_does_not_repeat_its_end(
+def test_the_list_of_runs_does_not_repeat_the_end_as_a_note(
     facts: dict[str, Any], columns: int, end: str
 ) -> None:
     assert run_line(info(1, **facts), columns).plain.partition("0.00       ")[2] == end
@@ -305,12 +305,12 @@ LIKELIEST = {
 
 
 @cases("this, number", LIKELIEST)
-def test_a_run_is_compared_with_the_likeliest_one(this: RunInfo, number: int) -> None:
+def test_the_run_proposed_for_a_comparison_is_the_likeliest_one(this: RunInfo, number: int) -> None:
     assert LISTED[find_likeliest(LISTED, this)].number == number
 
 
 @pytest.mark.slow
-async def test_path_and_columns_of_many_runs_are_whole_also_after_a_resize(
+async def test_the_list_of_runs_is_whole_also_after_a_resize(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     listed = [info(number) for number in range(1, 13)]

@@ -83,7 +83,7 @@ async def test_each_changed_setting_is_written_and_takes_effect() -> None:
 
 
 @pytest.mark.slow
-async def test_a_wrong_value_is_told_and_can_be_corrected() -> None:
+async def test_a_wrong_value_in_the_settings_dialog_is_told_and_can_be_corrected() -> None:
     async with open_settings() as (pilot, app):
         listed = app.screen.query_one(OptionList)
         listed.highlighted = listed.get_option_index("app.fps")

@@ -99,7 +99,7 @@ async def test_of_a_long_value_the_beginning_is_in_sight() -> None:
         assert screen_text(app)[0].strip() == "1 level = read()  → [1, 1, 1, 1…"
 
 
-async def test_the_gutter_shows_marks_and_tells_of_clicks() -> None:
+async def test_the_editors_gutter_shows_breakpoints_and_errors_and_reports_clicks() -> None:
     app = CodeApp()
     async with app.run_test(size=(60, 12)) as pilot:
         code, area = await alone(pilot)

@@ -165,7 +165,7 @@ async def test_enter_during_a_lookup_chooses_nothing_from_the_list_that_follows(
 
 
 @pytest.mark.slow
-async def test_a_click_chooses_a_name(home: Path) -> None:
+async def test_a_click_in_the_completion_list_inserts_that_name(home: Path) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
         _, area = await listed(pilot, "tank_drive.o")
         await pilot.click(area.candidates, offset=(5, 2))
@@ -174,7 +174,7 @@ async def test_a_click_chooses_a_name(home: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_the_list_follows_neither_the_cursor_nor_the_focus(home: Path) -> None:
+async def test_the_completion_list_closes_when_the_cursor_or_focus_moves_away(home: Path) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
         _, area = await listed(pilot, "tank_drive.o")
         await pilot.press("home")
@@ -197,7 +197,7 @@ async def test_tab_after_a_name_that_nothing_begins_with_says_so(home: Path) -> 
         await until(pilot, lambda: "no name begins" not in str(code.border_subtitle))
 
 
-async def test_tab_indents_where_no_name_may_follow(home: Path) -> None:
+async def test_tab_indents_in_a_comment_where_no_name_may_follow(home: Path) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
         _, area = await typed(pilot, "x = 1  #")
         await pilot.press("tab")
@@ -216,7 +216,7 @@ async def test_the_frame_shows_the_signature_of_the_call(home: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_names_that_nobody_defined_are_marked_and_explained(
+async def test_undefined_names_are_marked_in_the_editor_with_a_hint(
     home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(assistant, "CHECK_DELAY_S", 3600.0)
@@ -294,7 +294,7 @@ async def test_unknown_attributes_are_marked_once_names_were_looked_up(home: Pat
 
 
 @pytest.mark.slow
-async def test_a_dot_lists_what_may_follow(home: Path) -> None:
+async def test_typing_a_dot_opens_the_list_of_names_that_may_follow(home: Path) -> None:
     completion.preload()
     async with CodeApp().run_test(size=SIZE) as pilot:
         _, area = await typed(pilot, "tank_drive.")
@@ -324,7 +324,7 @@ async def test_typing_on_with_an_automatic_completion_list_open_inserts_no_name(
         await until(pilot, lambda: area.program_text == text)
 
 
-async def test_a_number_with_a_dot_lists_nothing(
+async def test_no_completion_list_opens_after_a_number_with_a_dot(
     home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(assistant, "ASK_DELAY_S", 0.0)

@@ -32,7 +32,7 @@ def test_no_row_is_wider_than_the_list(width: int) -> None:
     assert {len(line) for line in rows(0, width)} == {width}
 
 
-def test_the_last_name_of_a_long_list_is_reached() -> None:
+def test_the_last_name_of_a_long_completion_list_can_be_reached() -> None:
     assert rows(19)[-2].startswith("▸name_19(speed, seconds)")
 
 
@@ -56,7 +56,9 @@ def test_a_completion_list_is_as_wide_as_its_names_need_and_the_room_allows(
     ],
     ids=["below", "at the right edge", "above", "at the left edge"],
 )
-def test_a_list_stands_at_its_word_and_in_view(word: Offset, place: Offset) -> None:
+def test_a_completion_list_is_placed_at_its_word_and_inside_the_screen(
+    word: Offset, place: Offset
+) -> None:
     assert list_place(word, Size(40, 9), Size(80, 24)) == place
 
 

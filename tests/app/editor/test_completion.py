@@ -127,7 +127,7 @@ def test_no_names_are_offered_where_none_may_follow(text: str) -> None:
     assert names(text) == []
 
 
-def test_the_help_of_light_has_both_scales_in_a_program_with_own_imports() -> None:
+def test_help_of_reflected_light_names_both_scales_if_the_program_has_imports() -> None:
     text = (
         "from ev3dev2.sensor.lego import ColorSensor\nColorSensor('in2').reflected_light_intensity"
     )
@@ -151,7 +151,7 @@ def test_a_candidate_has_a_signature_and_help(home: Path) -> None:
 
 
 @pytest.mark.slow
-def test_constants_are_offered_last(home: Path) -> None:
+def test_completion_offers_constants_last(home: Path) -> None:
     found = names(EV3DEV2 + "m.")
     assert found.index("COMMAND_STOP") > found.index("wait_until")
     assert found[-1].isupper()
@@ -241,5 +241,7 @@ def test_is_in_call_is_true_only_between_a_calls_parentheses(
         ("", ""),
     ],
 )
-def test_the_first_sentence_of_a_docstring_is_found(documentation: str, first: str) -> None:
+def test_extract_sentence_gives_the_first_sentence_of_a_docstring(
+    documentation: str, first: str
+) -> None:
     assert extract_sentence(documentation) == first

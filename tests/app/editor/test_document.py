@@ -132,7 +132,7 @@ async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(
         assert app.document.apply()
 
 
-async def test_a_small_panel_keeps_the_whole_place_where_the_text_cannot_run(
+async def test_after_a_syntax_error_a_code_panel_shown_alone_stays_alone(
     tmp_path: Path,
 ) -> None:
     async with open_lab(own(tmp_path / "prog.py"), size=(80, 24)) as (pilot, app):
@@ -270,7 +270,9 @@ async def test_a_draft_is_offered(
 
 
 @pytest.mark.slow
-async def test_unsaved_text_is_kept_soon_and_forgotten_when_undone(tmp_path: Path) -> None:
+async def test_an_edit_is_stored_as_draft_soon_and_the_draft_goes_when_undone(
+    tmp_path: Path,
+) -> None:
     path = tmp_path / "prog.py"
     async with open_code(own(path)) as (pilot, app, code):
         await typed(pilot, code, "x")
@@ -337,7 +339,7 @@ async def test_a_file_that_may_not_be_written_is_saved_elsewhere(tmp_path: Path)
 
 
 @pytest.mark.parametrize("exists", [True, False], ids=["an empty file", "a new file"])
-async def test_a_program_begun_from_nothing_is_saved_without_a_question(
+async def test_saving_a_program_begun_in_an_empty_file_asks_nothing(
     exists: bool, tmp_path: Path
 ) -> None:
     path = tmp_path / "mine.py"

@@ -17,7 +17,7 @@ while True:
 
 
 @pytest.mark.slow
-async def test_breakpoints_and_light_stay_on_their_lines_when_a_held_program_is_edited() -> None:
+async def test_editing_a_paused_program_keeps_breakpoints_and_current_line_in_place() -> None:
     async with open_lab(TURNS, speed=0.0) as (pilot, app):
 
         def at(line: int) -> bool:

@@ -9,12 +9,12 @@ from textual.strip import Strip
 from tuisim.app.editor.strips import cut_strip, highlight_strip
 
 
-def test_a_cut_row_ends_with_a_mark() -> None:
+def test_a_code_row_that_is_cut_ends_with_an_ellipsis() -> None:
     cut = cut_strip(Strip([Segment("speed = 30")]), 6, Style())
     assert (cut.text, cut.cell_length) == ("speed…", 6)
 
 
-def test_a_lit_row_keeps_the_background_of_a_selection() -> None:
+def test_highlighting_the_running_row_keeps_the_background_of_a_selection() -> None:
     base = Style(bgcolor="black")
     lit = Style(bgcolor="yellow")
     selected = Style(bgcolor="blue")

@@ -77,7 +77,7 @@ def test_examples_are_protected_and_own_programs_are_not(tmp_path: Path) -> None
     assert not is_protected(tmp_path / "p.py")
 
 
-def test_a_draft_is_found_until_it_is_dropped(home: Path) -> None:
+def test_a_stored_draft_is_found_until_it_is_deleted(home: Path) -> None:
     keep_draft("/a/p.py", "x = '\ud800é'\n")
     keep_draft("/a/q.py", "y")
     found = find_draft("/a/p.py")

@@ -87,7 +87,7 @@ async def test_the_guide_begins_with_the_keys_and_enter_opens_a_page(size: tuple
 
 
 @pytest.mark.slow
-async def test_a_long_page_scrolls_and_starts_at_its_top_again() -> None:
+async def test_the_guide_opens_a_new_page_at_its_top_after_scrolling() -> None:
     async with open_guide() as (pilot, _):
         await until_shown(pilot, "Run the program")
         await pilot.press("end")
@@ -140,14 +140,14 @@ async def test_a_page_is_drawn_again_when_only_its_own_width_changes() -> None:
 
 
 @pytest.mark.slow
-async def test_a_new_search_replaces_the_old_one() -> None:
+async def test_a_new_search_in_the_guide_replaces_the_old_words() -> None:
     async with open_guide() as (pilot, screen):
         await pilot.press("slash", *"noise", "enter", "slash", *"black")
         assert screen.query_one(Input).value == "black"
 
 
 @pytest.mark.slow
-async def test_escape_leaves_the_search_first() -> None:
+async def test_escape_in_the_guide_first_leaves_the_search() -> None:
     async with open_guide() as (pilot, screen):
         await pilot.press("slash", "q", "j", "x", "v", "k")
         await until_shown(pilot, "No page has these words")
@@ -224,7 +224,7 @@ async def test_the_guide_lists_the_keys_of_the_focused_panel_first(
 
 
 @pytest.mark.slow
-async def test_a_search_says_so_until_it_has_found_something(
+async def test_a_slow_search_of_the_guide_says_that_it_is_searching(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     go_on = Event()
@@ -274,7 +274,7 @@ async def test_the_passage_of_an_answer_is_in_sight_on_its_page(
 
 
 @pytest.mark.slow
-async def test_the_page_keys_go_on_to_further_answers_also_from_the_question() -> None:
+async def test_page_keys_in_the_guides_search_field_go_to_further_answers() -> None:
     async with open_guide() as (pilot, _):
         answers = await asked(pilot, "where is my data saved, and how do I read it in Python")
         listed = guide(pilot).query_one(AnswerList)
@@ -286,7 +286,7 @@ async def test_the_page_keys_go_on_to_further_answers_also_from_the_question() -
 
 
 @pytest.mark.slow
-async def test_answers_fit_a_window_that_has_changed() -> None:
+async def test_answers_of_the_guide_are_laid_out_again_after_a_resize() -> None:
     async with open_guide() as (pilot, _):
         (first, *_) = await asked(pilot, "How do I make the robot slower?")
         words = flatten_passage(first.passage)
@@ -297,7 +297,7 @@ async def test_answers_fit_a_window_that_has_changed() -> None:
 
 
 @pytest.mark.slow
-async def test_words_of_the_question_stand_out_and_a_section_is_named_once() -> None:
+async def test_answers_of_the_guide_show_words_of_the_question_in_bold() -> None:
     async with open_guide() as (pilot, _):
         answers = await asked(pilot, "colours of the sensor")
         listed = guide(pilot).query_one(AnswerList)

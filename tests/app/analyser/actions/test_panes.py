@@ -23,7 +23,9 @@ STEPS: list[tuple[list[str], Callable[[AnalysisModel], bool]]] = [
 ]
 
 
-async def test_the_examples_of_thresholds_name_a_variable_of_the_log(tmp_path: Path) -> None:
+async def test_the_prompt_for_thresholds_has_examples_with_a_variable_of_the_log(
+    tmp_path: Path,
+) -> None:
     file = tmp_path / "log.csv"
     file.write_text("time,name,value\n0,Way,1\n1,Way,2\n")
     async with open_analyser(file=str(file), size=(80, 24)) as (pilot, _, _):
@@ -33,7 +35,7 @@ async def test_the_examples_of_thresholds_name_a_variable_of_the_log(tmp_path: P
 
 
 @pytest.mark.slow
-async def test_long_logs_are_worked_on_beside_the_screen(
+async def test_searching_and_sorting_a_long_log_does_not_block_the_screen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(screen_module, "FAST_ROWS", 0)
