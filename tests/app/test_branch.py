@@ -90,7 +90,9 @@ async def _nothing(pilot: Pilot[Any], app: LabApp) -> None:
     ],
     ids=["nudge", "noise", "pen", "branch key"],
 )
-async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str) -> None:
+async def test_a_branch_has_the_same_records_as_its_run_up_to_the_branching_instant(
+    deed: Deed, kind: str
+) -> None:
     async with open_with_a_past() as (pilot, app):
         await stop(pilot, app)
         first = app.run_controller.run_id
@@ -127,7 +129,7 @@ async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str)
 
 
 @pytest.mark.slow
-async def test_a_paused_run_branches_paused_and_is_kept() -> None:
+async def test_branching_from_a_paused_run_stores_it_and_starts_the_branch_paused() -> None:
     async with open_with_a_past() as (pilot, app):
         first = app.run_controller.run_id
         await pilot.press("space", "less_than_sign")
@@ -162,7 +164,7 @@ async def test_a_paused_run_branches_paused_and_is_kept() -> None:
 
 
 @pytest.mark.slow
-async def test_an_edited_program_says_where_it_went_another_way() -> None:
+async def test_a_branch_of_an_edited_program_says_where_it_first_differs() -> None:
     async with open_with_a_past() as (pilot, app):
         await stop(pilot, app)
         first = app.run_controller.run_id
@@ -201,7 +203,7 @@ async def test_from_the_past_the_program_can_be_run_from_its_start() -> None:
 
 
 @pytest.mark.slow
-async def test_a_program_that_ends_before_the_instant_is_told() -> None:
+async def test_a_branch_whose_program_ends_before_the_instant_says_so() -> None:
     async with open_with_a_past(ticks=100) as (pilot, app):
         await stop(pilot, app)
         first = app.run_controller.run_id
@@ -252,6 +254,6 @@ async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
 @pytest.mark.parametrize(
     "tags, number", [("branch-of-12 at-3.20s", 12), ("", None), ("best branch-of-2026x", None)]
 )
-def test_a_branch_knows_its_root(tags: str, number: int | None) -> None:
+def test_the_tag_of_a_branch_names_the_run_it_comes_from(tags: str, number: int | None) -> None:
     run = RunInfo(3, "id", "2026-01-02T03:04:05+00:00", "line.py", "Loop", "robolab", 0, tags=tags)
     assert parse_branch_root(run) == number

@@ -46,7 +46,7 @@ async def test_each_panel_copies_what_it_shows() -> None:
 
 
 @pytest.mark.slow
-async def test_a_click_chooses_a_panel_that_cannot_have_the_focus() -> None:
+async def test_clicking_a_panel_without_focus_makes_it_the_one_that_is_copied() -> None:
     async with open_lab(LOGS) as (pilot, app):
         await until_shown(pilot, "Ultrasonic")
         await pilot.click(app.panel_area.panels["instrumentation"])

@@ -120,7 +120,7 @@ async def test_a_stepped_print_is_seen_where_the_output_gives_way_to_the_variabl
 
 
 @pytest.mark.slow
-async def test_every_press_counts_though_a_step_is_on_its_way() -> None:
+async def test_quick_presses_of_the_step_key_are_all_counted() -> None:
     async with open_lab(COUNTS) as (pilot, app):
         await pilot.press(*"nnnnn")
         await stands(pilot, app, 5)
@@ -153,7 +153,7 @@ async def test_stepping_back_a_line_shows_its_values_again() -> None:
         await press(pilot, app, "n", 3)
 
 
-async def test_an_earlier_line_of_the_newest_tick_does_not_let_keys_move_the_live_robot() -> None:
+async def test_looking_at_an_earlier_line_keys_ask_for_a_branch_and_move_no_robot() -> None:
     async with open_lab(COUNTS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 3)
         await press(pilot, app, "N", 2)
@@ -167,7 +167,7 @@ async def test_an_earlier_line_of_the_newest_tick_does_not_let_keys_move_the_liv
 
 @pytest.mark.slow
 @pytest.mark.parametrize("key", ["n", "u"], ids=["a line on", "on to the end of the program"])
-async def test_going_on_from_the_past_ends_at_now(home: object, key: str) -> None:
+async def test_resuming_from_a_past_line_stops_at_the_present_one(home: object, key: str) -> None:
     async with open_lab(COUNTS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 3, 4, 5, 6)
         await press(pilot, app, "N", 5)
@@ -195,7 +195,7 @@ async def test_steps_go_into_calls_and_out_of_them() -> None:
 
 
 @pytest.mark.slow
-async def test_a_breakpoint_holds_and_is_kept_with_the_program() -> None:
+async def test_a_breakpoint_pauses_the_run_and_is_stored_with_the_program() -> None:
     async with open_lab(COUNTS) as (pilot, app):
         # It belongs to a line that the user sees: the first press goes to the code.
         await pilot.press("t")
@@ -295,7 +295,7 @@ async def test_variables_of_any_past_instant_are_shown() -> None:
 
 
 @pytest.mark.slow
-async def test_code_and_debugger_stand_at_the_line_that_printed_a_sample() -> None:
+async def test_selecting_a_sample_shows_the_line_that_printed_it_in_code_and_debugger() -> None:
     async with open_lab(COUNTS, speed=0.0) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.state == "ended")
@@ -323,7 +323,7 @@ async def test_run_to_the_cursor_starts_the_program() -> None:
 
 
 @pytest.mark.slow
-async def test_breaks_are_kept_with_a_program_that_no_panel_shows() -> None:
+async def test_breakpoints_are_stored_also_while_no_panel_shows_the_program() -> None:
     app = LabApp(settings(COUNTS, panels_off=("code", "controls")))
     keep(program_of(app).path, StoredBreaks(parse_breakpoints(("4",)), ("total",)))
     async with app.run_test(size=(80, 24)) as pilot:

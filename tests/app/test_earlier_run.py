@@ -29,7 +29,7 @@ def earlier_pose(app: LabApp) -> Pose | None:
 
 
 @pytest.mark.slow
-async def test_the_run_before_is_drawn_at_the_same_time() -> None:
+async def test_the_robot_of_the_run_before_is_drawn_where_it_was_at_the_same_time() -> None:
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
         await run_from_start(pilot, app, STRAIGHT)
         assert earlier_pose(app) is None
@@ -47,7 +47,7 @@ async def test_the_run_before_is_drawn_at_the_same_time() -> None:
         assert earlier_pose(app) is not None
 
 
-def test_without_a_run_before_it_is_the_last_stored_one_of_the_program() -> None:
+def test_the_run_to_compare_with_is_the_programs_last_stored_one_on_the_same_mat() -> None:
     def of(path: str, mat: str = "Grey_bands") -> Recording:
         made = replace(program(STRAIGHT), path=path)
         run = start_run(made, build_run_spec(Settings({"background": mat})), RunOptions(speed=0.0))

@@ -49,7 +49,9 @@ def feed(panels: Panels) -> PanelFeed:
     return PanelFeed(area, runs)
 
 
-def test_a_chart_gets_what_was_written_before_it_was_shown(panels: Panels, feed: PanelFeed) -> None:
+def test_a_chart_opened_late_gets_the_samples_printed_before(
+    panels: Panels, feed: PanelFeed
+) -> None:
     feed.add_rows([row("Colour: 1"), row("no sample")])
     feed.add_rows([row("Colour: 2")])
     feed.show()

@@ -110,7 +110,7 @@ async def test_a_run_is_judged_when_it_has_ended(task: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_goals_are_judged_while_the_program_runs(task: Path) -> None:
+async def test_the_goals_panel_judges_goals_while_the_program_runs(task: Path) -> None:
     async with open_lab(
         with_goals(task, f"{DRIVES}input('more?')\nprint('done')\n"), size=SIZE
     ) as (pilot, app):
@@ -123,7 +123,7 @@ async def test_goals_are_judged_while_the_program_runs(task: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_a_past_instant_shows_the_goals_as_of_then(task: Path) -> None:
+async def test_at_a_past_instant_the_goals_panel_shows_the_states_of_then(task: Path) -> None:
     async with open_lab(with_goals(task, DRIVES), size=SIZE) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: state(app, "said") == "✗ missed")

@@ -39,7 +39,7 @@ PLACED = "question = { ask = 'What?', answer = 5, at_x_mm = [[600, 700]], where 
 
 
 @pytest.mark.slow
-async def test_a_question_is_answered_by_its_key_while_the_panel_of_the_place_is_shown(
+async def test_a_lessons_question_can_be_answered_by_key_while_another_panel_has_the_focus(
     tmp_path: Path,
 ) -> None:
     check = "question = { ask = 'Which x?', answer = 502 }"

@@ -138,7 +138,7 @@ def with_magic(words: str) -> str:
     ],
     ids=["chart", "positioning", "no world", "shown anyway"],
 )
-async def test_panels_of_a_magic_line_come_and_go_as_it_is_saved(
+async def test_panels_named_in_a_magic_line_open_and_close_when_the_file_is_saved(
     folder: Path, words: str, panel: str, shown: bool
 ) -> None:
     path = folder / "mine.py"
@@ -153,7 +153,7 @@ async def test_panels_of_a_magic_line_come_and_go_as_it_is_saved(
 
 
 @pytest.mark.slow
-async def test_panels_of_a_magic_line_come_as_a_program_is_opened(folder: Path) -> None:
+async def test_panels_named_in_a_magic_line_open_with_the_program(folder: Path) -> None:
     (folder / "mine.py").write_text(with_magic(" -cu --speed 2"))
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await open_path(pilot, "mine.py")
@@ -299,7 +299,7 @@ async def test_a_file_that_becomes_faulty_on_disk_is_told_and_the_former_one_sta
 
 
 @pytest.mark.slow
-async def test_robot_obstacles_and_world_are_reloaded(folder: Path) -> None:
+async def test_robot_obstacle_and_world_files_changed_on_disk_are_reloaded(folder: Path) -> None:
     (folder / "boxes.toml").write_text("obstacle = []\n")
     (folder / "lab.toml").write_text(LAB.replace("seed = 5", 'seed = 5\nobstacles = "boxes.toml"'))
     async with LabApp(settings()).run_test(size=(120, 40)) as pilot:

@@ -18,7 +18,9 @@ from tuisim.app.terminal_app import TerminalApp
 LONG = "words of an error that names a file and a key, and says what is allowed"
 
 
-async def test_an_answer_stays_whole_until_it_is_released(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_long_notice_stays_whole_until_it_is_released(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(module, "CHARACTERS_A_SECOND", 1e6)
     app = TerminalApp()
     async with app.run_test(notifications=True, size=(60, 20)) as pilot:
@@ -43,7 +45,7 @@ class _Lab(TerminalApp):
         yield Static(id="keys")
 
 
-async def test_an_answer_lies_where_the_borders_of_upper_and_lower_panels_meet() -> None:
+async def test_a_long_notice_is_placed_on_the_border_between_upper_and_lower_panels() -> None:
     app = _Lab()
     async with app.run_test(notifications=True, size=(60, 21)) as pilot:
 

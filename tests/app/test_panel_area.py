@@ -58,7 +58,7 @@ def fits(text: Static) -> bool:
 
 @in_each_size
 @pytest.mark.slow
-async def test_nothing_is_cut_in_any_layout(size: tuple[int, int]) -> None:
+async def test_no_text_of_a_panel_is_cut_in_any_layout(size: tuple[int, int]) -> None:
     async with open_lab(LOGS, autorun=True, speed=0.0, size=size) as (pilot, app):
         await until(pilot, lambda: app.run_controller.build_snapshot().end == End.FINISHED)
         for keys in ((), *((key,) for key in KEYS.values())):

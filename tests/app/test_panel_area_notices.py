@@ -53,7 +53,7 @@ async def test_a_notice_lies_on_borders_and_leaves_axis_and_keys_free(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("key", ["g", "question_mark", "o"])
-async def test_a_notice_covers_nothing_that_a_dialog_says(key: str) -> None:
+async def test_a_notice_covers_no_text_of_a_dialog(key: str) -> None:
     opened = settings(LOGS, autorun=True, speed=0.0)
     async with LabApp(opened).run_test(size=(80, 24), notifications=True) as pilot:
         app = await ready(pilot)

@@ -8,7 +8,7 @@ from tuisim.app.panels.instrumentation import Instrumentation
 from tuisim.app.snapshot import RunPhase
 
 
-async def test_all_readings_are_of_one_instant() -> None:
+async def test_all_panels_show_readings_of_the_same_instant() -> None:
     async with open_lab(ENDLESS, autorun=True, speed=1.0, size=(200, 60)) as (pilot, app):
         area = app.panel_area
         run = app.run_controller

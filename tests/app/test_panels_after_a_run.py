@@ -75,7 +75,9 @@ async def _go_to_past(pilot: Pilot[None], app: LabApp) -> dict[str, list[str]]:
 
 @pytest.mark.quick_cases("nbev3devsim")
 @pytest.mark.parametrize("profile", ["nbev3devsim", "ev3"])
-async def test_no_panel_of_a_run_follows_the_settings_of_the_next(profile: str) -> None:
+async def test_changing_the_next_runs_settings_does_not_change_panels_about_the_last_run(
+    profile: str,
+) -> None:
     async with open_lab(LOGS, size=SIZE, speed=0.0) as (pilot, app):
         app.panel_area.request(dict.fromkeys(SHOWN, True))
         await pilot.press("R")

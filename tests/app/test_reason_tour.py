@@ -14,7 +14,7 @@ REASONS = (
 )
 
 
-def test_each_reason_comes_in_turn_and_then_the_end() -> None:
+def test_the_key_for_errors_shows_each_reason_in_turn_and_then_the_end() -> None:
     tour = ReasonTour()
     recording = SimpleNamespace(newest=100)
     run: Any = recording
@@ -55,7 +55,7 @@ def test_a_single_reason_has_no_number() -> None:
     assert tour.words == "0.50 s: the robot left the mat"
 
 
-def test_reasons_of_a_run_that_is_no_longer_in_view_are_dropped() -> None:
+def test_reasons_found_for_a_run_no_longer_shown_are_dropped() -> None:
     tour = ReasonTour()
     first: Any = SimpleNamespace(newest=100)
     second: Any = SimpleNamespace(newest=100)

@@ -77,7 +77,7 @@ while True:
 
 
 @pytest.mark.slow
-async def test_the_answer_stays_until_a_key_does_something() -> None:
+async def test_the_notice_of_what_went_wrong_stays_until_a_key_does_something() -> None:
     async with LabApp(settings(STRAIGHT, speed=0.0)).run_test(
         size=SIZE, notifications=True
     ) as pilot:
@@ -94,7 +94,7 @@ async def test_the_answer_stays_until_a_key_does_something() -> None:
 
 
 @pytest.mark.slow
-async def test_the_arrow_stays_on_the_line_of_the_reason() -> None:
+async def test_the_arrow_in_the_code_stays_on_the_line_of_the_reason() -> None:
     async with open_lab(LEAVES_THE_MAT, speed=0.0, size=SIZE) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.build_snapshot().time_s > 20.0)
@@ -150,7 +150,7 @@ pass = { places_mm = [[1700, 500]], within_mm = 40 }
 
 
 @pytest.mark.slow
-async def test_the_goals_that_are_open_are_judged(tmp_path: Path) -> None:
+async def test_missed_goals_of_the_open_goal_file_are_among_the_reasons(tmp_path: Path) -> None:
     path = tmp_path / "task_goals.toml"
     path.write_text(GOALS, encoding="utf-8")
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):

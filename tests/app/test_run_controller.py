@@ -34,7 +34,7 @@ from tuisim.terminal.picture_options import CellSet
 PUSHES = "from time import sleep\ntank_drive.on(50, 50)\nsleep(2)\ntank_drive.off()\n"
 
 
-async def test_at_the_end_the_app_shows_the_speeds_of_its_last_tick() -> None:
+async def test_after_a_run_the_app_shows_the_motor_speeds_of_the_last_tick() -> None:
     turning = "from time import sleep\ntank_drive.on(50, 20)\nsleep(0.3)\n"
     async with open_lab(turning, autorun=True) as (pilot, app):
         await until_state(pilot, RunPhase.ENDED)
@@ -49,7 +49,7 @@ async def test_at_the_end_the_app_shows_the_speeds_of_its_last_tick() -> None:
         assert snapshot.gyro_rate_dps == at_the_end.gyro_rate_dps != 0
 
 
-async def test_a_line_that_is_nearly_a_sample_is_told_once() -> None:
+async def test_a_printed_line_that_is_nearly_a_sample_is_told_once() -> None:
     printing = "for number in range(3):\n    print('Angle L:', number)\n"
     async with open_lab(printing, autorun=True) as (pilot, app):
         await until_state(pilot, RunPhase.ENDED)

@@ -55,11 +55,11 @@ def test_the_status_tells_phase_speed_and_past(
         ("'v 1.23456789'", "'v 1.23456789'"),
     ],
 )
-def test_numbers_of_many_decimals_get_four_digits(text: str, expected: str) -> None:
+def test_long_decimal_values_are_shown_with_four_digits(text: str, expected: str) -> None:
     assert shorten_value(text) == expected
 
 
-def test_a_run_ends_at_no_later_time_than_the_clock_shows() -> None:
+def test_the_end_time_of_a_run_is_rounded_down() -> None:
     assert end_words(Ended(End.FINISHED, 4860, 48_607_000_000), "")[1] == "— finished at 48.60 s"
     assert end_words(Ended(End.FINISHED, 29, 290_000_000), "")[1] == "— finished at 0.29 s"
 

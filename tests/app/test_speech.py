@@ -22,7 +22,7 @@ def samples(data: bytes) -> array[int]:
         return array("h", file.readframes(file.getnframes()))
 
 
-def test_a_tone_has_its_length_pitch_and_pause() -> None:
+def test_a_tones_sound_has_its_length_pitch_and_pause() -> None:
     made = samples(build_wav([[441.0, 1000.0, 500.0]]))
     assert len(made) == RATE_HZ * 3 // 2
     crossings = sum(a < 0 <= b for a, b in pairwise(made))

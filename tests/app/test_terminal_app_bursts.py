@@ -43,7 +43,7 @@ async def test_backspace_is_not_overtaken_by_what_is_typed_after_it() -> None:
         assert pilot.app.screen.query_one(Input).value == "new.parquet"
 
 
-async def test_enter_waits_for_what_the_palette_finds() -> None:
+async def test_enter_typed_with_the_words_waits_until_the_palette_has_searched() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         send(pilot, "\x10Glyphs of the world\r")
         await until(pilot, lambda: isinstance(app.screen, CellsCard))

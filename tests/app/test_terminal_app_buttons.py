@@ -12,7 +12,7 @@ from tuisim.terminal.app import ActionAsked
 
 
 @pytest.mark.slow
-async def test_a_button_of_the_page_acts_also_while_the_user_types() -> None:
+async def test_a_button_of_the_web_page_works_while_the_user_types_in_the_editor() -> None:
     async with open_lab(ENDLESS) as (pilot, app):
         await pilot.press("d")
         await until(pilot, lambda: app.is_typed_into)
@@ -23,7 +23,7 @@ async def test_a_button_of_the_page_acts_also_while_the_user_types() -> None:
 
 
 @pytest.mark.slow
-async def test_a_button_of_the_page_leaves_a_dialog_alone() -> None:
+async def test_a_button_of_the_web_page_does_nothing_while_a_dialog_is_open() -> None:
     async with open_lab(ENDLESS) as (pilot, app):
         await pilot.press("b")
         await until(pilot, lambda: len(app.screen_stack) == 2)
@@ -32,7 +32,7 @@ async def test_a_button_of_the_page_leaves_a_dialog_alone() -> None:
         assert app.run_controller.state not in IN_RUN
 
 
-async def test_an_action_that_no_page_has_is_ignored() -> None:
+async def test_an_unknown_action_from_the_web_page_is_ignored() -> None:
     async with open_lab(ENDLESS) as (pilot, app):
         app.post_message(ActionAsked("__init__"))
         app.post_message(ActionAsked("panel-chart"))
@@ -48,7 +48,7 @@ async def test_a_click_on_the_empty_panel_of_lessons_offers_them() -> None:
 
 
 @pytest.mark.slow
-async def test_a_button_says_that_it_does_nothing_above_the_lab() -> None:
+async def test_a_button_of_the_web_page_says_so_when_it_does_not_work_in_the_analyser() -> None:
     async with open_lab(LOGS) as (pilot, app):
         app.post_message(ActionAsked("run"))
         await until(

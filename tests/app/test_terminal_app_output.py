@@ -44,7 +44,7 @@ async def test_the_first_paint_shows_the_panels_before_the_mat(colors: str) -> N
 
 @pytest.mark.slow
 @pytest.mark.parametrize("colors", ["256", "truecolor"])
-async def test_a_dialog_is_painted_once(colors: str) -> None:
+async def test_opening_a_dialog_sends_no_more_than_one_painting(colors: str) -> None:
     async with on_wire(LabApp(settings()), colors) as pilot:
         await ready(pilot)
         await until_quiet(pilot)
@@ -93,7 +93,7 @@ async def sent_for_a_while(pilot: Pilot[Any]) -> str:
 
 
 @pytest.mark.slow
-async def test_where_nothing_happens_nothing_is_sent() -> None:
+async def test_an_idle_app_sends_nothing_to_the_terminal() -> None:
     async with on_wire(LabApp(settings(LOGS))) as pilot:
         await ready(pilot)
         for keys in ([], ["question_mark"], ["escape", "ctrl+p"], ["escape", "o"], ["escape", "d"]):
@@ -163,7 +163,7 @@ async def test_what_the_robot_does_is_shown_while_the_program_prints(
 
 
 @pytest.mark.slow
-async def test_the_first_frame_of_a_run_waits_for_its_first_tick(
+async def test_the_first_drawn_frame_of_a_run_shows_its_first_tick(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(app_module, "_STARTING_S", 2 * PATIENCE_S)

@@ -89,7 +89,7 @@ def shown(colors: ThemeColors, style: Style) -> tuple[Color, Color]:
 
 
 @pytest.mark.parametrize("theme", THEMES)
-def test_text_can_be_read_under_any_theme(theme: object) -> None:
+def test_text_has_enough_contrast_in_every_theme(theme: object) -> None:
     colors = ThemeColors(theme, TRACE_COLORS)  # type: ignore[arg-type]
     least = 7.0 if theme is HIGH_CONTRAST else 4.5
     traces = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in TRACE_COLORS]
@@ -103,7 +103,7 @@ def test_text_can_be_read_under_any_theme(theme: object) -> None:
         )
 
 
-def test_colours_that_a_sensor_sees_stay_as_they_are() -> None:
+def test_themes_do_not_change_the_colours_that_a_sensor_sees() -> None:
     for seen in ((255, 255, 255), (255, 0, 0), (0, 0, 0)):
         swatch = Style(color="#d8dee6", bgcolor=RichColor.from_rgb(*seen))
         assert shown(ThemeColors(LIGHT), swatch)[1].rgb == seen

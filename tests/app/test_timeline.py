@@ -47,7 +47,7 @@ async def a_run(
 
 
 @pytest.mark.slow
-async def test_keys_go_back_and_forward() -> None:
+async def test_keys_go_back_and_forward_in_the_time_of_a_run() -> None:
     async with a_run() as (pilot, app):
         timeline = app.run_controller.timeline
         newest = app.run_controller.timeline.newest
@@ -79,7 +79,7 @@ OF_NOW: dict[str, Any] = {
 
 
 @pytest.mark.slow
-async def test_a_former_instant_is_shown_as_it_was() -> None:
+async def test_a_past_instant_shows_the_robot_and_readings_of_then() -> None:
     async with a_run(size=(200, 60)) as (pilot, app):
         recording = app.run_controller.timeline.recording
         mat = app.run_controller.mat
@@ -122,7 +122,7 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
 
 
 @pytest.mark.slow
-async def test_the_pen_has_drawn_no_more_than_then() -> None:
+async def test_at_a_past_instant_the_pens_line_ends_where_the_robot_was() -> None:
     async with open_lab(ENDLESS, autorun=True, speed=0.0) as (pilot, app):
         app.run_controller.set_pen(True)
         await until(pilot, lambda: app.run_controller.timeline.newest > 300)
@@ -309,7 +309,7 @@ async def test_commands_to_motors_are_marked_on_the_timeline_found_and_described
 
 
 @pytest.mark.slow
-async def test_a_column_finds_the_tick_at_which_it_becomes_so() -> None:
+async def test_go_to_finds_the_first_tick_at_which_a_columns_condition_holds() -> None:
     async with a_run() as (_, app):
         timeline = app.run_controller.timeline
         telemetry = recording_of(app).telemetry
@@ -320,7 +320,7 @@ async def test_a_column_finds_the_tick_at_which_it_becomes_so() -> None:
 
 
 @pytest.mark.slow
-async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_sample() -> None:
+async def test_go_to_says_what_is_wrong_and_keys_go_from_sample_to_sample() -> None:
     async with a_run() as (pilot, app):
         await pilot.press("g")
         app.screen.query_one(Input).value = "nowhere"
@@ -335,7 +335,7 @@ async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_samp
         assert app.run_controller.timeline.at == ticks[1]
 
 
-async def test_a_refusal_in_a_low_terminal_leaves_the_keys_in_view() -> None:
+async def test_a_refusal_in_the_go_to_dialog_leaves_its_keys_in_view() -> None:
     async with a_run(size=(80, 24)) as (pilot, app):
         await pilot.press("g")
         app.screen.query_one(Input).value = "nowhere"

@@ -12,7 +12,9 @@ from tuisim.engine.runs.records import OutputRow, Stream
 
 
 @pytest.mark.parametrize("tick, which", [(3, "the next"), (10, "the first")], ids=["past", "end"])
-def test_forms_of_go_to_say_in_which_direction_they_search(tick: int, which: str) -> None:
+def test_examples_in_the_go_to_dialog_say_in_which_direction_they_search(
+    tick: int, which: str
+) -> None:
     timeline: Any = SimpleNamespace(tick=tick, newest=10, recording=None)
 
     assert all(
@@ -22,7 +24,7 @@ def test_forms_of_go_to_say_in_which_direction_they_search(tick: int, which: str
     )
 
 
-def test_forms_of_go_to_name_a_printed_sample() -> None:
+def test_examples_in_the_go_to_dialog_name_a_printed_sample() -> None:
     printed = [OutputRow(text, 0, 0, 1, Stream.STDOUT) for text in ("no sample", "Way: 3")]
     recording = SimpleNamespace(rows=SimpleNamespace(rows=lambda _: printed))
     timeline: Any = SimpleNamespace(tick=0, newest=10, recording=recording)

@@ -35,7 +35,7 @@ def assert_fills(boxes: dict[str, PanelBox], width: int, height: int) -> None:
 
 @pytest.mark.quick_cases("60x18")
 @pytest.mark.parametrize("width, height", SIZES, ids=[f"{w}x{h}" for w, h in SIZES])
-def test_any_panels_fill_the_screen(width: int, height: int) -> None:
+def test_any_set_of_panels_fills_the_screen_with_their_fewest_rows(width: int, height: int) -> None:
     for count in range(1, len(PANELS) + 1):
         for panels in itertools.islice(itertools.combinations(PANELS, count), 40):
             placed = arrange(panels, width, height)
@@ -55,7 +55,9 @@ def test_any_panels_fill_the_screen(width: int, height: int) -> None:
     ],
     ids=["80x24", "100x30", "120x40", "200x60"],
 )
-def test_each_size_shows_its_panels_at_first(size: tuple[int, int], expected: set[str]) -> None:
+def test_each_terminal_size_has_its_panels_at_first(
+    size: tuple[int, int], expected: set[str]
+) -> None:
     width, height = size[0], size[1] - 1
     placed = arrange(choose_panels(Preset.STANDARD, {}, width, height)[0], width, height)
     assert set(placed.boxes) == expected
@@ -103,7 +105,7 @@ def test_the_world_has_the_whole_width_of_a_low_terminal(width: int, height: int
 
 @LOW_SIZES
 @pytest.mark.parametrize("panel, rows", [("chart", 13), ("code", 11)])
-def test_a_roomy_panel_replaces_nothing_in_a_low_terminal(
+def test_a_chart_or_code_panel_fits_beside_the_others_in_a_low_terminal(
     panel: str, rows: int, width: int, height: int
 ) -> None:
     placed = arrange(["world", panel, "instrumentation", "output"], width, height)
@@ -114,7 +116,7 @@ def test_a_roomy_panel_replaces_nothing_in_a_low_terminal(
     assert readings.height >= ROWS_WITH_POSE
 
 
-def test_of_two_roomy_panels_the_more_wanted_one_is_shown() -> None:
+def test_if_only_chart_or_code_fits_the_one_asked_for_first_is_shown() -> None:
     placed = arrange(["world", "chart", "code", "instrumentation", "output"], 80, 23)
     assert placed.left_out == ("code",)
 
@@ -124,7 +126,7 @@ def test_a_chart_is_laid_out_from_16_rows_on(height: int) -> None:
     assert ("chart" in arrange(["world", "chart"], 80, height).boxes) is (height >= 16)
 
 
-def test_the_settings_leave_room_for_all_readings_in_a_small_terminal() -> None:
+def test_the_settings_panel_leaves_room_for_all_readings_in_a_small_terminal() -> None:
     boxes = arrange(["settings", "world", "instrumentation", "output"], 80, 23).boxes
     assert (
         boxes["instrumentation"].height >= 8
@@ -149,7 +151,7 @@ def test_a_stop_at_a_line_shows_code_and_variables(size: tuple[int, int]) -> Non
 
 
 @pytest.mark.parametrize("width, height", [(65, 57), (60, 60), (72, 50)])
-def test_code_and_chart_fill_a_tall_terminal(width: int, height: int) -> None:
+def test_a_tall_terminal_shows_code_and_chart_at_first(width: int, height: int) -> None:
     wanted, fill = choose_panels(Preset.STANDARD, {}, width, height)
     boxes = arrange(wanted, width, height, fill).boxes
     assert {"code", "chart"} <= boxes.keys() and not {"positioning", "noise"} & boxes.keys()
@@ -168,7 +170,7 @@ def test_the_editor_stands_beside_the_world() -> None:
         assert layout.boxes["code"].width >= 68 and layout.boxes["world"].width >= 42
 
 
-def test_no_key_shows_two_panels() -> None:
+def test_each_panel_has_its_own_key() -> None:
     assert len({panel.key for panel in PANELS.values()}) == len(PANELS)
 
 

@@ -10,7 +10,7 @@ from tuisim.app.panels import TerminalSize
 
 
 @pytest.mark.slow
-async def test_the_next_start_finds_the_arrangement_only_if_it_was_kept_for_its_size() -> None:
+async def test_a_stored_arrangement_of_panels_is_used_only_at_the_size_it_was_stored_for() -> None:
     async with open_lab(LOGS) as (pilot, app):
         standard = app.panel_area.arrangement.boxes
         await pilot.press("f7", "i")

@@ -46,7 +46,7 @@ def test_each_preset_shows_its_core_panels_and_fills_the_screen(
 
 
 @in_each_size_and_preset
-def test_no_third_of_a_panel_is_empty(preset: Preset, size: tuple[int, int]) -> None:
+def test_no_preset_leaves_a_third_of_a_panel_empty(preset: Preset, size: tuple[int, int]) -> None:
     for panel, box in layout_of(preset, *size).boxes.items():
         if panel == "world":
             assert measure_mat(box) > 2 / 3 * (box.width - 2) * (box.height - 3)
@@ -73,7 +73,9 @@ def test_the_output_leaves_its_rows_to_the_code_when_debugging(size: tuple[int, 
 
 @pytest.mark.quick_cases("analyse")
 @pytest.mark.parametrize("preset, key", KEYS.items(), ids=KEYS)
-async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset, key: str) -> None:
+async def test_the_key_of_a_preset_shows_it_and_pressed_again_the_standard_layout(
+    preset: Preset, key: str
+) -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         standard = set(app.panel_area.arrangement.boxes)
         await pilot.press(key)
@@ -95,7 +97,7 @@ async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset
     ],
     ids=["80x24", "120x40"],
 )
-async def test_one_key_goes_round_the_presets_that_differ(
+async def test_f9_cycles_through_the_presets_that_differ_at_this_size(
     size: tuple[int, int], round_: list[str]
 ) -> None:
     async with open_lab(LOGS, size=size) as (pilot, app):

@@ -39,7 +39,9 @@ def test_code_stands_beside_chart_and_output() -> None:
 
 
 @pytest.mark.parametrize("panels", [BOARD[:4], (*BOARD, "lesson"), (*BOARD, "settings")], ids=str)
-def test_where_a_board_has_no_room_the_side_column_is_whole(panels: tuple[str, ...]) -> None:
+def test_panels_without_room_for_a_board_are_laid_out_with_a_side_column(
+    panels: tuple[str, ...],
+) -> None:
     assert build_board(panels, 100, 29) == build_wide(panels, 100, 29)
 
 
@@ -53,7 +55,7 @@ def test_a_lesson_keeps_its_column_beside_a_panel_that_it_asks_for(
     assert boxes[panel].x < boxes["lesson"].x
 
 
-def test_a_column_gives_each_panel_the_rows_in_which_it_is_read() -> None:
+def test_panels_in_one_column_get_their_fewest_readable_rows() -> None:
     panels = ("world", "instrumentation", "arrays", "output", "code", "chart")
     rows = count_tight_rows(panels, 65)
     node = build_below(panels, 65, sum(rows))

@@ -25,7 +25,7 @@ def test_joining_a_single_layout_node_gives_that_node() -> None:
     assert join_nodes(Axis.ROWS, ["chart"]) == "chart"
 
 
-def test_parts_side_by_side_get_shares_by_their_weights() -> None:
+def test_panels_side_by_side_get_widths_by_their_weights() -> None:
     node = join_nodes(Axis.COLUMNS, ["world", "chart"])
     assert isinstance(node, Split)
     world = PANELS["world"].weight
@@ -33,7 +33,7 @@ def test_parts_side_by_side_get_shares_by_their_weights() -> None:
     assert node.shares == pytest.approx((world / (world + chart), chart / (world + chart)))
 
 
-def test_what_a_node_needs_is_added_along_its_axis() -> None:
+def test_the_fewest_rows_and_columns_of_a_layout_are_added_along_its_axis() -> None:
     assert list_panels(ABOVE) == ("world", "chart", "output")
     assert (
         count_min_columns(ABOVE)
@@ -50,6 +50,6 @@ def test_the_fair_rows_of_a_column_count_the_worlds_ideal_rows_at_its_width() ->
     )
 
 
-def test_rows_go_to_the_world_first_and_then_to_what_is_wanted_most() -> None:
+def test_a_layout_ranks_the_world_first_and_then_the_panels_asked_for() -> None:
     layout = PanelLayout(wanted=("chart",))
     assert [layout.rank(node) for node in (ABOVE, "chart", "output")] == [-1, 0, 1]

@@ -53,7 +53,7 @@ async def shown(size: tuple[int, int], program: Program | None = None) -> tuple[
         "small": ((20, 6), True),
     },
 )
-async def test_both_discs_are_whole_with_what_the_program_gets(
+async def test_both_sensor_discs_are_whole_and_show_the_programs_values(
     size: tuple[int, int], across: bool
 ) -> None:
     (left, right), text = await shown(size)
@@ -64,7 +64,9 @@ async def test_both_discs_are_whole_with_what_the_program_gets(
 
 
 @pytest.mark.parametrize("size", [(40, 10), (44, 12), (60, 14), (66, 11), (20, 30)])
-async def test_the_means_of_the_rings_are_called_the_same_everywhere(size: tuple[int, int]) -> None:
+async def test_means_of_a_discs_rings_are_labelled_the_same_at_every_size(
+    size: tuple[int, int],
+) -> None:
     assert (await shown(size))[1].count("in→out") == 2
 
 
@@ -159,9 +161,7 @@ async def test_with_few_colours_the_surroundings_of_a_disc_are_plain_and_darker(
     assert corner.max() < disc.mean()
 
 
-async def test_the_same_pose_is_not_drawn_again_another_robot_is_and_without_a_mat_it_is_blank() -> (
-    None
-):
+async def test_discs_are_drawn_again_only_for_another_pose_or_robot() -> None:
     app = PanelApp(Arrays())
     one = replace(SPEC, robot=replace(SPEC.robot, color_sensors=SPEC.robot.color_sensors[:1]))
     async with app.run_test(size=(40, 11)) as pilot:
@@ -180,7 +180,7 @@ async def test_the_same_pose_is_not_drawn_again_another_robot_is_and_without_a_m
         assert view._cells.size == 0
 
 
-async def test_a_robot_without_colour_sensors_is_not_waited_for() -> None:
+async def test_the_panel_of_discs_says_so_if_the_robot_has_no_colour_sensor() -> None:
     app = PanelApp(Arrays())
     async with app.run_test(size=(40, 10)) as pilot:
         now = moment(POSE, field=FIELD)

@@ -91,7 +91,7 @@ async def test_the_keys_of_the_brick_fit_in_the_frame_of_a_narrow_panel(robot: s
         assert 0 < len(str(app.panel.border_subtitle)) <= 65 - FRAME_COLS
 
 
-async def test_keys_press_buttons_while_the_panel_has_the_focus() -> None:
+async def test_keys_press_the_bricks_buttons_while_its_panel_has_the_focus() -> None:
     async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K")
         await until(pilot, lambda: isinstance(app.focused, Brick))
@@ -119,7 +119,7 @@ async def test_keys_press_buttons_while_the_panel_has_the_focus() -> None:
 
 
 @pytest.mark.slow
-async def test_a_run_may_end_while_a_pressed_button_is_about_to_be_released() -> None:
+async def test_a_late_release_of_a_tapped_button_after_the_run_does_not_fail() -> None:
     async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K", "R")
         await until(pilot, lambda: "ready" in printed(app))
@@ -162,7 +162,7 @@ async def test_a_past_instant_shows_the_bricks_display_and_buttons_of_then() -> 
 
 
 @pytest.mark.slow
-async def test_plus_gives_the_panel_the_whole_desk_and_back() -> None:
+async def test_plus_makes_the_brick_panel_full_screen_and_small_again() -> None:
     async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K", "plus")
         await pilot.pause()
@@ -179,7 +179,7 @@ async def test_plus_gives_the_panel_the_whole_desk_and_back() -> None:
 
 
 @pytest.mark.slow
-async def test_buttons_are_of_now_and_a_branch_begins_with_none_held() -> None:
+async def test_a_branch_begins_with_no_button_held() -> None:
     async with open_lab(WATCHES, speed=4.0, panels_on=frozenset({"brick"})) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: "ready" in printed(app))

@@ -111,7 +111,7 @@ async def test_space_goes_on_with_a_paused_run_and_escape_leaves_the_chart() -> 
         assert not app.panel.has_focus
 
 
-async def test_a_chart_without_a_tick_names_the_keys_of_the_panel() -> None:
+async def test_a_chart_without_ticked_traces_names_the_keys_that_tick_them() -> None:
     async with open_chart() as (pilot, app):
         await opened(app, pilot)
         await pilot.press("enter")

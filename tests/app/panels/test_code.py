@@ -80,7 +80,7 @@ async def test_the_line_that_runs_stays_in_sight_when_the_panel_shrinks() -> Non
         )
 
 
-async def test_no_text_is_changed_by_being_shown() -> None:
+async def test_showing_a_program_in_the_code_panel_does_not_change_its_text() -> None:
     texts = "", "\n", "a\n\n", "x = '\x0c\u2028\x85'\n", "\x1b[31m", "漢字 = 1\n", "\ta\n"
     async with CodeApp().run_test(size=(40, 8)) as pilot:
         for text in texts:
@@ -143,7 +143,7 @@ async def test_values_stand_behind_the_lines_that_assign_them(width: int, rows: 
 
 
 @pytest.mark.parametrize("then", ["go on", "another instant", "another run"])
-async def test_values_of_another_instant_are_not_shown(then: str) -> None:
+async def test_values_beside_the_code_vanish_once_another_instant_is_shown(then: str) -> None:
     app = CodeApp()
     async with app.run_test(size=(70, 12)) as pilot:
         code, area = await alone(pilot, LOOP)

@@ -95,7 +95,9 @@ def test_a_robot_that_was_moved_after_its_run_is_not_called_finished() -> None:
         "neither": (24, False, False),
     },
 )
-def test_the_pose_goes_before_the_names_of_colours(width: int, names: bool, pose: bool) -> None:
+def test_where_room_is_short_the_pose_is_shown_before_names_of_colours(
+    width: int, names: bool, pose: bool
+) -> None:
     white = ColorReading(255, 255, 255)
 
     first = text(moment(colors={"left": white, "right": white}), width, 3)[0]
@@ -110,7 +112,7 @@ def test_a_narrow_panel_names_the_pen() -> None:
 @pytest.mark.parametrize(
     "now", [moment(), BARE, FURTHER, HELD], ids=["usual", "no sensors", "further parts", "drivers"]
 )
-def test_rows_fit_every_width_and_height(now: Snapshot) -> None:
+def test_readings_fit_every_width_and_height(now: Snapshot) -> None:
     for width, height in product((18, 20, 24, 26, 32, 40, 44, 80), (4, 6, 8, 9, 11, 13, 14, 30)):
         rows = text(now, width, height)
 
@@ -118,7 +120,7 @@ def test_rows_fit_every_width_and_height(now: Snapshot) -> None:
         assert max(map(len, rows)) <= width, (width, height)
 
 
-def test_extreme_values_fit_every_width() -> None:
+def test_extreme_readings_fit_every_width() -> None:
     for width, height in product((32, 40, 44), (6, 11, 20)):
         assert max(map(len, text(EXTREME, width, height))) <= width, (width, height)
 
@@ -134,7 +136,7 @@ def test_a_space_stands_between_each_label_and_its_value() -> None:
 
 
 @pytest.mark.parametrize("width, height", [(26, 6), (24, 11), (40, 13)], ids=str)
-def test_names_of_parts_are_not_cut(width: int, height: int) -> None:
+def test_names_of_motors_and_sensors_in_the_readings_are_not_cut(width: int, height: int) -> None:
     rows = "\n".join(text(moment(), width, height))
 
     for name in ("LeftMotor", "RightMotor", "Sensor1", "Sensor2", "Ultrasonic"):
@@ -185,7 +187,7 @@ def test_a_hub_shows_the_light_of_all_channels_which_its_program_reads_before_th
     assert words[1].startswith("Sensor1 mean 33 %")
 
 
-def test_values_stand_beside_their_names() -> None:
+def test_readings_stand_beside_the_names_of_their_parts() -> None:
     rows = [" ".join(row.split()) for row in text(moment(), 40, 11)]
 
     assert rows == [
@@ -291,7 +293,7 @@ async def test_readings_of_an_earlier_moment_are_wiped_from_the_panel() -> None:
         ]
 
 
-def test_further_motors_and_sensors_have_rows() -> None:
+def test_further_motors_and_sensors_have_rows_in_the_readings() -> None:
     rows = [" ".join(row.split()) for row in text(FURTHER, 40, 20)]
     assert [row for row in rows if row.startswith(("Motor", "Bumper", "Infrared", "Back"))] == [
         "Motor A tacho -2517 -312 °/s",

@@ -188,7 +188,9 @@ async def test_a_lessons_step_is_done_once_the_user_does_what_it_checks(
 
 
 @pytest.mark.slow
-async def test_panel_that_a_step_asks_for_is_not_open_already(tmp_path: Path) -> None:
+async def test_a_panel_that_a_lessons_step_asks_for_is_closed_when_the_step_begins(
+    tmp_path: Path,
+) -> None:
     async with open_lab(opened(tmp_path, "show = 'instrumentation'"), size=LARGE) as (pilot, app):
         await until(pilot, lambda: app.panel_area.is_shown("instrumentation"))
         app.lesson.skip_step()

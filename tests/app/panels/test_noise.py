@@ -22,7 +22,7 @@ def sliders(app: LabApp) -> list[int]:
     return [slider.value for slider in app.query(Slider)]
 
 
-async def test_a_slider_acts_on_the_readings_at_once() -> None:
+async def test_moving_a_noise_slider_changes_the_readings_at_once() -> None:
     async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
         assert app.run_controller.build_snapshot().colors["left"].green == 255
         app.query_one("#light", Slider).focus()
@@ -52,7 +52,7 @@ async def test_a_seed_is_for_the_next_run_and_a_wrong_one_is_refused_beside_it()
 
 
 @pytest.mark.slow
-async def test_digits_set_the_number_of_a_slider() -> None:
+async def test_typed_digits_set_the_number_of_a_noise_slider() -> None:
     async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
         app.panel_area.focus_opened("noise")
         await until(pilot, lambda: app.focused is app.query_one("#light"))
@@ -63,7 +63,7 @@ async def test_digits_set_the_number_of_a_slider() -> None:
 
 
 @pytest.mark.slow
-async def test_the_panel_shows_what_a_mat_or_a_program_leaves() -> None:
+async def test_the_noise_sliders_keep_their_values_when_the_mat_changes() -> None:
     async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
         app.query_one("#motor", Slider).focus()
         await pilot.press("right")

@@ -77,7 +77,7 @@ def test_an_endless_line_is_cut_and_says_so() -> None:
     assert "".join(split_row(row("y" * (MAX_LINE_CHARS + 7)), 80)).endswith("… (7 more characters)")
 
 
-async def test_the_newest_line_is_followed_until_scrolled_up() -> None:
+async def test_the_output_follows_the_newest_line_until_scrolled_up() -> None:
     async with Frame(Log()).run_test(size=(30, 5)) as pilot:
         log = pilot.app.query_one(Log)
         log.add([row(f"line {n}") for n in range(20)])

@@ -27,6 +27,6 @@ def test_a_drag_ends_at_the_edge_of_the_field_but_on_a_floor(
     assert grip.drag_pose(*to_mm) == Pose(*at_mm, 30.0)
 
 
-def test_a_drag_that_turns_leaves_the_place() -> None:
+def test_a_drag_that_turns_the_robot_does_not_move_it() -> None:
     grip = PoseGrip(START, 1100.0, 500.0, turns=True, on_floor=True)
     assert grip.drag_pose(1000.0, 900.0) == Pose(1000.0, 500.0, 120.0)

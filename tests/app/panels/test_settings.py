@@ -86,9 +86,7 @@ async def test_a_value_typed_into_the_robots_form_changes_the_next_run_at_once()
 
 
 @pytest.mark.slow
-async def test_values_are_checked_and_entered_also_where_a_field_is_left_or_a_choice_stepped_quickly() -> (
-    None
-):
+async def test_a_settings_value_is_checked_and_taken_also_when_its_field_is_left() -> None:
     async with open_settings() as (pilot, app):
         before = app.run_controller.next_run
         await enter(pilot, "wheel_diameter_mm", "999")
@@ -117,7 +115,7 @@ async def test_values_are_checked_and_entered_also_where_a_field_is_left_or_a_ch
 
 
 @pytest.mark.slow
-async def test_choices_are_stepped_through_with_the_arrows() -> None:
+async def test_arrow_keys_step_through_the_choices_of_the_settings_form() -> None:
     async with open_settings() as (pilot, app):
         await pilot.press("right")
         await until(pilot, lambda: app.run_controller.next_run.spec.robot.name == "Small_Robot")

@@ -21,11 +21,13 @@ BAR = BarTimes(tick=200, newest=1000, tick_hz=100, past=True, over=True)
     "width, past, now",
     [(80, " 2.00 of 10.00 s", "         10.00 s"), (50, " 2.00 s", "10.00 s")],
 )
-def test_the_words_are_as_wide_in_the_past_as_now(width: int, past: str, now: str) -> None:
+def test_the_times_beside_the_bar_take_the_same_width_in_past_and_present(
+    width: int, past: str, now: str
+) -> None:
     assert (format_times(BAR, width), format_times(replace(BAR, past=False), width)) == (past, now)
 
 
-def test_the_bar_has_cursor_and_marks() -> None:
+def test_the_time_bar_shows_the_cursor_and_marks_of_events() -> None:
     bar = replace(BAR, newest=400)
     marks = mark_cells(bar, [(0, Mark.SAMPLE), (399, Mark.ERROR), (400, Mark.SAMPLE)], 21)
     text = "".join(run for run, _ in build_bar(bar, marks, 21))
@@ -58,7 +60,7 @@ class ScrubApp(PanelApp[TimeBar]):
 
 
 @pytest.mark.parametrize("width", [25, 76, 152])
-async def test_the_mark_stays_under_the_mouse_that_drags_it(width: int) -> None:
+async def test_the_time_bars_cursor_stays_under_the_mouse_that_drags_it(width: int) -> None:
     app = ScrubApp(TimeBar())
     async with app.run_test(size=(width, 1)) as pilot:
         app.show(None)

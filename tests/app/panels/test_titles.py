@@ -30,16 +30,16 @@ def test_a_title_has_the_key_of_its_panel_and_shows_a_name_as_it_is() -> None:
         (30, ""),
     ],
 )
-def test_sensors_are_named_as_fully_as_there_is_room(width: int, words: str) -> None:
+def test_a_title_names_sensors_as_fully_as_there_is_room(width: int, words: str) -> None:
     assert name_sensors(moment(program=program("pass")), width) == words
 
 
-def test_a_program_without_predefined_names_has_none_for_a_sensor() -> None:
+def test_a_title_names_no_predefined_sensor_name_if_the_program_has_none() -> None:
     plain = replace(program("pass"), prelude="none")
     assert name_sensors(moment(program=plain), 80) == "Sensor1 · left · in2 │ Sensor2 · right · in3"
 
 
-def test_noise_and_seed_are_named_where_there_are_any() -> None:
+def test_a_title_names_noise_seed_and_drift_only_where_there_are_any() -> None:
     assert name_setup(moment(), 60) == "Default_Robot"
     assert name_setup(moment(), 20) == ""
     drifting = put(SPEC, "world.drift.gyro_dps", 1.0)

@@ -128,7 +128,9 @@ async def test_the_world_is_not_painted_again_while_nothing_in_it_has_changed(
         assert len(painted) == 1
 
 
-async def test_only_cells_about_the_robot_are_repainted(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_moving_the_robot_repaints_only_the_cells_around_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     async with open_world() as (_, app):
         regions: list[Region] = []
         monkeypatch.setattr(
@@ -165,7 +167,7 @@ async def test_the_trace_survives_another_mat_and_can_be_cleared() -> None:
         assert view(app.panel)._cells[row, col] == plain
 
 
-async def test_where_the_robot_is_now_is_a_ghost_in_the_past() -> None:
+async def test_while_looking_at_the_past_a_ghost_shows_where_the_robot_is_now() -> None:
     async with open_world() as (_, app):
         before = view(app.panel)._cells.copy()
 

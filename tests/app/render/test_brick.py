@@ -45,7 +45,7 @@ def test_the_drawn_brick_is_no_wider_or_higher_than_its_panel(width: int, height
         assert max(map(len, lines)) <= max(width, 27)
 
 
-def test_half_blocks_show_every_pixel_where_there_is_room() -> None:
+def test_the_bricks_display_shows_every_pixel_where_there_is_room() -> None:
     lines = draw_brick(
         BrickState(picture=picture((slice(10, 11), slice(20, 30)))), (), 178, 70
     ).lines
@@ -65,7 +65,7 @@ def test_a_small_display_keeps_every_thin_line(width: int, height: int) -> None:
     assert all(dots(everything, slice(column, column + 1)) for column in range(DISPLAY_WIDTH))
 
 
-def test_a_smaller_screen_shows_the_mean_of_its_pixels() -> None:
+def test_a_display_drawn_smaller_shows_the_mean_of_its_pixels() -> None:
     ink = np.zeros((4, 4), np.uint8)
     ink[:2, :2] = 1
     ink[3, 3] = 1

@@ -55,7 +55,7 @@ def test_why_a_condition_holds_is_told_whole() -> None:
 
 
 @pytest.mark.parametrize("changed", ["left", "right"])
-def test_variables_keep_their_places_and_constants_and_functions_are_the_last(changed: str) -> None:
+def test_the_debug_panel_lists_variables_in_order_and_constants_last(changed: str) -> None:
     kinds = {"sleep": "builtin_function_or_method", "SPEED": "int", "left": "int", "right": "int"}
     variables = tuple(Variable(name, kind, "1", name == changed) for name, kind in kinds.items())
     looked = Inspected(
@@ -76,7 +76,9 @@ def test_variables_keep_their_places_and_constants_and_functions_are_the_last(ch
     ],
     ids=["narrow", "enough", "narrow past", "wide past"],
 )
-def test_the_tick_is_told_whole_or_not_at_all(width: int, past: bool, head: str) -> None:
+def test_the_debug_panel_shows_the_tick_number_whole_or_not_at_all(
+    width: int, past: bool, head: str
+) -> None:
     looked = Inspected(
         469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ()
     )

@@ -95,7 +95,7 @@ def test_a_goal_is_listed_with_its_state_and_its_details_below(name: str) -> Non
     assert lines[4:] == detail
 
 
-def test_rows_of_the_list_stay_where_they_are_whatever_the_goals_come_to() -> None:
+def test_rows_of_the_list_of_goals_do_not_move_when_goals_are_met_or_missed() -> None:
     goals = (MET.goal, MISSED.goal, replace(OPEN.goal, name="a name that is longer than one line"))
     view = GoalsView("A task", goals, (MET, MISSED, OPEN))
     after = draw_goals(view, view.states(None), 1, 0, 24, 13)

@@ -15,7 +15,7 @@ def read_texts(width: int, height: int, *, has_matrix: bool = True) -> list[str]
     return ["".join(text for text, _ in line).rstrip() for line in picture.lines]
 
 
-def test_lit_pixels_are_told_from_dark_ones_without_colours() -> None:
+def test_a_hubs_lit_pixels_differ_from_dark_ones_also_without_colours() -> None:
     texts = read_texts(40, 12)
     assert [text.split() for text in texts[:5]] == [
         ["■", *"····"],
@@ -27,7 +27,7 @@ def test_lit_pixels_are_told_from_dark_ones_without_colours() -> None:
 
 
 @pytest.mark.parametrize(("height", "rows"), [(1, 1), (3, 3), (6, 6)])
-def test_the_buttons_stay_where_room_is_short(height: int, rows: int) -> None:
+def test_a_drawn_hub_keeps_its_buttons_where_room_is_short(height: int, rows: int) -> None:
     texts = read_texts(30, height)
     assert len(texts) == rows
     assert any("●" in text for text in texts)
@@ -38,7 +38,7 @@ def test_a_hub_without_a_matrix_has_one_button() -> None:
     assert [box.name for box in picture.buttons] == ["enter"]
 
 
-def test_a_click_finds_each_button() -> None:
+def test_a_drawn_hubs_buttons_have_their_clickable_places() -> None:
     picture = draw_hub(FACE, (), 30, 10)
     assert [box.name for box in picture.buttons] == ["left", "enter", "right", "up"]
     assert {box.row for box in picture.buttons} == {5}
@@ -58,6 +58,6 @@ def test_the_keys_of_a_remote_control_cannot_be_clicked(width: int, rows: int) -
     assert len(draw_hub(connected, (), width, 6).lines) <= 6
 
 
-def test_the_light_on_a_port_is_shown_with_its_brightness() -> None:
+def test_a_light_on_a_hubs_port_is_shown_with_its_brightness() -> None:
     picture = draw_hub(BrickState(leds={"light B": 204}), (), 30, 10, has_matrix=False)
     assert "".join(text for text, _ in picture.lines[1]).strip() == "B light 80 %"

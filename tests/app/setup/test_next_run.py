@@ -101,7 +101,7 @@ def test_choosing_a_preset_robot_and_the_default_again_restores_the_run(name: st
     assert plans.change_robot(plan, "Default_Robot").spec == build_plan(Settings()).spec
 
 
-def test_a_mat_brings_its_own_obstacles_start_and_fit() -> None:
+def test_changing_the_mat_sets_its_obstacles_start_and_fit() -> None:
     plan = plans.change_obstacles(build_plan(Settings({"background_fit": "fit"})), BOX)
     plan = plans.move_start(plan, Pose(7, 8, 9))
     assert plans.change_mat(plan, "Obstacles_Test").spec == build_run_spec(
@@ -109,7 +109,7 @@ def test_a_mat_brings_its_own_obstacles_start_and_fit() -> None:
     )
 
 
-def test_a_profile_decides_again_what_is_solid() -> None:
+def test_changing_the_profile_resets_whether_walls_are_solid() -> None:
     plan = plans.change_values(build_plan(Settings()), {"solid": True})
     assert plans.change_profile(plan, "nbev3devsim").spec.world.solid is False
     assert plans.change_profile(plan, "ev3").spec.world.solid is True
@@ -133,7 +133,7 @@ def test_a_quick_change_of_the_next_run_equals_building_it_from_its_settings(
     assert plan.spec == build_run_spec(plan.settings)
 
 
-def test_a_robot_file_says_its_motor_noise_until_the_user_does(tmp_path: Path) -> None:
+def test_a_robot_files_motor_noise_applies_until_the_user_sets_another(tmp_path: Path) -> None:
     (tmp_path / "old.json").write_text('{"wheelNoise": 12}')
     plan = plans.change_robot(build_plan(Settings()), str(tmp_path / "old.json"))
     assert plan.spec.world.noise.motor == 12
@@ -151,7 +151,7 @@ def test_changing_the_mat_does_not_read_the_robots_file_again(tmp_path: Path) ->
     assert plans.change_mat(plan, "Loop").spec.robot.wheel_diameter_mm == 77
 
 
-def test_a_saved_robot_is_not_as_the_mat_has_changed_it(tmp_path: Path) -> None:
+def test_a_robot_is_saved_without_the_changes_that_the_mat_made(tmp_path: Path) -> None:
     plan = plans.change_mat(build_plan(Settings({"pen.color": "teal"})), "Radial_grey")
     save_robot(plans.build_saved_robot(plan), tmp_path / "mine.toml")
     saved = load_robot(str(tmp_path / "mine.toml"))
