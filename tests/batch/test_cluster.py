@@ -105,7 +105,7 @@ def test_a_cluster_gives_the_same_results_as_one_process(department: Department)
     assert by_index(list(run_on_cluster(tasks, department.address))) == expected
 
 
-def test_a_worker_that_is_killed_loses_nothing(department: Department) -> None:
+def test_a_killed_worker_of_a_cluster_loses_no_result(department: Department) -> None:
     department.add(2)
     tasks = [task(LOGS, index) for index in range(40)]
     expected = by_index(list(run_many(tasks, 1)))

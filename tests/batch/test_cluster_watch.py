@@ -100,7 +100,7 @@ def test_a_cluster_that_cannot_work_is_told_within_ten_seconds(
     assert (str(told.value), cluster.now < 10) == (message, True)
 
 
-def test_a_worker_may_come_late_and_a_connection_may_break_for_a_moment() -> None:
+def test_a_late_worker_or_a_short_loss_of_connection_does_not_end_a_batch() -> None:
     cluster = Cluster({}, {}, {"a": __version__}, "lost", "lost", {"a": __version__})
     watch = cluster.watch()
     watch.wait_for_workers()
@@ -111,7 +111,7 @@ def test_a_worker_may_come_late_and_a_connection_may_break_for_a_moment() -> Non
     assert cluster.asked == [["a"]]
 
 
-def test_workers_that_do_not_answer_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cluster_whose_workers_do_not_answer_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     def hangs(_seconds: float, call: Callable[..., Any], *words: Any, **named: Any) -> Any:
         if words:
             raise TimeoutError

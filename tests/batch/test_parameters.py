@@ -98,7 +98,7 @@ def test_wrong_seeds_are_explained(text: str, words: str) -> None:
         parse_seeds(text)
 
 
-def test_the_last_parameter_varies_fastest() -> None:
+def test_the_last_parameter_of_a_grid_varies_fastest() -> None:
     grid = build_grid({"a": (1, 2), "b": ("x", "y", "z"), "seed": (0, 1)})
     assert (len(grid), grid.names) == (12, ("a", "b", "seed"))
     assert [tuple(point.values()) for point in grid][:4] == [
@@ -120,7 +120,7 @@ def test_random_parameter_values_lie_in_their_range_and_repeat_by_seed() -> None
     )
 
 
-def test_whole_random_numbers_include_both_ends() -> None:
+def test_random_whole_numbers_of_a_parameter_include_both_ends() -> None:
     assert set(SampleValues(RandomDraw.RANDOM, 0, 5, 300).values("a", whole=True)) == {
         0,
         1,

@@ -69,7 +69,7 @@ def test_a_program_runs_in_the_folder_and_with_the_modules_of_the_user(
     )
 
 
-def test_tasks_that_are_done_are_left_out() -> None:
+def test_a_plan_leaves_out_tasks_that_are_done() -> None:
     assert [task.index for task in plan({"seed": (1, 2, 3, 4)}).iterate_tasks({0, 2})] == [1, 3]
 
 
@@ -85,7 +85,9 @@ def test_arguments_of_the_program_are_a_parameter() -> None:
         "real": ("robot.wheel_diameter_mm", False),
     },
 )
-def test_samples_are_whole_where_the_key_takes_whole_numbers(name: str, whole: bool) -> None:
+def test_random_values_are_whole_where_the_setting_takes_whole_numbers(
+    name: str, whole: bool
+) -> None:
     values = [
         task.parameters[name]
         for task in plan({name: SampleValues(RandomDraw.RANDOM, 50, 60, 4)}).iterate_tasks()

@@ -47,7 +47,7 @@ def run_until(until: str, seed: int, monkeypatch: pytest.MonkeyPatch) -> tuple[S
 
 
 @pytest.mark.parametrize("until", ["x_mm ± 1", "twice_mm +- 2"])
-def test_the_order_of_results_does_not_decide_what_runs(
+def test_which_seeds_run_until_a_precision_does_not_depend_on_result_order(
     until: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     done = [run_until(until, seed, monkeypatch) for seed in range(3)]
@@ -71,7 +71,7 @@ def test_the_margin_of_a_value_that_no_run_has_stays_infinite(
 
 
 @pytest.mark.parametrize("count, quantile", [(10, 2.2622), (30, 2.0452), (1000, 1.9623)])
-def test_a_margin_is_that_of_students_t(count: int, quantile: float) -> None:
+def test_the_margin_of_a_mean_follows_students_t_distribution(count: int, quantile: float) -> None:
     values = [0.0, 2.0] * (count // 2)
     std = (count / (count - 1)) ** 0.5
     assert compute_margin(values) == pytest.approx(quantile * std / count**0.5, rel=1e-3)

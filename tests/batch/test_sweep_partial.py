@@ -31,7 +31,7 @@ def test_without_a_file_of_partial_rows_no_run_counts_as_done(tmp_path: Path) ->
     assert table(tmp_path).rows() == {}
 
 
-def test_the_torn_line_of_a_killed_process_is_left_out(tmp_path: Path) -> None:
+def test_a_cut_off_last_row_of_a_partial_table_is_left_out(tmp_path: Path) -> None:
     table(tmp_path).open(ROWS).close()
     path = find_partial(tmp_path / "out.csv")
     path.write_bytes(path.read_bytes()[:-5])
@@ -41,13 +41,13 @@ def test_the_torn_line_of_a_killed_process_is_left_out(tmp_path: Path) -> None:
     assert list(table(tmp_path).rows()) == [0]
 
 
-def test_the_rows_of_another_batch_are_refused(tmp_path: Path) -> None:
+def test_a_partial_table_of_another_batch_is_refused(tmp_path: Path) -> None:
     table(tmp_path).open(ROWS).close()
     with pytest.raises(ConfigError, match=r"out.csv.part: is of another batch"):
         table(tmp_path, "b").rows()
 
 
-def test_a_file_that_is_not_needed_any_more_is_removed(tmp_path: Path) -> None:
+def test_the_partial_table_is_removed_when_the_batch_is_done(tmp_path: Path) -> None:
     table(tmp_path).open(ROWS).remove()
     assert list(tmp_path.iterdir()) == []
 

@@ -24,7 +24,7 @@ NOISES = plan({"noise.motor": (0, 20), "seed": (1, 2, 13)})
 ROWS = [build_row(result_of(task), "", task.spec.seed) for task in NOISES.iterate_tasks()]
 
 
-def test_there_is_one_row_for_each_run_whatever_the_order() -> None:
+def test_a_batch_table_has_one_row_for_each_run_sorted_by_number() -> None:
     frame = build_frame(reversed(ROWS))
     assert frame["run"].tolist() == [1, 2, 3, 4, 5, 6]
     assert list(frame.columns) == [
@@ -58,7 +58,7 @@ def test_a_column_has_the_narrowest_type_and_nan_where_nothing_was_printed() -> 
     assert frame["Colour_last"].isna().tolist() == [False, False, True] * 2
 
 
-def test_what_runs_waited_for_is_a_column_if_one_waited() -> None:
+def test_a_batch_table_has_a_column_waited_for_only_if_a_run_waited() -> None:
     rows = [{"run": 1, "waited_for": ""}, {"run": 2, "waited_for": "a press"}]
     assert build_frame(rows)["waited_for"].tolist() == ["", "a press"]
     assert "waited_for" not in build_frame(rows[:1])
@@ -92,7 +92,7 @@ def test_an_expression_is_evaluated_in_each_row(text: str, expected: list[float]
     assert found == pytest.approx(expected, nan_ok=True)
 
 
-def test_a_later_expression_uses_an_earlier_one() -> None:
+def test_an_expression_of_a_batch_can_use_an_earlier_one() -> None:
     frame = build_frame(ROWS, {"one": "seed + 1", "two": "one * 2"})
     assert frame["two"].tolist() == [4, 6, 28] * 2
 
@@ -115,7 +115,7 @@ def test_wrong_expressions_are_found_before_anything_is_run(
         check_expressions({name: text}, ["noise.motor", "seed"], [])
 
 
-def test_right_expressions_are_accepted() -> None:
+def test_expressions_over_parameters_goals_and_samples_are_accepted() -> None:
     check_expressions(
         {"a": "noise.motor + Colour_last", "b": "a + `goal_reach end`"},
         ["noise.motor"],
@@ -136,7 +136,7 @@ def test_a_summary_has_one_line_for_each_combination_of_parameters() -> None:
     ]
 
 
-def test_a_summary_of_many_combinations_is_about_all_runs() -> None:
+def test_a_summary_of_many_combinations_has_one_line_for_all_runs() -> None:
     rows: list[dict[str, Any]] = [
         {"run": run, "noise.motor": run, "x_mm": 1.0} for run in range(50)
     ]

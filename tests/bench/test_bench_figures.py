@@ -54,7 +54,7 @@ def test_a_figure_or_its_ratio_is_compared_with_the_goal(
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, inf])
-def test_a_figure_that_is_not_possible_is_an_error(value: float) -> None:
+def test_an_impossible_figure_such_as_nan_is_an_error(value: float) -> None:
     with pytest.raises(MeasuringError):
         Figure("thing", value, "ms", most=1.0)
     with pytest.raises(MeasuringError):

@@ -83,7 +83,7 @@ def assert_each_worse(
 
 
 @pytest.mark.parametrize(("bench", "turns"), [("speed", 150), ("first-line", 500)])
-def test_slow_runs_are_seen(bench: str, turns: int) -> None:
+def test_benches_of_runs_show_a_slow_down_planted_in_them(bench: str, turns: int) -> None:
     assert_each_worse(bench, in_runs(SLOW.format(turns=turns)))
 
 

@@ -51,16 +51,16 @@ def test_cheap_work_is_measured_until_it_has_used_enough() -> None:
 
 
 @pytest.mark.parametrize("effort", [QUICK, THOROUGH])
-def test_each_figure_takes_two_seconds_of_cpu(effort: Effort) -> None:
+def test_each_bench_figure_is_measured_for_two_seconds_of_cpu(effort: Effort) -> None:
     assert sum(Machine(0.01, iter([1.0] * 1000)).samples(effort).values) >= 2.0
 
 
-def test_the_ratio_does_not_depend_on_the_machine() -> None:
+def test_a_bench_ratio_does_not_depend_on_the_machines_speed() -> None:
     assert Machine(1.0, iter([1.0, 0.3, 4.0, 0.5, 0.1, 1.0])).samples().ratio == pytest.approx(2.0)
 
 
 @pytest.mark.parametrize("slowdown", [2.0, 10.0])
-def test_a_slow_down_makes_value_and_ratio_worse(slowdown: float) -> None:
+def test_a_slower_bench_has_a_worse_value_and_ratio(slowdown: float) -> None:
     before, after = (Machine(takes_s, iter([1.0] * 10)).samples() for takes_s in (1.0, slowdown))
     assert after.value / before.value == after.ratio / before.ratio == pytest.approx(slowdown)
 

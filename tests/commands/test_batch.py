@@ -32,7 +32,7 @@ def interrupt_after(count: int) -> Callable[..., Iterator[Result]]:
     return run
 
 
-def test_rows_are_in_the_order_of_the_parameters(batch: Batch) -> None:
+def test_rows_of_a_batch_are_in_the_order_of_its_parameters(batch: Batch) -> None:
     assert batch("mine.py", "--set", "noise.motor=0,20", "--seeds", "1,2", "--out", "rows.csv") == 0
     frame = pd.read_csv("rows.csv")
     assert frame[["run", "noise.motor", "seed", "x_mm"]].to_numpy().tolist() == [
@@ -64,7 +64,7 @@ def test_the_summary_names_ends_and_quantiles(
     assert first.split() == ["far_mm", "101", "0", *["101"] * 7]
 
 
-def test_rows_are_printed_as_json(batch: Batch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_batch_prints_its_rows_as_json(batch: Batch, capsys: pytest.CaptureFixture[str]) -> None:
     assert batch("mine.py", "--seeds", "13,14", "--json") == 1
     rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert [(row["run"], row["end"], row["Colour_last"]) for row in rows] == [
@@ -86,7 +86,7 @@ GOALS = 'program = "mine.py"\n[[goal]]\nname = "end"\nsay = "End."\npoints = 2\n
 @pytest.mark.parametrize(
     "words", [("goals.toml",), ("mine.py", "--goals", "goals.toml"), ("--goals", "goals.toml")]
 )
-def test_goals_are_judged_in_their_world(
+def test_a_batch_with_goals_runs_in_the_world_of_the_goals(
     words: tuple[str, ...],
     batch: Batch,
     monkeypatch: pytest.MonkeyPatch,
@@ -115,7 +115,9 @@ def test_goals_are_judged_in_their_world(
     assert "end: met in 2 of 3 (67 %)" in capsys.readouterr().out
 
 
-def test_several_programs_are_compared(batch: Batch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_batch_of_several_programs_summarizes_each(
+    batch: Batch, capsys: pytest.CaptureFixture[str]
+) -> None:
     Path("other.py").write_text(PROGRAM)
     assert batch("mine.py", "other.py", "--seeds", "0..1", "--out", "rows.csv") == 0
     assert pd.read_csv("rows.csv")["program"].tolist() == ["mine.py"] * 2 + ["other.py"] * 2
@@ -157,7 +159,7 @@ def test_a_resumed_batch_runs_the_rest_and_gives_the_same_bytes(
     assert list(Path().glob("*.part")) == []
 
 
-def test_a_complete_batch_keeps_a_column_that_is_empty(batch: Batch) -> None:
+def test_resuming_a_complete_batch_leaves_its_table_unchanged(batch: Batch) -> None:
     assert batch("mine.py", "--seeds", "0..1", "--out", "rows.csv") == 0
     whole = Path("rows.csv").read_bytes()
     assert batch("mine.py", "--seeds", "0..1", "--out", "rows.csv", "--resume") == 0
@@ -209,7 +211,7 @@ def test_the_rows_of_an_interrupted_batch_are_not_lost(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("profile", ["robolab", "nbev3devsim", "ev3"])
-def test_a_row_equals_the_run_of_its_own(
+def test_a_row_of_a_batch_equals_a_single_run_with_its_settings(
     profile: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, home: Path
 ) -> None:
     monkeypatch.chdir(tmp_path)

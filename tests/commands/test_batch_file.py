@@ -65,7 +65,7 @@ def test_every_key_of_a_batch_file_is_read(write: Any, tmp_path: Path) -> None:
     assert found.world is not None and found.world.settings["background"] == "Loop"
 
 
-def test_a_world_file_may_be_named(write: Any, tmp_path: Path) -> None:
+def test_a_batch_file_may_name_a_world_file(write: Any, tmp_path: Path) -> None:
     (tmp_path / "lab.toml").write_text('background = "Square"')
     found = load_batch(write('[batch]\nworld = "lab.toml"\nseeds = [1, 5]'))
     assert found.world is not None and found.world.settings["background"] == "Square"
@@ -76,7 +76,9 @@ def test_a_world_file_may_be_named(write: Any, tmp_path: Path) -> None:
     "text, expected",
     [("[batch]", True), ('background = "Loop"', False), ("[[goal]]", False), ("not toml", False)],
 )
-def test_a_batch_file_has_a_table_batch(write: Any, text: str, expected: bool) -> None:
+def test_a_toml_file_is_a_batch_file_only_with_a_table_batch(
+    write: Any, text: str, expected: bool
+) -> None:
     assert is_batch_file(str(write(text))) is expected
 
 
@@ -112,7 +114,7 @@ def test_faulty_batch_files_are_explained(write: Any, text: str, words: str) -> 
         load_batch(write(text))
 
 
-def test_a_batch_file_is_no_world(write: Any) -> None:
+def test_opening_a_batch_file_as_a_world_is_refused(write: Any) -> None:
     with pytest.raises(
         ConfigError, match=r"spec.toml: is a batch file, not a world \(start it with: tuisim batch "
     ):

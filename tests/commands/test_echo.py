@@ -62,7 +62,7 @@ def show(monkeypatch: pytest.MonkeyPatch) -> Show:
 
 
 @pytest.mark.parametrize("write", [echo_error, echo_wrapped])
-def test_a_long_line_is_broken_between_words_in_a_terminal(
+def test_a_long_message_is_broken_between_words_in_a_terminal(
     show: Show, monkeypatch: pytest.MonkeyPatch, write: Callable[[str], None]
 ) -> None:
     monkeypatch.setenv("COLUMNS", "20")
@@ -101,7 +101,7 @@ def test_a_progress_bar_makes_room_for_printed_lines(
     assert terminal.getvalue().endswith("\x1b[2K")
 
 
-def test_stdout_that_goes_elsewhere_does_not_hide_the_bar(show: Show) -> None:
+def test_printing_to_a_redirected_stdout_does_not_hide_the_progress_bar(show: Show) -> None:
     terminal = show()
     with Progress("working"):
         terminal.until("working")
@@ -176,9 +176,7 @@ def test_long_work_writes_a_line_a_minute_where_there_is_no_bar(
     assert set(clock.waited_s) == {60.0}
 
 
-def test_short_work_ends_at_once_without_a_line(
-    show: Show, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_short_work_prints_no_line_of_progress(show: Show, monkeypatch: pytest.MonkeyPatch) -> None:
     file = show()
     NOBODY["a pipe"](monkeypatch, file)
     with Progress("marking", in_lines=True):
@@ -231,7 +229,7 @@ COMMANDS = (
 
 
 @pytest.mark.slow
-def test_commands_tell_how_far_they_are(
+def test_long_commands_show_their_progress(
     home: object, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "p.py").write_text(
@@ -260,7 +258,7 @@ def test_commands_tell_how_far_they_are(
 
 
 @pytest.mark.slow
-def test_rich_is_not_loaded_for_what_is_quick() -> None:
+def test_quick_commands_do_not_import_rich() -> None:
     check = "import sys, tuisim.commands.run, tuisim.commands.runs, tuisim.commands.log; print('rich' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", check], capture_output=True, text=True, check=True)
     assert done.stdout == "False\n"

@@ -81,17 +81,17 @@ def test_no_word_of_a_narrow_table_is_broken(name: str) -> None:
     assert sorted(shown) == sorted(words)
 
 
-def test_dates_stay_whole_where_a_name_is_too_long() -> None:
+def test_a_table_cuts_a_long_name_and_keeps_dates_whole() -> None:
     assert draw_table(*LONG_NAME).splitlines()[1].endswith("x… 2026-11-23 16:35:43")
 
 
-def test_a_pipe_gets_every_table_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_table_written_to_a_pipe_is_not_narrowed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdout.isatty", lambda: False)
     assert draw_table(*BANDS).splitlines()[0].split("  ")[0] == "VARIABLE"
     assert len(draw_table(*WORDS).splitlines()) == 2
 
 
-def test_columns_whose_rows_are_alike_give_way_in_a_terminal_that_is_still_too_narrow(
+def test_a_table_too_wide_for_the_terminal_drops_columns_of_equal_values(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     heads, rows = BANDS

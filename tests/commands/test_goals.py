@@ -149,7 +149,7 @@ OWN_MATS = {
 
 
 @cases("mat", OWN_MATS)
-def test_a_run_on_the_own_mat_of_its_task_is_not_noted(
+def test_goals_check_has_no_note_on_a_run_on_its_tasks_own_mat(
     mat: str, task: Path, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -163,7 +163,7 @@ def test_a_run_on_the_own_mat_of_its_task_is_not_noted(
         assert here("goals", "check", named).stderr == ""
 
 
-def test_a_run_from_a_start_of_its_magic_line_is_noted(
+def test_goals_check_notes_a_run_that_started_elsewhere_than_its_task(
     task: Path, here: Command, tmp_path: Path
 ) -> None:
     task.write_text(f"background = 'Empty_Map'\n{GOALS}")
@@ -173,7 +173,9 @@ def test_a_run_from_a_start_of_its_magic_line_is_noted(
     assert here("goals", "check", task).stderr == noted
 
 
-def test_run_of_another_world_and_by_hand_is_noted(task: Path, here: Command) -> None:
+def test_goals_check_notes_a_run_in_another_world_or_changed_by_hand(
+    task: Path, here: Command
+) -> None:
     task.write_text(
         f"background = 'Loop'\n{GOALS}[start]\nx_mm = 200\n".replace("[start]", "[start]", 1)
     )
@@ -202,7 +204,9 @@ def test_goals_check_notes_telemetry_that_is_cut_off_or_damaged(task: Path, here
 
 
 @pytest.mark.parametrize("lines", [0, 40], ids=["nothing printed", "printed"])
-def test_a_run_without_telemetry_is_not_judged(lines: int, task: Path, here: Command) -> None:
+def test_goals_check_misses_goals_about_the_robot_without_telemetry(
+    lines: int, task: Path, here: Command
+) -> None:
     run = record()
     for _ in range(lines):
         run.recorder.print("more", 6)
@@ -229,7 +233,9 @@ def test_goals_check_names_the_syntax_error_for_each_goal_about_the_program(
     assert done.stdout.count("The program does not compile: expected ':' (line 1).") == 4
 
 
-def test_rows_of_a_flood_are_limited(task: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_goals_judge_only_a_limited_number_of_printed_rows(
+    task: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("tuisim.tasks.goals.evidence.MAX_ROWS", 5)
     run = Run(RunStore(), world(), "")
     run.do([says("x")] * 9 + [says("done")])
@@ -244,7 +250,7 @@ def test_goals_of_the_examples_are_found_by_name(here: Command, home: Path) -> N
         assert here("goals", "check", f"{name}_goals.toml").returncode == 1
 
 
-def test_a_drawn_mat_is_a_world_of_a_task(task: Path, here: Command) -> None:
+def test_the_lines_printed_by_goals_mat_can_be_used_in_a_task(task: Path, here: Command) -> None:
     done = here("goals", "mat", "bands", "--seed", "7")
     assert (done.returncode, done.stderr) == (0, "")
     task.write_text(GOALS + done.stdout)
@@ -271,7 +277,7 @@ def test_goals_mat_refuses_wrong_words_in_one_line(case: str, here: Command) -> 
     assert done.stderr.startswith("tuisim: " + said)
 
 
-def test_saving_a_world_keeps_its_goals(task: Path) -> None:
+def test_saving_a_world_into_a_goal_file_keeps_the_goals(task: Path) -> None:
     (task.parent / "base.toml").write_text("seed = 3\nbackground = 'Loop'\n")
     task.write_text(f"world = 'base.toml'\n{GOALS}")
     spec = build_run_spec(merge_settings(load_world(task).settings))

@@ -254,7 +254,7 @@ def test_a_lessons_program_for_a_library_runs_by_the_rules_of_that_library(
     assert (opened.spec.profile.name, opened.spec.world.start.x_mm) == ("lego-micropython", 1219)
 
 
-def test_a_lesson_without_a_wrong_way_is_a_warning(here: Command, tmp_path: Path) -> None:
+def test_learn_check_warns_of_a_step_that_tries_no_wrong_way(here: Command, tmp_path: Path) -> None:
     (tmp_path / "mine.md").write_text(
         "\n".join(line for line in SKELETON.split("\n") if not line.startswith("excludes"))
     )

@@ -46,7 +46,7 @@ def test_bands_under_noise_keep_their_names_and_order(here: Command) -> None:
         assert band["true_level"] == pytest.approx(band["grey_percent"], abs=2.0)
 
 
-def test_a_heading_means_one_level_in_shell_report_analyser_and_chart(
+def test_a_bands_level_and_true_level_are_the_same_in_shell_report_and_app(
     here: Command, tmp_path: Path
 ) -> None:
     here("run", "log_greys", "-N", "20")
@@ -75,7 +75,9 @@ def test_a_heading_means_one_level_in_shell_report_analyser_and_chart(
     assert build_spans(model.bands())[0].texts[0] == f"{first['level']:.4g} {first['grey']}"
 
 
-def test_without_noise_no_true_level_stands_beside_the_level(here: Command, tmp_path: Path) -> None:
+def test_log_bands_has_no_column_true_level_without_known_noise(
+    here: Command, tmp_path: Path
+) -> None:
     (tmp_path / "own.csv").write_text(
         "time,Colour\n" + "".join(f"{row / 10},{50 + row % 2}\n" for row in range(20))
     )
@@ -167,10 +169,10 @@ def test_help_lists_every_subcommand(capsys: pytest.CaptureFixture[str]) -> None
 
 
 @cases("entry", SUBCOMMANDS)
-def test_a_subcommand_is_there_and_its_options_are_declared(entry: Subcommand) -> None:
+def test_each_subcommand_of_log_is_documented_and_has_declared_options(entry: Subcommand) -> None:
     assert (entry.load().__doc__ or "").strip()
     assert set(entry.options) <= set(OPTIONS)
 
 
-def test_no_option_is_declared_for_nothing() -> None:
+def test_each_declared_option_of_log_is_used_by_a_subcommand() -> None:
     assert {option for entry in SUBCOMMANDS.values() for option in entry.options} == set(OPTIONS)

@@ -92,7 +92,7 @@ def test_exports_read_back_to_the_last_bit(kept: dict[str, Kept], table: str, su
 
 
 @each_table
-def test_runs_come_back_from_the_log(
+def test_runs_exported_as_a_log_are_read_back_the_same(
     here: Command, tmp_path: Path, kept: dict[str, Kept], table: str
 ) -> None:
     assert here("log", "export", *kept[table].runs, "--out", "x.csv").returncode == 0
@@ -112,7 +112,7 @@ def test_a_log_exported_to_one_format_can_be_exported_to_every_other(
         kept[table].check(target)
 
 
-def test_a_file_that_lost_its_companion_keeps_its_types(
+def test_a_csv_export_without_its_companion_file_keeps_its_types(
     here: Command, tmp_path: Path, kept: dict[str, Kept]
 ) -> None:
     alone = tmp_path / "alone.csv"
@@ -124,7 +124,9 @@ def test_a_file_that_lost_its_companion_keeps_its_types(
     )
 
 
-def test_what_other_programs_call_index_or_line_stays(here: Command, tmp_path: Path) -> None:
+def test_columns_index_and_line_of_other_programs_logs_stay_as_they_are(
+    here: Command, tmp_path: Path
+) -> None:
     (tmp_path / "other.csv").write_text("time,index,line,a\n0,first,0.5,1\n1,second,,2\n")
     assert here("log", "export", "other.csv", "--out", "x.parquet").returncode == 0
     frame = read_log(tmp_path / "x.parquet")

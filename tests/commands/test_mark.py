@@ -202,7 +202,9 @@ def test_a_class_is_marked_as_a_table(tmp_path: Path, here: Command) -> None:
     assert notes == ["note: not marked, because they are not Python programs: notes.doc"]
 
 
-def test_a_long_name_leaves_the_marks_on_the_screen(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_students_long_name_does_not_push_the_marks_off_the_screen(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     class Terminal(io.StringIO):
         def isatty(self) -> bool:
             return True

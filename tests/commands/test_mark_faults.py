@@ -61,7 +61,7 @@ def mark(tmp_path: Path) -> Callable[..., tuple[int, dict[str, list[str]]]]:
     return run
 
 
-def test_huge_numbers_and_odd_names_are_marked(mark: Any) -> None:
+def test_programs_with_huge_numbers_or_odd_names_are_marked(mark: Any) -> None:
     _, before = mark(HONEST)
     code, rows = mark({**HONEST, **ODD})
     assert code == 0
@@ -114,7 +114,7 @@ def test_a_fault_of_tuisim_while_marking_costs_one_students_row_only(
     assert "in fail\n" in report_file().read_text()
 
 
-def test_a_class_of_which_nobody_could_be_judged_has_every_export(
+def test_marks_are_exported_also_if_no_student_could_be_judged(
     mark: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(runs, "copy_files", MagicMock(side_effect=MemoryError))
@@ -123,7 +123,7 @@ def test_a_class_of_which_nobody_could_be_judged_has_every_export(
     assert code == 1 and [rows[name.removesuffix(".py")][2] for name in files] == ["", "", ""]
 
 
-def test_a_page_is_written_without_the_report_that_fails(
+def test_the_page_of_marks_is_written_even_if_one_report_fails(
     mark: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     where = reports, "_build_report"

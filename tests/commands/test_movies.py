@@ -76,7 +76,9 @@ def view(width_px: int, height_px: int) -> Viewport:
 
 
 @pytest.mark.slow
-def test_a_movie_follows_the_robot(here: Command, run: StoredRun, tmp_path: Path) -> None:
+def test_a_movie_shows_the_robot_where_it_was_in_each_frame(
+    here: Command, run: StoredRun, tmp_path: Path
+) -> None:
     done = here("runs", "movie", "last", "--out", "a.gif", "--fps", "10")
     assert (done.returncode, done.stdout) == (0, "")
     assert done.stderr.startswith("written: a.gif; 11 frames, 2.1 s at 1×, ")
@@ -137,7 +139,7 @@ def test_a_picture_of_a_run_shows_the_instant_asked_for(
         )
 
 
-def test_a_long_run_is_shown_faster(here: Command) -> None:
+def test_a_movie_of_a_long_run_is_played_faster(here: Command) -> None:
     record(*[100, -100] * 61)
     words = ("--out", "a.gif", "--fps", "1", "--size", "160x120", "--panels", "world")
     assert here("runs", "movie", "last", *words).stderr.startswith(

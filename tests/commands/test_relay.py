@@ -34,7 +34,7 @@ class _Ended:
     [(_Terminal(), "\x1b[1mHello\n"), (io.StringIO(), "\x1bc\x1b[1mHello\n")],
     ids=["terminal", "pipe"],
 )
-def test_a_program_that_clears_its_display_leaves_the_terminal_as_it_is(
+def test_clearing_the_bricks_display_does_not_clear_the_terminal(
     out: io.StringIO, shown: str
 ) -> None:
     run: Any = _Ended()

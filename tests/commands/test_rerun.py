@@ -127,7 +127,9 @@ finally:
 
 
 @pytest.mark.parametrize("live", [True, False], ids=["live", "headless"])
-def test_a_stop_is_given_again_at_its_tick(start: Start, tmp_path: Path, live: bool) -> None:
+def test_a_rerun_stops_a_stopped_run_at_the_same_tick(
+    start: Start, tmp_path: Path, live: bool
+) -> None:
     text = CLEANS_UP if live else CLEANS_UP.replace("time.sleep(0.05)", "time.sleep(1e6)")
     handle = start(text, noise=(10, 20), live=live, time_limit_s=0.0)
     until_tick(handle, 20)
@@ -233,7 +235,7 @@ def test_a_program_does_the_same_live_and_headless(
     assert diff.same
 
 
-def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: Path) -> None:
+def test_a_blocked_motor_is_recorded_the_same_live_and_headless(home: Path) -> None:
     run, diff = run_live_and_headless(Program("arm.py", ARM), {"robot": "Explorer"})
     turns = [row for row in run.output.rows() if row.stream == Stream.MOTORS]
     ((position_deg, speed_dps),) = BrickState().update_face(turns).turns

@@ -53,7 +53,7 @@ RUNS: dict[str, tuple[list[object], dict[str, Any]]] = {
 
 
 @cases("words, facts", RUNS)
-def test_command_line_wins_over_world_and_world_over_magic(
+def test_command_line_options_override_the_world_file_and_that_the_magic_line(
     words: list[object], facts: dict[str, Any], folder: Path, here: Command
 ) -> None:
     done = here("run", *words, "--json")
@@ -66,7 +66,7 @@ def test_several_programs_run_in_one_world(folder: Path, here: Command) -> None:
     assert [json.loads(line)["seed"] for line in done.stdout.splitlines()] == [5, 5]
 
 
-def test_a_printed_robot_and_printed_obstacles_are_files(folder: Path, here: Command) -> None:
+def test_printed_robots_and_obstacles_can_be_used_as_files(folder: Path, here: Command) -> None:
     (folder / "mine.toml").write_text(here("robots", "Small_Robot").stdout)
     (folder / "boxes.toml").write_text(here("obstacles", "Wall").stdout)
     assert here("robots", "mine.toml").stdout == (folder / "mine.toml").read_text()
@@ -146,7 +146,7 @@ PRESSES: dict[str, tuple[list[str], int]] = {
 
 
 @cases("words, time_s", PRESSES)
-def test_a_hand_presses_what_the_first_line_says(
+def test_presses_planned_in_the_magic_line_or_world_file_happen(
     words: list[str], time_s: int, folder: Path, here: Command
 ) -> None:
     (folder / "waits.py").write_text(WAITS)

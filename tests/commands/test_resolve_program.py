@@ -49,7 +49,7 @@ def test_a_run_says_in_one_line_what_was_built(folder: Path, here: Command) -> N
     ]
 
 
-def test_the_robot_is_printed_as_a_file_that_says_which_line_asks_for_what(
+def test_robots_from_prints_the_lines_of_a_program_that_ask_for_each_part(
     folder: Path, here: Command
 ) -> None:
     done = here("robots", "--from", "claw.py")
@@ -69,7 +69,7 @@ def test_the_robot_is_printed_as_a_file_that_says_which_line_asks_for_what(
         assert f"claw.py, line {line}: {what}" in done.stdout
 
 
-def test_a_program_that_needs_no_other_robot_gets_the_usual_one(
+def test_robots_from_a_program_with_usual_parts_gives_the_default_robot(
     folder: Path, here: Command
 ) -> None:
     (folder / "usual.py").write_text(
@@ -135,7 +135,7 @@ def test_a_missing_part_says_what_to_do(folder: Path, here: Command) -> None:
     )
 
 
-def test_a_batch_varies_the_robot_that_was_built(folder: Path, here: Command) -> None:
+def test_a_batch_can_vary_the_robot_built_for_its_program(folder: Path, here: Command) -> None:
     done = here("batch", "claw.py", "--set", "robot.wheel_diameter_mm=56,28", "--json", "--jobs", 1)
     rows = [json.loads(line) for line in done.stdout.splitlines()]
     assert [row["end"] for row in rows] == ["finished"] * 2
@@ -143,7 +143,7 @@ def test_a_batch_varies_the_robot_that_was_built(folder: Path, here: Command) ->
 
 
 @pytest.mark.slow
-def test_marks_use_the_robot_of_the_task_and_else_that_of_the_program(
+def test_marking_uses_the_tasks_robot_or_else_that_built_for_the_program(
     folder: Path, here: Command
 ) -> None:
     (folder / "class").mkdir()
@@ -159,7 +159,7 @@ def test_marks_use_the_robot_of_the_task_and_else_that_of_the_program(
         )
 
 
-def test_a_task_that_is_run_as_a_world_keeps_its_robot_too(folder: Path, here: Command) -> None:
+def test_running_a_goal_file_as_a_world_uses_its_robot(folder: Path, here: Command) -> None:
     (folder / "goals.toml").write_text("robot = 'Default_Robot'\n" + GOALS)
     (folder / "world.toml").write_text("seed = 3\n")
     assert here("run", "goals.toml", "claw.py").returncode == 1

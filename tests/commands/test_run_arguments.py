@@ -120,7 +120,7 @@ def test_a_weight_that_the_profile_does_not_use_is_told(
 
 
 @pytest.mark.parametrize("x_mm, is_told", [("9999", True), ("2000", False)])
-def test_a_start_outside_the_mat_is_told(
+def test_a_note_says_that_the_robot_starts_outside_the_mat(
     folder: Path, here: Command, x_mm: str, is_told: bool
 ) -> None:
     note = "note: the robot starts outside the mat, which is 2362 × 1143 mm"
@@ -222,7 +222,7 @@ def _remove(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("change", [_change, _remove])
-def test_a_run_is_repeated_with_the_modules_that_it_had(
+def test_a_rerun_uses_the_modules_stored_with_the_run(
     stored: Path, here: Command, change: object, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert callable(change)
@@ -246,7 +246,7 @@ def test_a_branch_has_the_arguments_and_modules_of_its_run(stored: Path) -> None
     assert (handle.program.text[:8], handle.program.modules_from) == ("# edited", run.folder)
 
 
-def test_what_is_stepped_through_is_the_program_as_it_was(stored: Path) -> None:
+def test_stepping_through_a_stored_run_uses_its_stored_arguments_and_modules(stored: Path) -> None:
     run = RunStore().load_run("last")
     program = Recording(run).program
     assert (program.arguments, program.python_path) == (("A",), (str(stored / "elsewhere"),))
@@ -280,7 +280,7 @@ def shows(folder: Path, *arguments: str) -> AppSettings:
 
 
 @pytest.mark.slow
-async def test_the_app_gives_arguments_that_can_be_edited(folder: Path) -> None:
+async def test_arguments_of_the_program_can_be_edited_in_the_app(folder: Path) -> None:
     async with open_lab(shows(folder, "A", "B C")) as (pilot, app):
         edit = find(app.run_controller.next_run, "arguments")
         assert edit is not None
@@ -323,7 +323,7 @@ def test_lines_on_stdin_answer_input_until_they_end(
 
 
 @pytest.mark.slow
-def test_given_answers_leave_stdin_alone(tmp_path: Path) -> None:
+def test_with_option_input_a_program_does_not_read_stdin(tmp_path: Path) -> None:
     (tmp_path / "asks.py").write_text(ASKS)
     command = [sys.executable, "-m", "tuisim", "run", "asks.py", "--input", "given"]
     done = subprocess.run(

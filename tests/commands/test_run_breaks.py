@@ -27,7 +27,7 @@ def program(tmp_path: Path) -> str:
     return str(path)
 
 
-def test_a_break_is_told_and_the_run_goes_on(
+def test_run_prints_each_breakpoint_that_is_met_and_goes_on(
     program: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert (

@@ -88,7 +88,7 @@ def test_run_that_fills_the_disk_stops_and_keeps_its_rows(
 
 
 @pytest.mark.usefixtures("real_start")
-def test_program_cannot_swallow_the_end_of_the_disk(
+def test_a_program_cannot_catch_the_error_that_the_disk_is_full(
     start: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     text = "import time\nwhile True:\n    try:\n        print('x' * 5000)\n    except Exception:\n        pass\n"
@@ -127,7 +127,7 @@ def test_end_that_cannot_be_stored_costs_no_row(
     assert len(read_log(tmp_path / "a.csv")) == 3
 
 
-def test_export_that_fails_does_not_hinder_the_others(
+def test_an_export_that_fails_does_not_prevent_the_others(
     short: Path, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def export(runs: Sequence[StoredRun], target: str) -> None:

@@ -13,7 +13,9 @@ ASKS = (
 )
 
 
-def test_bumper_meets_the_wall_from_robot_and_obstacle_files(here: Command, tmp_path: Path) -> None:
+def test_a_bumper_of_a_robot_file_touches_a_wall_of_an_obstacle_file(
+    here: Command, tmp_path: Path
+) -> None:
     (tmp_path / "robot.toml").write_text(
         "ultrasonic = false\n[touch_sensors.nose]\nport = 'in1'\ny_mm = 60\n"
     )
@@ -122,7 +124,7 @@ def test_missing_parts_of_the_prelude_are_no_error_while_unused(
     ],
     ids=["call", "other call", "read", "write", "print", "hasattr"],
 )
-def test_missing_part_of_the_prelude_is_told_where_it_is_used(
+def test_a_missing_predefined_part_is_an_error_at_the_line_that_uses_it(
     here: Command, tmp_path: Path, use: str, missing: str
 ) -> None:
     (tmp_path / "robot.toml").write_text(WITHOUT_WHEELS)
@@ -172,7 +174,9 @@ def test_wheels_of_medium_motors_are_read_as_medium_motors(
     assert error.startswith(f"LargeMotor(ev3-ports:outB) is not connected. {there} ")
 
 
-def test_several_infrared_sensors_read_what_is_before_each(here: Command, tmp_path: Path) -> None:
+def test_several_infrared_sensors_each_read_what_is_before_them(
+    here: Command, tmp_path: Path
+) -> None:
     (tmp_path / "robot.toml").write_text(
         "ultrasonic = false\ngyro = false\n[infrared]\nport = 'in1'\n"
         "[infrareds.back]\nport = 'in4'\nangle_deg = 180\ny_mm = -60\n"

@@ -86,7 +86,7 @@ AGES = {
 
 
 @cases("age, left, said", AGES)
-def test_runs_of_an_age_are_removed(
+def test_runs_rm_older_than_removes_runs_of_that_age(
     make: Make, here: Command, age: str, left: list[int], said: str
 ) -> None:
     home = make().folder.parent.parent
@@ -110,7 +110,7 @@ BAD_AGES = {
 
 
 @cases("words, said", BAD_AGES)
-def test_a_wrong_age_removes_no_run(
+def test_runs_rm_with_a_wrong_age_removes_no_run(
     make: Make, here: Command, words: tuple[str, ...], said: str
 ) -> None:
     make()
@@ -120,14 +120,16 @@ def test_a_wrong_age_removes_no_run(
     assert len(RunStore().runs()) == 1
 
 
-def test_a_run_that_still_goes_on_is_not_too_old(make: Make, here: Command) -> None:
+def test_runs_rm_older_than_keeps_a_run_that_is_still_running(make: Make, here: Command) -> None:
     store = RunStore()
     store.create_run(PROGRAM, make().spec)
     assert "1 run removed" in here("runs", "rm", "--older-than", "0h").stdout
     assert [run.number for run in store.runs()] == [2]
 
 
-def test_of_a_link_only_the_link_is_removed(make: Make, here: Command, tmp_path: Path) -> None:
+def test_runs_rm_of_a_linked_folder_removes_only_the_link(
+    make: Make, here: Command, tmp_path: Path
+) -> None:
     folder = make("a: 1").folder
     elsewhere = folder.rename(tmp_path / "elsewhere")
     folder.symlink_to(elsewhere)
@@ -190,7 +192,7 @@ def test_a_recording_that_lost_all_its_ticks_is_called_cut_off(
     assert (done.returncode, said in done.stderr) == (2, True), done.stderr
 
 
-def test_rerun_without_a_folder_for_temporary_runs_is_told(
+def test_rerun_without_a_folder_for_temporary_files_says_why(
     make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     make("a: 1")
@@ -200,7 +202,7 @@ def test_rerun_without_a_folder_for_temporary_runs_is_told(
     assert capsys.readouterr().err == f"tuisim: {tmp_path}/missing: {reason}\n"
 
 
-def test_a_file_of_another_run_is_listed_and_missed(
+def test_a_file_that_a_run_read_is_listed_and_a_rerun_says_if_it_changed(
     here: Command, home: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "first.py").write_text("open('cal\\x1b.txt', 'w').write('42')\n")
@@ -225,7 +227,9 @@ def test_a_file_of_another_run_is_listed_and_missed(
     assert note == f"a file that the program opens is gone: {file}"
 
 
-def test_a_file_that_was_not_there_is_listed(here: Command, home: Path, tmp_path: Path) -> None:
+def test_a_file_that_a_run_looked_for_in_vain_is_listed(
+    here: Command, home: Path, tmp_path: Path
+) -> None:
     (tmp_path / "tries.py").write_text("try:\n    open('cal.txt')\nexcept OSError:\n    pass\n")
     here("run", "tries.py")
     assert (
@@ -236,7 +240,7 @@ def test_a_file_that_was_not_there_is_listed(here: Command, home: Path, tmp_path
     assert "was not there, and is there now" in here("runs", "rerun", "1").stderr
 
 
-def test_a_damaged_list_of_files_is_noted(make: Make, here: Command) -> None:
+def test_runs_show_notes_a_damaged_list_of_read_files(make: Make, here: Command) -> None:
     run = make("a: 1")
     (run.folder / READS_FILE).write_text("3\n")
     shown = here("runs", "show", "1").stdout

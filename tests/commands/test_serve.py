@@ -155,7 +155,9 @@ def test_without_the_extra_the_command_to_install_it_is_named(
 
 
 @pytest.mark.usefixtures("served")
-def test_a_notebook_of_several_cells_is_listed(here: Command, tmp_path: Path) -> None:
+def test_serve_lists_the_cells_of_a_notebook_with_several_programs(
+    here: Command, tmp_path: Path
+) -> None:
     from nbformat.v4 import new_code_cell, new_notebook, writes
 
     cells = [new_code_cell(f"%%sim_magic\nprint({n})") for n in range(2)]

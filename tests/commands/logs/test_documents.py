@@ -88,7 +88,7 @@ def test_png_has_its_size_and_is_not_blank(
         assert len(picture.getcolors(1 << 20) or ()) > 20
 
 
-def test_a_path_is_drawn_to_one_scale(here: Command, tmp_path: Path) -> None:
+def test_log_plot_of_a_path_has_the_same_scale_on_both_axes(here: Command, tmp_path: Path) -> None:
     (tmp_path / "way.csv").write_text(
         "time,x_mm,y_mm\n0,0,0\n1,1000,0\n2,1000,500\n3,0,500\n4,0,0\n"
     )

@@ -29,7 +29,7 @@ def test_a_log_is_read_from_a_pipe(tmp_path: Path) -> None:
     assert json.loads(done.stdout)[0]["count"] == 51
 
 
-def test_no_column_takes_the_place_of_another(here: Command, tmp_path: Path) -> None:
+def test_columns_of_the_same_name_in_log_calc_get_numbers(here: Command, tmp_path: Path) -> None:
     path = tmp_path / "a.jsonl"
     rows = ((0, None, 7), (1, "time", 5), (2, "result", 6))
     path.write_text(

@@ -125,7 +125,7 @@ def test_doctor_says_what_the_terminal_answers(
 
 
 @pytest.mark.slow
-def test_a_terminal_that_shows_questions_as_text_is_not_asked(home: Path) -> None:
+def test_doctor_sends_no_queries_to_a_dumb_terminal(home: Path) -> None:
     shown, code, _ = in_terminal(["doctor"], {"TERM": "dumb"}, {})
     assert (code, b"\x1b" in shown) == (0, False)
     assert b"letters and signs" in shown

@@ -89,7 +89,9 @@ JUDGED: dict[str, tuple[Finding, FindingState, str]] = {
 
 
 @cases("finding, state, advice", JUDGED)
-def test_each_finding_says_what_to_do(finding: Finding, state: FindingState, advice: str) -> None:
+def test_each_finding_of_doctor_that_is_not_ok_has_advice(
+    finding: Finding, state: FindingState, advice: str
+) -> None:
     assert finding.state is state
     assert advice in finding.advice
     assert bool(finding.advice) or state is OK
