@@ -25,7 +25,7 @@ from tuisim.engine.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
         (0, 100, 0, 100),
     ],
 )
-def test_the_speed_changes_by_a_step_and_not_beyond_its_target(
+def test_a_motors_ramp_changes_the_speed_by_a_step_and_not_beyond_its_target(
     speed: float, target: float, step: float, after: float
 ) -> None:
     assert ramp_speed(speed, target, step) == after
@@ -51,7 +51,7 @@ def test_a_move_backwards_ends_at_its_goal() -> None:
 
 
 @pytest.mark.parametrize("backwards", [False, True])
-def test_a_motor_whose_count_is_set_beyond_its_goal_does_not_jump(backwards: bool) -> None:
+def test_setting_a_motors_position_beyond_its_goal_does_not_make_it_jump(backwards: bool) -> None:
     sign = -1.0 if backwards else 1.0
     robot = RobotSpec()
     sim = build_simulation(RunSpec(robot, WorldSpec(), PROFILES["robolab"]), MemorySink())
@@ -67,14 +67,14 @@ def test_a_motor_whose_count_is_set_beyond_its_goal_does_not_jump(backwards: boo
     ] * 2
 
 
-def test_a_move_until_a_tick_ends_with_it() -> None:
+def test_a_motor_run_until_a_tick_stops_at_that_tick() -> None:
     sim, motor = arm()
     motor.run_until(100.0, 7)
     sim.advance(20)
     assert (round(motor.position_deg, 9), motor.mode) == (7.0, STOPPED)
 
 
-def test_the_steeper_of_two_limits_of_a_ramp_does_not_count() -> None:
+def test_the_gentler_of_two_ramp_limits_of_a_motor_applies() -> None:
     _, motor = arm(weight=0.5)
     by_weight = motor.ramp_step
     assert by_weight > 0
@@ -85,7 +85,7 @@ def test_the_steeper_of_two_limits_of_a_ramp_does_not_count() -> None:
     assert motor.ramp_step == by_weight
 
 
-def test_a_wheel_that_is_held_back_has_not_reached_its_goal() -> None:
+def test_a_wheel_held_back_by_a_wall_has_not_reached_its_goal() -> None:
     _, motor = arm()
     motor.run_to(10.0, 100.0, backwards=False)
     before = motor.state()

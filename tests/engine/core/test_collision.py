@@ -102,7 +102,7 @@ def test_a_thin_post_is_not_passed_at_full_speed() -> None:
     assert sim.pose.x_mm + 45 == pytest.approx(1000.0, abs=0.001)
 
 
-def test_a_move_to_a_position_goes_on_once_the_way_is_clear() -> None:
+def test_a_blocked_move_to_a_position_goes_on_once_the_way_is_clear() -> None:
     sim = simulation(WorldSpec(start=Pose(2200.0, 571.0, 0.0), solid=True))
     for motor in (sim.left, sim.right):
         commanded(motor).run_to(720.0, 500.0, backwards=False)
@@ -184,11 +184,11 @@ QUIET = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_to
 @pytest.mark.slow
 @settings(max_examples=500, deadline=None, suppress_health_check=QUIET)
 @given(**CASE)
-def test_outline_never_enters_anything_in_hundreds_of_cases(**case: Any) -> None:
+def test_the_robots_outline_never_enters_a_solid_in_hundreds_of_cases(**case: Any) -> None:
     check_case(**case)
 
 
-def test_noise_does_not_push_through_a_wall() -> None:
+def test_motor_noise_does_not_push_the_robot_through_a_wall() -> None:
     world = WorldSpec(start=Pose(2000.0, 571.0, 30.0), noise=NoiseSpec(0, 300), solid=True)
     sim = simulation(world)
     assert drive(sim, [("forever", 900.0, 880.0, 600)]) <= ALLOWED_MM

@@ -122,7 +122,7 @@ def test_a_robot_put_into_something_gets_no_deeper_and_can_leave(
     assert leaves(sim)
 
 
-def test_driving_deeper_stalls_the_motors() -> None:
+def test_driving_deeper_into_a_wall_stalls_the_motors() -> None:
     sim = simulation(WorldSpec(solid=True))
     told(sim, *MOTIONS["backwards"], 100)
     assert sim.left.blocked_ticks >= sim.stall_ticks

@@ -49,7 +49,7 @@ def value_of(run: StoredRun, name: str) -> float:
 
 
 @pytest.mark.parametrize("name", TRACES)
-def test_the_name_of_a_trace_is_a_condition_of_a_goal(
+def test_each_column_name_can_be_used_in_a_goals_condition(
     name: str, run: StoredRun, tmp_path: Path
 ) -> None:
     condition = f'when = "{name} == {value_of(run, name)!r}"'
@@ -58,7 +58,7 @@ def test_the_name_of_a_trace_is_a_condition_of_a_goal(
 
 
 @pytest.mark.parametrize("name", ["left_red_pc", "gyro_deg"])
-def test_the_name_of_a_trace_is_a_breakpoint_a_watch_and_an_event(
+def test_each_column_name_can_be_used_in_breakpoints_watches_and_go_to(
     name: str, run: StoredRun, home_of_runs: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = ["run", str(home_of_runs / "a.py"), "--background", "Grey_bands", "--watch", name]
@@ -78,7 +78,7 @@ def test_the_name_of_a_trace_is_a_breakpoint_a_watch_and_an_event(
 
 
 @pytest.mark.parametrize("name", TRACES)
-def test_the_name_of_a_trace_is_an_event_a_filter_and_a_variable_of_the_analyser(
+def test_each_column_name_can_be_used_in_events_and_filters_of_the_analyser(
     name: str, run: StoredRun
 ) -> None:
     *_, opened = LogRequest(runs=("1",), telemetry=True).open_pieces()
@@ -95,7 +95,7 @@ def test_the_name_of_a_trace_is_an_event_a_filter_and_a_variable_of_the_analyser
 
 
 @pytest.mark.parametrize("name", ["left_red_pc", "gyro_deg"])
-def test_the_name_of_a_trace_is_a_variable_of_every_log_command(
+def test_each_column_name_can_be_used_in_every_log_command(
     name: str, run: StoredRun, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run_command(["log", "summary", "1", "--variable", name, "--json"]) == 0
@@ -120,7 +120,7 @@ def test_the_name_of_a_trace_is_a_variable_of_every_log_command(
     assert f"x_mm against {name}" in capsys.readouterr().out
 
 
-def test_a_name_that_is_nearly_a_column_is_told(
+def test_log_commands_name_the_column_that_a_misspelt_name_is_near(
     run: StoredRun, capsys: pytest.CaptureFixture[str]
 ) -> None:
     said = []
@@ -134,7 +134,7 @@ def test_a_name_that_is_nearly_a_column_is_told(
     assert "did you mean 'gyro_deg'?" in said[1]
 
 
-def test_a_name_of_before_is_the_column_in_the_commands_for_logs(
+def test_log_commands_understand_former_column_names(
     run: StoredRun, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run_command(["log", "events", "1", "--when", "left.red% changes", "--json"]) == 0
@@ -157,5 +157,5 @@ def test_a_name_of_before_is_the_column_in_the_commands_for_logs(
         ("gyro.x", None),
     ],
 )
-def test_names_of_before_are_understood(text: str, name: str | None) -> None:
+def test_former_column_names_are_understood(text: str, name: str | None) -> None:
     assert find_column_name(text, list_columns(RUN)) == name

@@ -98,7 +98,7 @@ HELD = {
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("condition, expected", HELD.items(), ids=HELD)
-def test_a_comparison_means_the_same_everywhere(
+def test_a_comparison_means_the_same_in_goals_breakpoints_and_logs(
     place: str, condition: str, expected: list[float]
 ) -> None:
     assert PLACES[place](condition) == expected
@@ -148,7 +148,7 @@ EVENTS = {
 
 
 @pytest.mark.parametrize("text, rising", EVENTS.items(), ids=EVENTS)
-def test_an_event_is_a_comparison_with_a_direction(
+def test_an_events_comparison_sets_whether_it_rises_or_falls(
     text: str, rising: tuple[bool, ...] | None
 ) -> None:
     log = Log("test", pa.table({"Colour": [60.0, 40.0, 60.0]}), Layout(values=("Colour",)))
@@ -173,7 +173,7 @@ def test_an_event_is_a_comparison_with_a_direction(
         ("t (s) < 1", "t (s)"),
     ],
 )
-def test_names_of_variables_may_hold_operators(text: str, name: str) -> None:
+def test_variable_names_in_conditions_may_contain_operators(text: str, name: str) -> None:
     threshold = parse_threshold(text)
     assert threshold is not None
     assert threshold.name == name
@@ -195,7 +195,7 @@ REFUSED = {
 
 @pytest.mark.parametrize("place, operators", REFUSED.items(), ids=REFUSED)
 @pytest.mark.parametrize("condition", ["Colour ? 50", "? 50"])
-def test_what_is_no_comparison_is_answered_with_what_is_allowed(
+def test_a_text_that_is_no_comparison_is_refused_with_the_allowed_operators(
     place: str, operators: str, condition: str
 ) -> None:
     with pytest.raises((ConfigError, LogError)) as refused:
@@ -210,7 +210,7 @@ def test_a_condition_names_what_is_no_number(place: str) -> None:
 
 
 @pytest.mark.parametrize("condition", ["Colour <= 50", "Colour != 50", "Colour >= 50"])
-def test_an_event_has_no_other_operators(condition: str) -> None:
+def test_an_event_with_another_operator_is_refused(condition: str) -> None:
     with pytest.raises(LogError, match="is not a threshold") as refused:
         by_event(condition)
     assert refused.value.hint == FORM

@@ -51,7 +51,7 @@ def simulation(
 
 
 @pytest.mark.parametrize("name", PROFILES)
-def test_sensors_differ_only_where_bricks_were_measured(name: str) -> None:
+def test_drift_of_sensors_applies_only_to_profiles_measured_on_bricks(name: str) -> None:
     spec = RunSpec(ROBOT, WorldSpec(drift=TYPICAL), PROFILES[name])
     drift = find_drift(spec)
     sizes = drift.gyro_scale_pc, drift.echo_bias_mm, drift.light_gain_pc
@@ -86,7 +86,7 @@ def test_without_drift_a_square_ends_where_it_began() -> None:
 
 
 @pytest.mark.parametrize("profile", PROFILES)
-def test_encoders_do_not_notice_drift(profile: str) -> None:
+def test_wheel_encoders_read_the_same_with_drift(profile: str) -> None:
     seen = []
     for drift in (NO_DRIFT, TYPICAL):
         sim = simulation(drift, seed=3, profile=profile)
@@ -217,7 +217,7 @@ def test_the_gyro_drifts_while_the_robot_stands_and_begins_anew_at_its_reset() -
 
 
 @for_each(seed=range(4))
-def test_light_falls_from_one_side_of_the_field_to_the_other(seed: int) -> None:
+def test_with_drift_the_light_decreases_from_one_side_of_the_field_to_the_other(seed: int) -> None:
     drift = DriftSpec(light_pc=20.0)
     corners = [
         compute_light_share(x, y, drift, seed)

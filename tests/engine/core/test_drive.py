@@ -100,7 +100,7 @@ def test_driving_many_ticks_at_once_equals_driving_them_one_by_one(
     "sides", [("left",), ("right",), ("left", "right")], ids=["left", "right", "both"]
 )
 @pytest.mark.parametrize("profile", ["robolab"])
-def test_a_reversed_motor_that_runs_backwards_drives_as_a_usual_one_forwards(
+def test_a_reversed_motor_run_backwards_drives_like_a_normal_one_forwards(
     profile: str, sides: tuple[str, ...], step: int
 ) -> None:
     robot = RobotSpec(left_reversed="left" in sides, right_reversed="right" in sides)
@@ -131,7 +131,7 @@ def test_reversed_motors_turn_the_wheels_backwards_in_the_browser_simulator_too(
 
 @pytest.mark.parametrize("profile", ["robolab", "nbev3devsim"])
 @pytest.mark.parametrize("gear_ratio", [0.5, 3.0])
-def test_a_gear_divides_the_turns_of_the_motor(profile: str, gear_ratio: float) -> None:
+def test_a_gear_ratio_divides_the_wheels_turns(profile: str, gear_ratio: float) -> None:
     robot = RobotSpec(weight=0.0)
     speeds = (250.0, 310.0)
     world = WorldSpec(start=Pose(500.0, 571.0, 20.0), noise=NoiseSpec())

@@ -30,7 +30,7 @@ def arm_of(robot: RobotSpec = ROBOT, profile: str = "robolab") -> Simulation:
 @pytest.mark.parametrize(
     "dps, end_deg, flag", [(-200.0, -90.0, LOW), (500.0, 180.0, HIGH)], ids=["low", "high"]
 )
-def test_a_motor_stops_at_its_end(profile: str, dps: float, end_deg: float, flag: int) -> None:
+def test_a_motor_stops_at_its_end_stop(profile: str, dps: float, end_deg: float, flag: int) -> None:
     sim = arm_of(profile=profile)
     arm = sim.others[1]
     # The browser simulator has no negative speeds.
@@ -58,9 +58,7 @@ def test_an_arm_at_its_end_stop_is_stalled_after_100_ms() -> None:
     assert arm.moving_dps == 0.0
 
 
-def test_a_move_that_the_stop_cuts_short_goes_on_for_ever_and_ends_if_its_goal_is_the_stop() -> (
-    None
-):
+def test_a_move_blocked_by_an_end_stop_never_ends_unless_its_goal_is_the_stop() -> None:
     sim = arm_of()
     arm = sim.others[1]
     commanded(arm).run_to(200.0, 300.0, backwards=False)
@@ -71,7 +69,7 @@ def test_a_move_that_the_stop_cuts_short_goes_on_for_ever_and_ends_if_its_goal_i
     assert (arm.position_deg, arm.mode) == (-90.0, STOPPED)
 
 
-def test_the_stops_stay_where_they_are_when_the_program_sets_the_position() -> None:
+def test_setting_a_motors_position_does_not_move_its_end_stops() -> None:
     sim = arm_of()
     arm = sim.others[1]
     commanded(arm).run(-200.0)
@@ -83,7 +81,7 @@ def test_the_stops_stay_where_they_are_when_the_program_sets_the_position() -> N
     assert arm.position_deg == pytest.approx(270.0)
 
 
-def test_a_motor_near_its_end_is_at_it() -> None:
+def test_a_motor_close_to_its_end_stop_presses_the_sensor_there() -> None:
     sim = arm_of()
     arm = sim.others[1]
     found = []

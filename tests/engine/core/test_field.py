@@ -33,7 +33,9 @@ def disc_at(diameter: int, col: int, row: int, around: Rgb = BLACK) -> list[Rgb]
 
 @pytest.mark.parametrize("floor_rgb", [None, (200, 190, 7)])
 @pytest.mark.parametrize("diameter", [2, 3, 7])
-def test_what_is_off_the_mat_is_black_or_the_floor(diameter: int, floor_rgb: Rgb | None) -> None:
+def test_discs_off_the_mat_sum_up_black_or_the_floors_colour(
+    diameter: int, floor_rgb: Rgb | None
+) -> None:
     around = floor_rgb or BLACK
     places = [(col, row) for row in range(-diameter, HEIGHT) for col in range(-diameter, WIDTH)]
     sums = [
@@ -56,7 +58,7 @@ def test_what_is_off_the_mat_is_black_or_the_floor(diameter: int, floor_rgb: Rgb
             assert field.pixel(col, row) == pixel(col, row, around)
 
 
-def test_a_floor_has_the_most_frequent_colour_of_the_edges() -> None:
+def test_the_floors_colour_is_the_most_frequent_one_of_the_mats_edges() -> None:
     rows = (b"bbba", b"bccb", b"bccb", b"acba")
     pixels = b"".join(bytes((letter, 1, 2)) for row in rows for letter in row)
     assert find_floor_rgb(4, 4, memoryview(pixels)) == (ord("b"), 1, 2)

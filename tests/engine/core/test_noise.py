@@ -104,7 +104,7 @@ def test_readings_are_distributed_as_means_of_pixels(kind: str) -> None:
 
 
 @pytest.mark.parametrize("level", [1, 10, 128])
-def test_clamping_moves_a_value_as_its_errors_do(level: int) -> None:
+def test_mean_and_variance_of_clamped_noise_are_computed_exactly(level: int) -> None:
     law = compute_clamping(level)
     errors = [round(level * (2 * byte / 255 - 1)) for byte in range(256)]
     for value in range(256):
@@ -146,6 +146,6 @@ def test_each_random_number_raises_only_its_own_colour_channel() -> None:
 
 
 @pytest.mark.parametrize("other", [(2, 5, "left"), (1, 6, "left"), (1, 5, "right")])
-def test_noise_depends_on_seed_tick_and_sensor(other: tuple[int, int, str]) -> None:
+def test_readings_noise_depends_on_seed_tick_and_sensor(other: tuple[int, int, str]) -> None:
     read: Callable[..., tuple[float, ...]] = draw_reading_noise
     assert read(1, 5, "left") == read(1, 5, "left") != read(*other)

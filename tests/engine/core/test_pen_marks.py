@@ -67,7 +67,7 @@ def test_a_pen_draws_on_the_floor_around_a_mat(white: Field) -> None:
 
 
 @pytest.mark.parametrize("x_mm", [550.0, 467.0], ids=["on the line", "on its beginning"])
-def test_sensors_see_the_line_and_arrays_agree(white: Field, x_mm: float) -> None:
+def test_colour_sensors_and_pixel_arrays_see_the_pens_line(white: Field, x_mm: float) -> None:
     _, marks = drawn(white, PenSpec(color="#102030", width_mm=10.0, down=True))
     sensor = RobotSpec().color_sensors[0]
     over = Instant(0, Pose(x_mm, 480.0, 0.0))
@@ -84,12 +84,12 @@ def test_sensors_see_the_line_and_arrays_agree(white: Field, x_mm: float) -> Non
     assert measure_color(sensor, over, white).red == 255
 
 
-def test_pen_up_draws_nothing(white: Field) -> None:
+def test_a_robot_with_its_pen_up_draws_nothing(white: Field) -> None:
     _, marks = drawn(white, PenSpec(down=False))
     assert not marks.field.marks
 
 
-def test_a_lifted_robot_draws_no_line(white: Field) -> None:
+def test_placing_the_robot_elsewhere_draws_no_pen_line(white: Field) -> None:
     sim, marks = drawn(white, PenSpec(down=True))
     before = len(marks.field.marks)
     sim.place(Pose(1500.0, 900.0, 0.0))

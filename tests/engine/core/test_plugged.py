@@ -31,7 +31,7 @@ def test_a_sensor_takes_the_place_of_another_on_its_port() -> None:
     }
 
 
-def test_sensors_of_a_kind_sit_at_different_places() -> None:
+def test_four_sensors_of_one_kind_get_different_names_and_positions() -> None:
     ports = ("in1", "in2", "in3", "in4")
     for part in ("ColorSensor", "TouchSensor", "UltrasonicSensor", "InfraredSensor"):
         robot = plug(USUAL, *((port, part) for port in ports))
@@ -40,7 +40,7 @@ def test_sensors_of_a_kind_sit_at_different_places() -> None:
         assert len(places) == 4, part
 
 
-def test_a_robot_has_one_gyro() -> None:
+def test_plugging_in_a_gyro_replaces_the_robots_former_one() -> None:
     robot = plug(USUAL, ("in2", "GyroSensor"))
     assert robot.gyro is not None
     assert (robot.gyro.port, on_ports(robot).get("in4")) == ("in2", None)
@@ -65,7 +65,7 @@ def test_a_motor_on_the_port_of_a_wheel_leaves_no_wheels() -> None:
     assert robot.extra_motors == (MotorSpec("outB", "medium"), MotorSpec("outC", "large"))
 
 
-def test_a_part_is_stored_and_found_again() -> None:
+def test_a_plugged_in_part_is_stored_and_read_back() -> None:
     for part in (
         PluggedPart("in1", "TouchSensor", 53, 9),
         PluggedPart("outA", "LargeMotor", 0, 0, LEFT),

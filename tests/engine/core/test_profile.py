@@ -61,7 +61,7 @@ MOVES = {
 
 
 @cases("text, end", MOVES)
-def test_a_move_ends_where_the_profile_says(
+def test_a_move_in_the_old_simulators_profile_ends_at_the_recorded_place(
     run: Run, text: str, end: tuple[float, float, float]
 ) -> None:
     done = run(text, profile=TRUE, pose=(1000.0, 500.0, 0.0), background="Empty_Map")
@@ -186,7 +186,7 @@ def test_recorded_sensor_values_equal_those_that_the_program_read(run: Run) -> N
 
 
 @pytest.mark.parametrize("pen_marks", [False, True])
-def test_pen_marks_are_seen_where_the_world_says_so(run: Run, pen_marks: bool) -> None:
+def test_a_program_sees_its_pens_line_only_if_the_world_says_so(run: Run, pen_marks: bool) -> None:
     from tuisim.engine.core.spec import PenSpec
 
     text = "tank_drive.on_for_seconds(30, 30, 2)\ntank_drive.on_for_seconds(-30, -30, 1)\nprint(colorLeft.rgb[0] < 255)"

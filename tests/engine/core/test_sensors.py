@@ -177,7 +177,7 @@ def test_the_panels_show_each_kind_of_sensor(kind: SensorKind) -> None:
         assert set(now.further) == set(kind.names(sensor))
 
 
-def test_kinds_are_told_apart_by_their_specs() -> None:
+def test_the_kind_of_a_sensor_is_found_by_its_spec() -> None:
     sensors = [sensor_of(mount) for mount in MOUNTS]
     assert [build_mounted_sensor(sensor).kind.spec for sensor in sensors] == [
         mount.spec for mount in MOUNTS

@@ -27,7 +27,7 @@ from tuisim.engine.core.spec import (
 from tuisim.engine.core.values import list_values
 
 
-def test_no_gyro_change_when_the_robot_is_lifted() -> None:
+def test_placing_the_robot_elsewhere_does_not_change_the_gyro_angle() -> None:
     sim = Simulation(RunSpec(RobotSpec(), WorldSpec(), ROBOLAB), MemorySink())
     sim.place(Pose(10.0, 20.0, -90.0))
     instant = sim.build_instant()
@@ -72,7 +72,7 @@ def test_a_robot_that_turns_on_the_spot_counts_whole_turns(profile: str) -> None
     assert gyro_deg[1] - gyro_deg[0] == pytest.approx(turned_deg, rel=0.01)
 
 
-def test_a_tick_is_due_at_the_first_nanosecond_of_it() -> None:
+def test_compute_due_ns_gives_the_first_nanosecond_of_a_tick() -> None:
     sim = Simulation(RunSpec(RobotSpec(), WorldSpec(), PROFILES["nbev3devsim"]), MemorySink())
     for tick in (1, 2, 3, 29, 30, 100_001):
         assert [sim.count_ticks(sim.compute_due_ns(tick) - off) for off in (0, 1)] == [

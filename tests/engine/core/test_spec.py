@@ -77,7 +77,7 @@ MISTAKES: dict[str, Callable[[], Any]] = {
 
 
 @cases("make", MISTAKES)
-def test_impossible_parts_are_refused(make: Callable[[], Any]) -> None:
+def test_impossible_parts_of_a_robot_are_refused(make: Callable[[], Any]) -> None:
     with pytest.raises(ConfigError):
         make()
 
@@ -133,13 +133,13 @@ def _alone() -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("size_mm", [(0.0, 100.0), (100.0, 0.0), (100.0, -1.0)])
-def test_an_obstacle_has_a_size(size_mm: tuple[float, float]) -> None:
+def test_an_obstacle_without_width_or_height_is_refused(size_mm: tuple[float, float]) -> None:
     with pytest.raises(ConfigError, match="must be above 0"):
         Obstacle(0.0, 0.0, *size_mm)
 
 
 @pytest.mark.parametrize("profile", ["robolab", "nbev3devsim"])
-def test_turns_that_are_told_say_where_a_further_motor_is_at_any_tick(profile: str) -> None:
+def test_recorded_turns_give_a_further_motors_position_at_any_tick(profile: str) -> None:
     sim = build_simulation(replace(RUN, profile=PROFILES[profile]), MemorySink())
     assert isinstance(sim, FurtherMotors)
     told: list[tuple[int, tuple[Turn, ...]]] = [(0, ((0.0, 0.0),) * 2)]

@@ -37,7 +37,7 @@ class Cart(Spec):
     spare: Wheel | None = part(Wheel, default=None)
 
 
-def test_values_are_given_in_order_or_by_name() -> None:
+def test_a_specs_values_are_given_in_order_or_by_name() -> None:
     assert Wheel(2.0, True) == Wheel(worn=True, size_mm=2.0)
     assert Wheel(2.0) != Wheel(2.5)
     assert repr(Wheel(2)) == "Wheel(size_mm=2, worn=False)"
@@ -73,7 +73,9 @@ def test_more_values_than_there_are_and_one_given_twice_are_told() -> None:
         (lambda: Cart(more=(3,)), RobotError, "more: must be a table"),  # type: ignore[arg-type]
     ],
 )
-def test_values_and_rules_are_checked(make: object, error: type[ConfigError], said: str) -> None:
+def test_a_specs_values_and_rules_are_checked_when_it_is_created(
+    make: object, error: type[ConfigError], said: str
+) -> None:
     assert callable(make)
     with pytest.raises(error) as caught:
         make()

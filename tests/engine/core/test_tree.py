@@ -97,7 +97,7 @@ def test_putting_a_wrong_value_into_a_run_raises_with_the_reason(
     assert str(caught.value).startswith(said)
 
 
-def test_values_of_one_part_are_checked_together() -> None:
+def test_values_put_into_a_run_together_are_checked_together() -> None:
     # Each port by itself is that of the other wheel.
     changed = tree.put_all(RUN, {"robot.left_port": "outC", "robot.right_port": "outB"})
     assert (changed.robot.left_port, changed.robot.right_port) == ("outC", "outB")
@@ -138,7 +138,7 @@ def test_loading_a_run_from_data_of_a_wrong_type_raises(path: str, damage: objec
             read(whole[""])
 
 
-def test_only_what_comes_from_outside_is_checked() -> None:
+def test_restoring_a_run_checks_types_but_not_limits_of_values() -> None:
     plain = json.loads(json.dumps(tree.dump_run(RUN)))
     plain["world"]["noise"]["light"] = 129
     assert tree.restore(plain).world.noise.light == 129

@@ -163,7 +163,7 @@ def test_a_wrong_text_of_an_option_is_told_as_it_was_typed(kind: str, text: str,
     assert str(caught.value).startswith(said)
 
 
-def test_a_stored_run_may_have_a_seed_that_no_option_gives() -> None:
+def test_a_seed_beyond_the_options_limit_is_valid_in_a_stored_run() -> None:
     KINDS["seed"].check(10)
     with pytest.raises(WrongValue):
         KINDS["seed"].check(1.5)

@@ -127,7 +127,7 @@ def test_runs_are_listed_and_removed_also_where_no_catalogue_can_be_written(
 
 
 @cases("harm", HARM)
-def test_harm_to_the_catalogue_does_not_stop_a_run(
+def test_damage_to_the_catalogue_does_not_keep_a_run_from_being_stored(
     store: RunStore, spec: RunSpec, harm: Callable[[Path], object]
 ) -> None:
     run = store.create_run(PROGRAM, spec)

@@ -112,7 +112,7 @@ def write_commands(run: StoredRun, *commands: tuple[int, int, int, tuple[float, 
     writer.close()
 
 
-def test_a_repeated_command_is_one_event_across_pieces(
+def test_a_command_repeated_quickly_is_one_event_however_it_is_read(
     stored: StoredRun, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(command_events, "_PIECE", 7)
@@ -138,7 +138,7 @@ def test_a_repeated_command_is_one_event_across_pieces(
     assert index.find_events("right") == [1] and not index.find_events("pen")
 
 
-def test_a_record_that_no_program_wrote_makes_no_trouble(stored: StoredRun) -> None:
+def test_impossible_command_records_do_not_break_the_list_of_events(stored: StoredRun) -> None:
     index = CommandIndex(stored)
     assert not index.read_piece() and not len(index)
     write_commands(
@@ -166,7 +166,7 @@ def test_a_motor_has_the_port_that_it_was_plugged_in_at(stored: StoredRun) -> No
     assert (events[2].asked, events[2].came) == ("run 50 °/s", "")
 
 
-def test_a_motor_counts_as_its_program_last_set_it_up(stored: StoredRun) -> None:
+def test_a_command_event_uses_the_motors_latest_direction_and_gears(stored: StoredRun) -> None:
     tick_ns = 1_000_000_000 // stored.spec.profile.tick_hz
     write_commands(
         stored,

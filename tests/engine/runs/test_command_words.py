@@ -52,7 +52,7 @@ def test_each_recorded_command_is_described_in_words(
     assert describe_command(call, record, main, main, 100) == text
 
 
-def test_a_repeated_command_has_the_ends_of_its_values() -> None:
+def test_a_repeated_command_is_described_with_its_least_and_greatest_value() -> None:
     assert describe_command(Call.RUN, (300.0,), -90.0, 480.0, 100) == "run -90 … 480 °/s"
 
 

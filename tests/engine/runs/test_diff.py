@@ -35,14 +35,16 @@ def test_the_difference_of_two_runs_is_told() -> None:
         ("y_mm", 0.01, None),
     ],
 )
-def test_robots_part_by_distance_or_heading(field: str, step: float, at_s: float | None) -> None:
+def test_the_first_difference_of_two_runs_is_found_by_distance_or_heading(
+    field: str, step: float, at_s: float | None
+) -> None:
     one = np.zeros(11, np.dtype(list(TICK_FIELDS)))
     two = one.copy()
     two[field] += step * np.arange(11)
     assert find_first_difference_s(one, two, (10, 10)) == at_s
 
 
-def test_a_full_turn_is_no_parting() -> None:
+def test_headings_a_full_turn_apart_are_no_difference_of_two_runs() -> None:
     one = np.zeros(3, np.dtype(list(TICK_FIELDS)))
     two = one.copy()
     two["heading_deg"] += 360.0
@@ -53,7 +55,9 @@ def test_a_full_turn_is_no_parting() -> None:
     "until, prefix, row",
     [(None, False, 2), (None, True, 2), (99, False, None), (100, False, None), (101, False, 2)],
 )
-def test_output_is_compared_up_to_a_tick(until: int | None, prefix: bool, row: int | None) -> None:
+def test_the_output_of_two_runs_is_compared_up_to_the_given_tick(
+    until: int | None, prefix: bool, row: int | None
+) -> None:
     text = "for number in (1, 2):\n    tank_drive.on_for_seconds(20, 20, 0.5)\n    print({})\n"
     one = stored(text.format("'a', number"))
     two = stored(text.format("'a', number * number"))
@@ -62,14 +66,14 @@ def test_output_is_compared_up_to_a_tick(until: int | None, prefix: bool, row: i
     assert (found.tick, found.same) == (None, row is None)
 
 
-def test_runs_part_only_while_both_last() -> None:
+def test_two_runs_are_compared_only_as_long_as_both_last() -> None:
     one = np.zeros(11, np.dtype(list(TICK_FIELDS)))
     one["x_mm"][6:] = 100.0
     assert find_first_difference_s(one, one[:6], (10, 10)) is None
     assert find_first_difference_s(one[:6], one, (10, 10)) is None
 
 
-def test_output_that_ends_earlier_is_told() -> None:
+def test_a_comparison_says_which_runs_output_ends_earlier() -> None:
     one = stored("print('a')\n")
     two = stored("print('a')\nprint('b')\n")
     recording = dict(diff_runs(one, two).describe_recording())

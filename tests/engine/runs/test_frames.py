@@ -59,7 +59,7 @@ SAMPLE_TYPES = [
 ]
 
 
-def test_samples_say_what_when_where_and_from_which_line(logged: StoredRun) -> None:
+def test_the_sample_frame_has_variable_time_position_and_line(logged: StoredRun) -> None:
     frame = build_samples_frame([logged])
     assert list(frame.columns) == list(SAMPLE_COLUMNS)
     assert [str(kind) for kind in frame.dtypes] == SAMPLE_TYPES
@@ -75,7 +75,7 @@ def test_samples_say_what_when_where_and_from_which_line(logged: StoredRun) -> N
     assert frame["heading_deg"].tolist() == [pose.heading_deg for pose in poses]
 
 
-def test_runs_are_counted_in_the_order_given(
+def test_a_sample_frame_of_several_runs_numbers_them_in_order(
     record: Callable[..., Recorder], spec: RunSpec
 ) -> None:
     runs = []
@@ -92,14 +92,14 @@ def test_runs_are_counted_in_the_order_given(
 
 
 @pytest.mark.parametrize("count", [0, 1], ids=["no run", "run without samples"])
-def test_frame_without_samples_has_the_same_types(
+def test_a_sample_frame_without_samples_has_the_usual_types(
     record: Callable[..., Recorder], spec: RunSpec, count: int
 ) -> None:
     frame = build_samples_frame([record(spec).end() for _ in range(count)])
     assert (len(frame), [str(kind) for kind in frame.dtypes]) == (0, SAMPLE_TYPES)
 
 
-def test_pose_of_a_lost_tick_is_missing(logged: StoredRun) -> None:
+def test_the_pose_of_a_sample_whose_tick_is_lost_is_missing(logged: StoredRun) -> None:
     with open(logged.folder / TELEMETRY_FILE, "r+b") as handle:
         handle.truncate(64 + 12 * 64)
     frame = build_samples_frame([replace(logged, telemetry=type(logged.telemetry)(logged.folder))])
@@ -115,7 +115,7 @@ def test_telemetry_has_every_tick(logged: StoredRun, field: Field) -> None:
     assert (frame["x_mm"][0], frame["heading_deg"][0], frame["gyro_deg"][0]) == (5.0, -7.0, 0.0)
 
 
-def test_time_is_when_the_tick_falls_due(
+def test_the_time_in_telemetry_is_when_the_tick_falls_due(
     record: Callable[..., Recorder], spec: RunSpec, field: Field
 ) -> None:
     recorder = record(replace(spec, profile=replace(spec.profile, tick_hz=30)))
@@ -138,7 +138,7 @@ def sensors_one_by_one(run: StoredRun, field: Field) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def test_sensors_are_those_of_the_core_to_the_last_bit(
+def test_sensor_columns_of_telemetry_equal_the_simulations_to_the_last_bit(
     record: Callable[..., Recorder], spec: RunSpec, field: Field
 ) -> None:
     drift = DriftSpec(wheel_pc=1, gyro_dps=1, echo_loss_pc=90, light_pc=30)
@@ -181,7 +181,7 @@ def test_a_frame_of_more_ticks_takes_no_more_calls(
     assert calls(200) == calls(20)
 
 
-def test_noise_that_the_user_changes_is_in_the_sensors(
+def test_sensor_columns_follow_noise_that_the_user_changes(
     record: Callable[..., Recorder], spec: RunSpec, field: Field
 ) -> None:
     recorder = record(spec)
@@ -201,7 +201,7 @@ def test_noise_that_the_user_changes_is_in_the_sensors(
     assert differs.tolist() == [False] * 5 + [True] * 5 + [False] * 6
 
 
-def test_robot_without_some_sensors(
+def test_telemetry_of_a_robot_without_some_sensors_lacks_their_columns(
     record: Callable[..., Recorder], spec: RunSpec, field: Field
 ) -> None:
     robot = replace(
@@ -236,7 +236,7 @@ def grey() -> FieldFiles:
     return prepare(background("Grey_bands").image, [20])
 
 
-def test_mat_is_opened_where_the_host_left_it(
+def test_telemetry_opens_the_prepared_mat_that_the_run_recorded(
     record: Callable[..., Recorder],
     spec: RunSpec,
     grey: FieldFiles,
@@ -255,7 +255,7 @@ def reading_at(run: StoredRun, files: FieldFiles) -> float:
 
 @pytest.mark.quick_cases("never said")
 @pytest.mark.parametrize("known", [True, False], ids=["dropped from the cache", "never said"])
-def test_mat_is_prepared_again(
+def test_telemetry_prepares_the_mat_again_if_its_cache_is_gone(
     record: Callable[..., Recorder], spec: RunSpec, grey: FieldFiles, known: bool
 ) -> None:
     lost = replace(grey, pixels=grey.pixels.parent.parent / "gone" / grey.pixels.name)

@@ -65,7 +65,7 @@ def test_motor_columns_have_the_values_that_the_program_reads(text: str, profile
 
 
 @cases("text, profile", PROGRAMS)
-def test_dead_reckoning_turns_wheels_as_they_turned(
+def test_dead_reckoning_from_reversed_or_geared_motors_has_no_error(
     text: str, profile: str, tmp_path: Path
 ) -> None:
     stored = tuisim.simulate(text, profile=profile, preload="none").stored

@@ -10,7 +10,7 @@ from tests.running import PATIENCE_S, Start
 from tuisim.engine.protocol import Message
 
 
-def test_a_child_that_goes_while_its_events_are_read_has_not_crashed(
+def test_a_process_that_ends_while_its_events_are_read_is_not_called_crashed(
     start: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     handle = start("print('bye')")
@@ -27,7 +27,7 @@ def test_a_child_that_goes_while_its_events_are_read_has_not_crashed(
     assert ended.end == "finished"
 
 
-def test_who_follows_a_run_sees_all_of_it_however_short_it_is(start: Start) -> None:
+def test_the_whole_output_of_a_very_short_run_is_read(start: Start) -> None:
     handle = start("print('bye')")
     handle._look_at_s = math.inf
     for view in (handle.telemetry, handle.output):

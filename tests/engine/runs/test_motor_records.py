@@ -29,7 +29,7 @@ def hold(run: Run) -> Callable[..., Done]:
     return lambda **options: run(HOLD, profile="ev3", **options)
 
 
-def test_a_hold_that_swings_back_is_recorded(hold: Callable[..., Done]) -> None:
+def test_the_motor_file_records_the_swing_back_of_a_held_motor(hold: Callable[..., Done]) -> None:
     done = hold()
     ticks = done.run.telemetry.array()["tick"]
     columns = read_motor_columns(done.run.folder, done.run.spec.robot, ticks)
@@ -46,7 +46,7 @@ def test_a_hold_that_swings_back_is_recorded(hold: Callable[..., Done]) -> None:
     )
 
 
-def test_the_file_has_a_record_for_each_tick_and_is_the_same_again(
+def test_the_motor_file_has_a_record_for_each_tick_and_repeats_exactly(
     hold: Callable[..., Done],
 ) -> None:
     first = hold()
@@ -62,7 +62,7 @@ def test_a_profile_without_drivers_writes_no_file_of_motors(run: Run) -> None:
     assert read_motor_values(done.run.folder, done.run.spec, 0) == ()
 
 
-def test_values_of_lost_records_are_unknown(hold: Callable[..., Done]) -> None:
+def test_motor_columns_of_lost_records_are_missing(hold: Callable[..., Done]) -> None:
     done = hold()
     os.truncate(done.run.folder / MOTORS_FILE, HEADER_BYTES + 16 * 5 + 3)
     mat = done.run.field.open_field()
@@ -74,7 +74,7 @@ def test_values_of_lost_records_are_unknown(hold: Callable[..., Done]) -> None:
         assert np.isnan(values[5:]).all()
 
 
-def test_a_file_of_something_else_is_refused(hold: Callable[..., Done]) -> None:
+def test_a_motor_file_of_another_format_is_refused(hold: Callable[..., Done]) -> None:
     done = hold()
     (done.run.folder / MOTORS_FILE).write_bytes(b"x" * 100)
     with pytest.raises(LogError, match="not a tuisim recording"):

@@ -55,7 +55,7 @@ SAID: dict[str, tuple[RunSpec, Speeds, str]] = {
 
 
 @cases("spec, speeds, said", SAID)
-def test_a_pushed_turn_is_described_and_a_free_one_is_not(
+def test_a_turn_that_a_wall_pushed_aside_is_described_and_a_free_one_not(
     record: Callable[..., Recorder], spec: RunSpec, speeds: Speeds, said: str
 ) -> None:
     recorder = record(spec)
@@ -65,7 +65,9 @@ def test_a_pushed_turn_is_described_and_a_free_one_is_not(
     assert (push.words if push else "") == said
 
 
-def test_errors_of_wheels_do_not_hide_a_push(record: Callable[..., Recorder]) -> None:
+def test_slipping_wheels_do_not_hide_that_a_wall_pushed_the_robot(
+    record: Callable[..., Recorder],
+) -> None:
     recorder = record(replace(SPEC, world=replace(WORLD, drift=SLIPS)))
     recorder.drive(*TURN, 120)
     run = recorder.end()

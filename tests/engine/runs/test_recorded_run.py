@@ -51,7 +51,7 @@ def test_the_line_of_a_sample_is_that_of_the_last_one_in_its_tick(tmp_path: Path
     assert [index.find_line("b", tick) for tick in (4, 5)] == [0, 4]
 
 
-def test_rows_are_found_by_tick(tmp_path: Path) -> None:
+def test_rows_printed_until_a_tick_are_found(tmp_path: Path) -> None:
     leds = [build_led_row(dict.fromkeys(LED_NAMES, light)) for light in (0, 9)]
     index = index_of(
         tmp_path,
@@ -82,7 +82,7 @@ def test_the_line_that_printed_a_sample_is_found_in_its_tick(tmp_path: Path) -> 
     assert index.find_line("B", 5) == 3
 
 
-def test_new_levels_and_errors_stand_out_once(tmp_path: Path) -> None:
+def test_the_timeline_marks_each_new_level_and_error_once(tmp_path: Path) -> None:
     values = [100, 100, 99, 50, 50, 51, 100]
     rows = [(10 * at, Stream.STDOUT, f"Colour: {value}") for at, value in enumerate(values)]
     index = index_of(
@@ -105,7 +105,7 @@ def stored(
     return RunStore().load_run(run.run_id)
 
 
-def test_sensors_see_what_the_pen_had_drawn_by_then() -> None:
+def test_sensors_at_a_past_instant_see_only_the_pen_line_drawn_by_then() -> None:
     run = stored("tank_drive.on_for_seconds(50, 50, 0.6)\n", {"pen.down": True, "pen_marks": True})
     mat = run.open_mat()
     recording = Recording(run)

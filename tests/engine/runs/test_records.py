@@ -33,7 +33,7 @@ def _say_full(_: OSError) -> Exception:
     return _Full()
 
 
-def test_writers_ask_for_less_and_lose_nothing(
+def test_on_a_nearly_full_disk_writers_reserve_less_and_lose_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     real = os.posix_fallocate
@@ -60,7 +60,7 @@ def test_writers_ask_for_less_and_lose_nothing(
     assert TelemetryView(tmp_path).array()["tick"].tolist() == list(range(writer.count))
 
 
-def test_room_is_reserved_where_there_is_no_call_for_it(
+def test_disk_space_is_reserved_also_without_posix_fallocate(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delattr(os, "posix_fallocate")
@@ -70,7 +70,7 @@ def test_room_is_reserved_where_there_is_no_call_for_it(
     writer.close()
 
 
-def test_a_header_says_what_a_file_is() -> None:
+def test_a_recordings_header_is_refused_if_short_or_of_another_kind() -> None:
     made = pack_header(b"TUISIMOU", 0, 12)
     assert len(made) == HEADER_BYTES
     assert read_published_length(made, b"TUISIMOU", "f") == 12
@@ -83,7 +83,7 @@ def test_a_header_says_what_a_file_is() -> None:
             read_published_length(data, magic, "f")
 
 
-def test_rows_that_are_not_complete_are_left_out(tmp_path: Path) -> None:
+def test_incomplete_rows_of_an_output_file_are_left_out(tmp_path: Path) -> None:
     writer = OutputWriter(tmp_path)
     for text, stream in (
         (b"one", Stream.STDOUT),
@@ -115,10 +115,12 @@ def test_rows_that_are_not_complete_are_left_out(tmp_path: Path) -> None:
         ("x", Stream.STDOUT, "x"),
     ],
 )
-def test_speech_and_answers_are_marked(text: str, stream: Stream, shown: str) -> None:
+def test_speech_and_answers_to_input_are_marked_in_the_printed_output(
+    text: str, stream: Stream, shown: str
+) -> None:
     assert OutputRow(text, 0, 0, 0, stream).format_line() == shown
 
 
-def test_a_part_that_was_never_written_is_a_hole() -> None:
+def test_a_block_of_zeros_counts_as_a_hole_in_a_recording() -> None:
     assert is_hole(bytes(10_000))
     assert not is_hole(b"\1" + bytes(10_000))

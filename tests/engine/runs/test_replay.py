@@ -92,7 +92,7 @@ for way in range(300):
 """
 
 
-def test_a_drive_base_may_be_made_in_each_turn_of_a_loop(run: Run) -> None:
+def test_a_program_that_creates_a_drive_base_in_a_loop_is_replayed(run: Run) -> None:
     done = run(BASES, profile="lego-micropython", prelude="none")
     assert done.ended.summary == ""
     last = done.run.telemetry.last()

@@ -106,7 +106,9 @@ def test_stepping_two_lines_back_from_an_instant_holds_at_that_line(
     assert (paused.line, names["n"], names["m"]) == (3, "10", "81")
 
 
-def test_a_line_in_a_tick_is_where_it_began(recording: Recording, looker: Looker) -> None:
+def test_going_to_a_line_in_a_tick_holds_where_the_line_began(
+    recording: Recording, looker: Looker
+) -> None:
     looker.debugger.go_to_line(recording, 110, 3, Inspect())
     paused, names = looker.answer()
     assert (paused.line, paused.tick, names["n"], names["m"]) == (3, 110, "11", "100")
@@ -124,9 +126,7 @@ def test_a_step_from_a_past_instant_holds_at_the_next_line(
     assert (paused.line, paused.tick) == (2, 110)
 
 
-def test_beyond_the_end_it_is_held_at_the_end_and_may_go_on_over_it(
-    recording: Recording, looker: Looker
-) -> None:
+def test_going_beyond_a_runs_end_holds_at_the_end(recording: Recording, looker: Looker) -> None:
     looker.debugger.go(recording, Position(10_000), Inspect())
     paused, names = looker.answer()
     assert (paused.reason, paused.tick, names["n"]) == (PauseReason.END, 300, "29")
@@ -138,7 +138,9 @@ def test_beyond_the_end_it_is_held_at_the_end_and_may_go_on_over_it(
     assert (looker.passed, looker.failures) == (1, [])
 
 
-def test_a_step_is_taken_in_the_run_that_is_asked_for(recording: Recording, looker: Looker) -> None:
+def test_a_step_is_taken_in_the_run_asked_for_and_not_the_one_before(
+    recording: Recording, looker: Looker
+) -> None:
     run = start_run(
         Program("q.py", TEXT.replace("n * n", "-n")), build_run_spec(Settings()), RunOptions()
     )

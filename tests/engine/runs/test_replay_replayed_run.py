@@ -57,7 +57,9 @@ PLACED = {
 
 
 @cases("text", PLACED)
-def test_what_no_command_does_has_not_happened(stored: Stored, text: str) -> None:
+def test_a_replay_corrects_a_recording_changed_without_any_command(
+    stored: Stored, text: str
+) -> None:
     profile = "ev3" if "axle" in text else "robolab"
     told = stored(text + "\ntime.sleep(0.2)\n", profile=profile)
     honest = stored("\ntime.sleep(0.2)\n", profile=profile)
@@ -92,13 +94,13 @@ def test_what_a_process_of_the_program_writes_into_the_replay_is_not_judged(
 
 
 @pytest.mark.parametrize("profile", ["robolab", "ev3", "nbev3devsim"])
-def test_an_honest_run_stays_as_it_is(stored: Stored, profile: str) -> None:
+def test_replaying_an_honest_run_changes_nothing(stored: Stored, profile: str) -> None:
     actions: Sequence[UserAction] = (UserAction(10, SetButtons(("left",))),)
     run = stored("time.sleep(0.3)\n", profile=profile, actions=actions)
     assert replay_run(run, actions) == (run, "")
 
 
-def test_an_action_that_is_written_down_only_is_taken_back(stored: Stored) -> None:
+def test_a_replay_removes_a_user_action_forged_by_the_program(stored: Stored) -> None:
     run = stored(
         "session.steering._write_down(3, __import__('tuisim.engine.protocol', fromlist=['*']).SetPen(True))\n"
     )
@@ -108,7 +110,7 @@ def test_an_action_that_is_written_down_only_is_taken_back(stored: Stored) -> No
     assert RunStore().load_run(run.folder).actions == ()
 
 
-def test_commands_that_are_missing_or_more_than_are_recorded_are_named(stored: Stored) -> None:
+def test_a_replay_refuses_missing_or_surplus_command_records(stored: Stored) -> None:
     run = stored("")
     (run.folder / COMMANDS_FILE).rename(run.folder / "elsewhere")
     with pytest.raises(LogError, match="no record of what the program did"):
@@ -121,7 +123,7 @@ def test_commands_that_are_missing_or_more_than_are_recorded_are_named(stored: S
         replay_run(run, ())
 
 
-def test_parts_that_were_told_of_must_be_plugged_in(stored: Stored) -> None:
+def test_a_replay_refuses_parts_that_differ_from_those_reported(stored: Stored) -> None:
     run = stored("")
     told = replace(run.spec, robot=replace(run.spec.robot, gyro=None))
     with pytest.raises(LogError, match="parts differ from those that the program has reported"):

@@ -40,7 +40,7 @@ def earlier(run: Run) -> Path:
         "open --run RUN",
     ],
 )
-def test_another_format_is_one_sentence(
+def test_a_run_folder_of_another_format_is_refused_in_one_sentence(
     earlier: Path, here: Command, monkeypatch: pytest.MonkeyPatch, words: str
 ) -> None:
     for stream in (sys.stdin, sys.stdout):
@@ -50,13 +50,13 @@ def test_another_format_is_one_sentence(
     assert done.stderr == f"tuisim: {earlier / 'run.json'}: {REFUSED}\n"
 
 
-def test_another_format_is_told_in_the_list(earlier: Path) -> None:
+def test_the_list_of_runs_names_folders_of_another_format(earlier: Path) -> None:
     (info,) = (info for info in RunStore(earlier.parent.parent).runs() if info.id == earlier.name)
     assert info.end == "damaged"
     assert info.summary == "stored by another version of tuisim: format 1, this one reads 3"
 
 
-def test_a_motor_law_that_does_not_exist_is_told(run: Run) -> None:
+def test_a_run_file_with_an_unknown_motor_law_is_called_damaged(run: Run) -> None:
     folder = run("pass").run.folder
     data = json.loads((folder / "run.json").read_text())
     data["spec"]["profile"]["motor_law"] = "magnetic"

@@ -28,10 +28,10 @@ ACTIONS = (
         "debugged": RunOptions(breaks=("12 if x > 3",), trace_from_tick=7, hold_at=(7, 2)),
     },
 )
-def test_options_are_the_same_after_a_file(options: RunOptions) -> None:
+def test_run_options_are_the_same_after_writing_and_reading(options: RunOptions) -> None:
     assert RunOptions.from_plain(json.loads(json.dumps(options.to_plain()))) == options
 
 
-def test_an_option_that_does_not_exist_is_refused() -> None:
+def test_an_unknown_run_option_is_refused() -> None:
     with pytest.raises(TypeError):
         RunOptions.from_plain({**RunOptions().to_plain(), "hurry": True})

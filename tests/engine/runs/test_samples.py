@@ -130,7 +130,7 @@ def test_a_line_that_is_nearly_a_sample_is_told_with_the_sample_that_it_may_beco
         "a tuple": "rgb: (1, 2, 3)",
     },
 )
-def test_other_text_is_not_called_nearly_a_sample(text: str) -> None:
+def test_ordinary_text_is_not_called_nearly_a_sample(text: str) -> None:
     assert describe_near_sample([row_of(text)]) == ""
 
 

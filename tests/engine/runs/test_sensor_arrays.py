@@ -60,7 +60,7 @@ def places(count: int) -> np.ndarray:
 @cases("robot", ROBOTS)
 @pytest.mark.parametrize("walls", [True, False], ids=["walls", "open"])
 @pytest.mark.parametrize("floor_rgb", [None, (255, 250, 130)], ids=["mat", "floor"])
-def test_arrays_are_the_readings_to_the_bit(
+def test_sensor_values_computed_as_arrays_equal_single_readings_exactly(
     robot: RobotSpec, walls: bool, spec: RunSpec, field: Field, floor_rgb: Rgb | None
 ) -> None:
     field = replace(field, floor_rgb=floor_rgb)

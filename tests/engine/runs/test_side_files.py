@@ -75,7 +75,9 @@ def test_read_state_says_that_a_missing_file_is_not_there(tmp_path: Path) -> Non
         (FileRead("a", True, 3, 10, -1), FileRead("a", True, 3, 20, -1), False),
     ],
 )
-def test_files_with_the_same_state_are_the_same(one: FileRead, other: FileRead, same: bool) -> None:
+def test_two_file_states_count_as_the_same_only_if_nothing_differs(
+    one: FileRead, other: FileRead, same: bool
+) -> None:
     assert (one.is_same(other), other.is_same(one)) == (same, same)
 
 
@@ -89,7 +91,7 @@ def test_noted_files_are_listed_once(tmp_path: Path) -> None:
     assert read_reads(tmp_path) == FilesRead(files, 12)
 
 
-def test_a_longer_list_is_cut(tmp_path: Path) -> None:
+def test_a_list_of_read_files_beyond_the_limit_is_cut_and_counted(tmp_path: Path) -> None:
     rows = (json.dumps(asdict(FileRead(str(n), there=False))) + "\n" for n in range(MAX_READS + 3))
     (tmp_path / READS_FILE).write_text("".join(rows))
     found = read_reads(tmp_path)
@@ -99,7 +101,7 @@ def test_a_longer_list_is_cut(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "row", ["3", "[]", '{"path": "a"}', '{"left_out": null}', "\\", '{"left_out": 1e999}']
 )
-def test_a_damaged_list_is_named(row: str, tmp_path: Path) -> None:
+def test_a_damaged_list_of_read_files_is_refused_by_name(row: str, tmp_path: Path) -> None:
     (tmp_path / READS_FILE).write_text(f"{row}\n")
     with pytest.raises(LogError, match=READS_FILE):
         read_reads(tmp_path)

@@ -112,7 +112,7 @@ def test_a_run_is_found_by_id_number_folder_or_last(
     assert store.load_run(names[how]).id == logged.id
 
 
-def test_number_goes_before_the_start_of_an_id(store: RunStore, spec: RunSpec) -> None:
+def test_a_run_is_found_by_number_before_the_start_of_an_id(store: RunStore, spec: RunSpec) -> None:
     for _ in range(2):
         store.finish(store.create_run(PROGRAM, spec), FINISHED)
     assert store.find("2").number == 2
@@ -126,7 +126,9 @@ def test_unknown_run_is_an_error_that_says_what_there_is(
         store.load_run(text)
 
 
-def test_start_of_several_ids_is_an_error(store: RunStore, spec: RunSpec) -> None:
+def test_the_start_of_an_id_that_fits_several_runs_is_an_error(
+    store: RunStore, spec: RunSpec
+) -> None:
     ids = [store.create_run(PROGRAM, spec).id for _ in range(2)]
     with pytest.raises(LogError, match=f"2 runs: {ids[0]}, {ids[1]}"):
         store.find(ids[0][:4])
@@ -170,7 +172,7 @@ def test_run_that_could_not_be_listed_leaves_no_folder(tmp_path: Path, spec: Run
 # Runs without an end
 
 
-def test_run_of_a_living_process_is_running(
+def test_a_run_whose_process_lives_is_listed_as_running(
     record: Callable[..., Recorder], spec: RunSpec, store: RunStore
 ) -> None:
     recorder = record(spec)
@@ -185,7 +187,7 @@ def test_run_of_a_living_process_is_running(
     assert store.load_run("last").state == Unended.INTERRUPTED
 
 
-def test_a_lock_is_held_before_others_can_find_it(
+def test_a_runs_lock_file_appears_only_once_it_is_locked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     found = []
@@ -227,7 +229,7 @@ def test_runs_are_listed_where_no_lock_can_be_asked_for(
     assert [info.end for info in store.runs()] == [Unended.INTERRUPTED]
 
 
-def test_killed_run_keeps_its_rows(
+def test_a_killed_run_keeps_the_rows_that_it_printed(
     record: Callable[..., Recorder], spec: RunSpec, store: RunStore
 ) -> None:
     recorder = record(spec)
@@ -288,7 +290,7 @@ def test_long_output_is_counted_when_the_run_is_listed(
     assert _change_catalogue(store, "SELECT samples FROM runs") == [(1,)]
 
 
-def test_torn_run_says_what_is_lost(
+def test_a_run_with_cut_off_files_says_what_is_lost(
     record: Callable[..., Recorder], spec: RunSpec, store: RunStore
 ) -> None:
     recorder = record(spec)
@@ -320,7 +322,7 @@ DAMAGED = {
 
 
 @cases("content", DAMAGED)
-def test_damaged_run_file_is_named_and_does_not_hide_the_others(
+def test_a_damaged_run_file_is_named_and_does_not_hide_other_runs(
     logged: StoredRun, store: RunStore, spec: RunSpec, content: bytes
 ) -> None:
     bad = store.create_run(PROGRAM, spec)
@@ -330,7 +332,7 @@ def test_damaged_run_file_is_named_and_does_not_hide_the_others(
     assert [info.id for info in store.runs()] == [logged.id, bad.id]
 
 
-def test_damaged_action_is_named_by_its_row(logged: StoredRun) -> None:
+def test_a_damaged_user_action_of_a_run_is_named_by_its_row(logged: StoredRun) -> None:
     (logged.folder / ACTIONS_FILE).write_text('{"tick": 1, "kind": "set_pen", "down": true}\n5\n')
     run = load_run(logged.folder)
     assert run.actions == ()
@@ -434,7 +436,7 @@ def test_folder_deleted_or_copied_by_hand_is_noticed(
 
 
 @pytest.mark.slow
-def test_noise_is_found_also_after_65536_actions(logged: StoredRun) -> None:
+def test_the_noise_of_a_tick_is_found_also_after_65536_user_actions(logged: StoredRun) -> None:
     actions = [UserAction(tick, SetNoise(tick % 100, 0)) for tick in range(1, 70_001)]
     for tick in (2, 32_768, 65_536, 69_990):
         # A record may count actions that are due a little later or earlier.

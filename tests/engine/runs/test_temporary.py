@@ -38,7 +38,7 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_a_home_is_held_and_goes_with_its_block() -> None:
+def test_a_temporary_home_is_locked_and_deleted_after_its_block() -> None:
     with create_temporary_home() as folder:
         assert is_held(folder)
         (folder / "file").write_text("x")

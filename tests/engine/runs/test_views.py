@@ -97,7 +97,7 @@ def test_a_view_opened_before_its_file_exists_reads_it_later(tmp_path: Path) -> 
     writer.close()
 
 
-def test_a_view_that_grows_makes_no_third_copy(tmp_path: Path) -> None:
+def test_a_view_of_a_growing_recording_makes_no_extra_copy(tmp_path: Path) -> None:
     writer = TelemetryWriter(tmp_path)
     put(writer, 20_000)
     view = TelemetryView(tmp_path)
@@ -149,7 +149,7 @@ def test_a_record_beyond_the_end_raises(tmp_path: Path, index: int) -> None:
         TelemetryView(tmp_path).record(index)
 
 
-def test_new_rows_come_once_and_in_portions(tmp_path: Path) -> None:
+def test_new_rows_of_output_are_read_once_and_in_portions(tmp_path: Path) -> None:
     writer = OutputWriter(tmp_path)
     view = OutputView(tmp_path)
     for number in range(5):
@@ -174,7 +174,7 @@ def test_cut_off_telemetry_keeps_whole_records(tmp_path: Path) -> None:
     assert view.note == "telemetry.bin was truncated: the last 3 of 10 records are lost"
 
 
-def test_row_that_was_never_published_is_not_read(tmp_path: Path) -> None:
+def test_a_record_that_was_written_but_not_published_is_not_read(tmp_path: Path) -> None:
     writer = TelemetryWriter(tmp_path)
     put(writer, 4)
     writer.reserve(1)[HEADER_BYTES + 4 * 64 : HEADER_BYTES + 4 * 64 + 32] = b"\xff" * 32
@@ -212,7 +212,7 @@ def test_runs_that_are_over_keep_no_files_open(
 
 
 @pytest.mark.parametrize("name, rows, ticks", [(TELEMETRY_FILE, 1, 0), (OUTPUT_FILE, 0, 11)])
-def test_of_a_run_with_a_damaged_recording_the_other_one_is_read(
+def test_if_telemetry_or_output_is_damaged_the_other_is_still_read(
     name: str,
     rows: int,
     ticks: int,
@@ -232,7 +232,7 @@ def test_of_a_run_with_a_damaged_recording_the_other_one_is_read(
 
 
 @pytest.mark.parametrize("time_ns, most", [(0, 5), (2_000_000_000, 25)])
-def test_a_flood_of_short_rows_is_refused(
+def test_printing_too_many_short_rows_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, time_ns: int, most: int
 ) -> None:
     monkeypatch.setattr(records, "MAX_OUTPUT_ROWS", 5)
@@ -250,14 +250,14 @@ def _as_new(file: Path) -> None:
 
 @pytest.mark.parametrize("harm", [Path.unlink, _as_new])
 @pytest.mark.parametrize("name", [TELEMETRY_FILE, OUTPUT_FILE])
-def test_a_recording_that_is_lost_without_a_trace_is_told(
+def test_a_missing_recording_of_a_finished_run_is_noted(
     name: str, harm: Callable[[Path], None], logged: StoredRun, store: RunStore
 ) -> None:
     harm(logged.folder / name)
     assert store.load_run(logged.id).notes == (f"{name} is missing",)
 
 
-def test_ticks_that_are_lost_without_a_trace_are_told(logged: StoredRun, store: RunStore) -> None:
+def test_a_run_with_fewer_ticks_than_it_had_is_noted(logged: StoredRun, store: RunStore) -> None:
     file = logged.folder / TELEMETRY_FILE
     whole = file.read_bytes()
     file.write_bytes(pack_header(TELEMETRY_MAGIC, TICK_RECORD.size, 17) + whole[HEADER_BYTES:])

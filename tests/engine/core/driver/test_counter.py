@@ -23,7 +23,7 @@ def test_a_steady_speed_read_from_counts_is_rounded_towards_zero(speed_dps: floa
     assert counter.measure_speed_dps() == int(speed_dps)
 
 
-def test_the_speed_of_a_motor_that_stops_lingers() -> None:
+def test_the_read_speed_of_a_stopping_motor_falls_to_zero_with_a_delay() -> None:
     counter = Counter()
     turn(counter, 0, 200, 500.0)
     speeds = []
@@ -42,7 +42,7 @@ def test_a_motor_that_turns_back_counts_the_same_positions_again() -> None:
 
 
 @pytest.mark.parametrize("speed_dps", [90.5, -300.3, 1050.2])
-def test_after_a_stretch_at_constant_speed_the_speed_reads_as_after_single_steps(
+def test_skipping_a_stretch_at_constant_speed_gives_the_speed_of_single_steps(
     speed_dps: float,
 ) -> None:
     stepped = Counter()

@@ -13,11 +13,11 @@ MS = 1_000_000
     "jiffies, fires_at",
     [(0, 1), (5, 6), (63, 64), (64, 72), (100, 104), (504, 512), (505, 512), (1000, 1024)],
 )
-def test_long_timers_fire_late(jiffies: int, fires_at: int) -> None:
+def test_long_kernel_timers_fire_late(jiffies: int, fires_at: int) -> None:
     assert Jiffies().find_expiry_ns(0, jiffies) == fires_at * 10 * MS
 
 
-def test_a_run_begins_anywhere_on_the_kernels_clock() -> None:
+def test_timers_follow_the_kernels_clock_wherever_the_run_begins_on_it() -> None:
     clock = Jiffies(60, 5000)
     assert [clock.count(ms * MS) for ms in (0, 4, 5, 14, 15)] == [60, 60, 61, 61, 62]
     assert clock.begin_ns(61) == 5 * MS
@@ -26,5 +26,5 @@ def test_a_run_begins_anywhere_on_the_kernels_clock() -> None:
 
 
 @pytest.mark.parametrize("time_ms, jiffies", [(0, 0), (1, 1), (10, 1), (11, 2), (1000, 100)])
-def test_a_time_is_rounded_up(time_ms: int, jiffies: int) -> None:
+def test_a_time_in_ms_is_rounded_up_to_whole_jiffies(time_ms: int, jiffies: int) -> None:
     assert round_up(time_ms) == jiffies

@@ -73,7 +73,7 @@ def test_simulated_motors_reproduce_recorded_positions_and_states(name: str) -> 
 
 
 @pytest.mark.slow
-def test_nearly_all_recordings_are_the_same_to_the_last_digit() -> None:
+def test_nearly_all_recorded_motor_runs_are_reproduced_to_the_last_digit() -> None:
     same = [name for name, one in RECORDINGS.items() if Bench(one).run().samples == one.samples]
     assert len(same) >= EXACT
 
@@ -126,13 +126,13 @@ def test_reading_a_motor_more_often_does_not_change_how_it_moves(seed: int) -> N
 
 
 @for_each(seed=range(30))
-def test_steps_of_the_speed_control_are_the_same_one_by_one(seed: int) -> None:
+def test_skipping_steps_of_the_speed_control_changes_nothing(seed: int) -> None:
     shown = [*play(build_motor(), seed, None)]
     with patch.object(DriverMotor, "_can_regulate", lambda *_: False):
         assert [*play(build_motor(), seed, None)] == shown
 
 
-def test_a_move_is_looked_at_often_only_near_its_target() -> None:
+def test_a_move_is_stepped_finely_only_near_its_target() -> None:
     motor = build_motor()
     positions = []
     give(motor, 0, Command.RUN_TO_REL_POS, speed_dps=500, position=1500)

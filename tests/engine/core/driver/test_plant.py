@@ -18,7 +18,7 @@ def steady_dps(axle: Axle, duty: int) -> float:
     "plant, battery_v, expected_dps",
     [(LARGE, 8.0, 930), (LARGE, 7.2, 834), (LARGE, 8.38, 976), (MEDIUM, 8.38, 1445)],
 )
-def test_the_battery_sets_the_highest_speed(
+def test_the_battery_voltage_sets_an_axles_highest_speed(
     plant: object, battery_v: float, expected_dps: float
 ) -> None:
     assert steady_dps(Axle(plant, battery_v), 100) == pytest.approx(expected_dps, rel=0.01)  # type: ignore[arg-type]
@@ -52,7 +52,7 @@ def test_an_axle_turns_equally_far_whatever_the_time_steps() -> None:
         assert parts.speed_dps == pytest.approx(whole.speed_dps, abs=1e-6)
 
 
-def test_a_blocked_axle_leaves_the_obstacle_only_backwards() -> None:
+def test_a_blocked_axle_turns_only_away_from_the_obstacle() -> None:
     axle = Axle(LARGE, 8.0)
     axle.high_deg = 5.0
     assert steady_dps(axle, 100) == 0.0 and axle.angle_deg == 5.0

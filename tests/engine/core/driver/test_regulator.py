@@ -32,7 +32,7 @@ def test_a_hold_after_a_coast_begins_when_the_wheel_is_turned() -> None:
     assert driver.axle.circuit.dps_per_percent == 0.0
 
 
-def test_a_move_at_speed_0_arrives_only_where_it_is() -> None:
+def test_a_move_at_speed_0_ends_only_if_it_is_at_its_target() -> None:
     driver = build_driver()
     driver.run_to(0, 0, StopAction.BRAKE)
     run(driver, 0, 2)
@@ -42,7 +42,7 @@ def test_a_move_at_speed_0_arrives_only_where_it_is() -> None:
     assert driver.is_running
 
 
-def test_another_number_for_the_position_moves_a_hold_along() -> None:
+def test_setting_the_position_of_a_held_motor_does_not_move_it() -> None:
     driver = build_driver()
     driver.halt(0, StopAction.HOLD)
     driver.set_position(1000)

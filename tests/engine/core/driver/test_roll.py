@@ -41,7 +41,7 @@ def step_on(motor: DriverMotor, time_ns: int) -> None:
 
 
 @for_each(kind=ROLLS, seed=range(20))
-def test_a_roll_is_what_single_steps_make(seed: int, kind: str) -> None:
+def test_a_coasting_motor_computed_at_once_equals_single_steps(seed: int, kind: str) -> None:
     rolling, chance = build_rolling(seed, kind)
     stepped, _ = build_rolling(seed, kind)
     now_ns, times_ns = 402 * MS, []
@@ -59,7 +59,7 @@ def test_a_roll_is_what_single_steps_make(seed: int, kind: str) -> None:
 
 
 @for_each(kind=ROLLS, seed=range(20))
-def test_a_motor_that_has_rolled_knows_its_speed(seed: int, kind: str) -> None:
+def test_a_motor_stepped_on_after_coasting_reads_the_right_speed(seed: int, kind: str) -> None:
     rolling, chance = build_rolling(seed, kind)
     stepped, _ = build_rolling(seed, kind)
     now_ns = (402 + chance.randrange(300)) * MS
@@ -72,7 +72,7 @@ def test_a_motor_that_has_rolled_knows_its_speed(seed: int, kind: str) -> None:
         assert abs(rolling.speed_dps - stepped.speed_dps) <= 1
 
 
-def test_a_motor_that_rolls_out_is_not_stepped() -> None:
+def test_a_coasting_motor_is_computed_without_single_steps() -> None:
     rolling, _ = build_rolling(4, "coast")
     steps: list[int] = []
     with patch.object(DriverMotor, "control", lambda _, time_ns: steps.append(time_ns)):

@@ -126,7 +126,7 @@ def test_a_robot_at_a_wall_stalls_and_drives_away() -> None:
 
 @pytest.mark.parametrize("speed_dps", [200, 500, 900])
 @pytest.mark.parametrize("heading_deg", [0, 10])
-def test_a_wheel_at_a_wall_stalls_as_late_as_a_blocked_one_and_rests(
+def test_a_wheel_at_a_wall_is_stalled_as_late_as_a_blocked_motor(
     speed_dps: int, heading_deg: int
 ) -> None:
     lab = Lab(replace(WORLD, start=Pose(600, 500, heading_deg)))
@@ -148,7 +148,7 @@ def test_a_wheel_at_a_wall_stalls_as_late_as_a_blocked_one_and_rests(
     assert lab.sim.pose.x_mm > pose.x_mm - 300
 
 
-def test_an_arm_stands_at_its_end() -> None:
+def test_an_arm_stops_at_its_end_stop_in_both_directions() -> None:
     lab = Lab()
     arm = lab.motors[2]
     give(arm, 0, Command.RUN_FOREVER, speed_dps=-300)
@@ -197,7 +197,7 @@ def release(lab: Lab, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_released_robot_never_speeds_up(seed: int) -> None:
+def test_a_robot_whose_motors_are_released_only_slows_down(seed: int) -> None:
     lab = Lab(seed=seed)
     lab.run(seed, 1000)
     release(lab, seed)

@@ -111,7 +111,7 @@ def test_disc_has_the_known_number_of_pixels(diameter: int, pixels: int) -> None
         "fractions are cut": (Pose(500.9, 500, 0), (520, 613)),
     },
 )
-def test_the_corner_of_the_seen_box_is_rounded_as_in_the_old_simulator(
+def test_the_pixels_under_a_sensor_are_rounded_as_in_the_old_simulator(
     pose: Pose, corner: tuple[int, int]
 ) -> None:
     nudged = Pose(pose.x_mm + 1e-9, pose.y_mm - 1e-9, pose.heading_deg)
@@ -147,7 +147,7 @@ def test_find_color_code_gives_the_lego_code_of_each_colour(
 
 
 @pytest.mark.parametrize("light", [0, 20], ids=["clear", "noisy"])
-def test_pixel_array_is_what_the_reading_is_made_of(light: int, mat: OpenMat) -> None:
+def test_the_mean_of_a_sensors_pixel_array_is_its_reading(light: int, mat: OpenMat) -> None:
     instant = at(1010, 500, 33, light=light)
     field = mat("Rainbow_bands")
     array = color.read_pixel_array(LEFT, instant, field)

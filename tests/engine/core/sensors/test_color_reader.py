@@ -44,7 +44,7 @@ SENSORS = (LEFT, RIGHT, replace(LEFT, white_percent=61.0, black_percent=7.5))
     st.sampled_from((ROBOLAB, EV3)),
     st.sampled_from((FIELD, ON_FLOOR)),
 )
-def test_whole_channels_are_those_of_a_reading(
+def test_the_quick_colour_reader_gives_the_channels_of_a_full_reading(
     x_mm: float, y_mm: float, heading_deg: float, profile: ProfileSpec, field: Field
 ) -> None:
     instant = Instant(0, Pose(x_mm, y_mm, heading_deg), profile=profile)
@@ -55,13 +55,15 @@ def test_whole_channels_are_those_of_a_reading(
 
 @pytest.mark.parametrize("profile", [ROBOLAB, EV3])
 @pytest.mark.parametrize("strategy", ["gaussian", "centre"])
-def test_weighted_discs_are_read_as_well(strategy: str, profile: ProfileSpec) -> None:
+def test_the_quick_colour_reader_reads_weighted_discs_too(
+    strategy: str, profile: ProfileSpec
+) -> None:
     sensor = replace(LEFT, strategy=strategy)
     seen = measure_color(sensor, Instant(0, Pose(20.0, 500.0, 30.0), profile=profile), FIELD)
     assert build_rgb_reader(sensor, profile, FIELD)(20.0, 500.0, 30.0) == seen.rgb
     assert any(seen.rgb)
 
 
-def test_whole_channels_of_every_mean() -> None:
+def test_integer_division_gives_the_same_channels_for_every_sum() -> None:
     count = count_disc_pixels(DIAMETER)
     assert all(int(total / count) == total // count for total in range(255 * count + 1))

@@ -53,14 +53,14 @@ def read(
 
 
 @pytest.mark.parametrize(("grey", "percent"), [(255, 85), (0, 5), (128, 45)])
-def test_white_and_black_are_as_far_apart_as_on_a_brick(grey: int, percent: int) -> None:
+def test_reflected_light_of_white_and_black_is_as_on_a_brick(grey: int, percent: int) -> None:
     seen = read(grey)
     assert LightRead.REFLECTED.compute_value(seen, 100) == percent
     assert LightRead.REFLECTION.compute_value(seen, 100) == percent
     assert len(set(seen.rgb)) == 1
 
 
-def test_the_reflection_of_a_hub_is_of_all_colours() -> None:
+def test_a_hubs_reflection_is_the_mean_of_all_colours_not_red_alone() -> None:
     on_hub = read(128, sensor=replace(LEFT, port="C"))
     assert (read(128).is_hubs, on_hub.is_hubs) == (False, True)
     for seen, percent in (
@@ -74,12 +74,12 @@ def test_the_reflection_of_a_hub_is_of_all_colours() -> None:
 
 
 @pytest.mark.parametrize("profile", PROFILES.values(), ids=PROFILES)
-def test_only_the_courses_sensors_read_the_mat_as_it_is(profile: ProfileSpec) -> None:
+def test_only_the_course_profiles_read_the_mats_colours_unchanged(profile: ProfileSpec) -> None:
     assert (find_response(LEFT, profile) == EVEN) == (profile.name in ("robolab", "nbev3devsim"))
 
 
 @pytest.mark.parametrize("profile", [ROBOLAB, EV3])
-def test_a_sensor_may_have_its_own_white_and_black(profile: ProfileSpec) -> None:
+def test_a_sensors_own_white_and_black_percents_set_its_reading(profile: ProfileSpec) -> None:
     sensor = replace(LEFT, white_percent=62.0, black_percent=7.0)
     shown = [
         LightRead.REFLECTION.compute_value(read(grey, profile, sensor), 100) for grey in (255, 0)
@@ -87,7 +87,7 @@ def test_a_sensor_may_have_its_own_white_and_black(profile: ProfileSpec) -> None
     assert shown == [62, 7]
 
 
-def test_beyond_the_edge_nothing_reflects() -> None:
+def test_beyond_the_mats_edge_a_sensor_reads_black_and_no_colour() -> None:
     off = Instant(0, Pose(-500.0, 500.0, 0.0), profile=EV3, noise=NoiseSpec())
     assert measure_color(LEFT, off, paint(255)).rgb == (0, 0, 0)
     assert measure_color(LEFT, off, paint(255)).name == "NoColor"
@@ -95,7 +95,7 @@ def test_beyond_the_edge_nothing_reflects() -> None:
 
 
 @pytest.mark.parametrize("grey", [0, 100, 255])
-def test_the_quick_reader_with_noise_agrees_with_the_slow_one(grey: int) -> None:
+def test_the_quick_colour_reader_with_noise_equals_the_slow_one(grey: int) -> None:
     field = paint(grey)
     place = (POSE.x_mm, POSE.y_mm, POSE.heading_deg)
     noisy = build_noisy_rgb_reader(LEFT, EV3, field)
@@ -104,7 +104,7 @@ def test_the_quick_reader_with_noise_agrees_with_the_slow_one(grey: int) -> None
         assert noisy(*place, 20, 1, tick) == measure_color(LEFT, instant, field).rgb
 
 
-def test_the_picture_shows_what_the_sensor_reads() -> None:
+def test_the_middle_of_a_sensors_pixel_array_equals_its_reading() -> None:
     instant = Instant(0, POSE, profile=EV3)
     box = read_pixel_array(LEFT, instant, paint(255))
     middle = 3 * (DIAMETER * DIAMETER // 2 + DIAMETER // 2)
@@ -139,5 +139,7 @@ def test_sensors_differ_by_drift() -> None:
         pytest.param((13, 60, 13), 3, id="dark green"),
     ],
 )
-def test_colors_of_the_brick(rgb: tuple[int, int, int], code: int) -> None:
+def test_find_brick_color_code_gives_the_code_that_a_brick_reads(
+    rgb: tuple[int, int, int], code: int
+) -> None:
     assert find_brick_color_code(*rgb) == code

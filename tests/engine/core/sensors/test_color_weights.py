@@ -48,7 +48,9 @@ def test_readings_across_an_edge_follow_the_weights_of_the_disc(
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)
-def test_noise_comes_before_the_weights(grey_bands: Field, strategy: str) -> None:
+def test_noise_is_added_to_pixels_before_they_are_weighted(
+    grey_bands: Field, strategy: str
+) -> None:
     clear = seen(grey_bands, 1125, strategy)
     noisy = seen(grey_bands, 1125, strategy, light=20)
     assert clear == pytest.approx(128.0)

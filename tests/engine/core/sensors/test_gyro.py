@@ -31,7 +31,7 @@ def spin(sign: int, profile: str, drift: DriftSpec, step: int, robot: RobotSpec)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
-def test_an_angle_misses_what_is_faster_than_the_gyro_senses(sign: int) -> None:
+def test_a_turn_faster_than_the_gyro_senses_is_counted_at_its_limit(sign: int) -> None:
     sim = spin(sign, "lego-micropython", NO_DRIFT, 300, SMALL)
     instant = sim.build_instant()
     assert abs(instant.turn_rate_dps) > 600

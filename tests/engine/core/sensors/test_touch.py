@@ -39,7 +39,7 @@ BUMPER = TouchSpec(x_mm=10, y_mm=50, width_mm=40)
         (300, 1092, 90, True, True),
     ],
 )
-def test_a_bumper_is_pressed_within_2_mm(
+def test_a_bumper_is_pressed_within_2_mm_of_a_wall_or_box(
     x_mm: float, y_mm: float, heading_deg: float, walls: bool, is_pressed: bool
 ) -> None:
     world = WorldSpec(obstacles=(BOX,), walls=walls)

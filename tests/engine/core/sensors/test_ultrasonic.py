@@ -50,24 +50,24 @@ def test_the_ultrasonic_sensor_measures_the_distance_to_each_wall(
         "outside, facing away": (Pose(3000, 500, 0), WALLS, 2550),
     },
 )
-def test_the_distance_is_that_to_the_nearest_wall_or_box(
+def test_the_ultrasonic_distance_is_that_to_the_nearest_wall_or_box(
     pose: Pose, world: WorldSpec, expected_mm: int
 ) -> None:
     assert measure_distance_mm(pose, SENSOR, world) == expected_mm
 
 
-def test_range_is_the_most_that_is_reported() -> None:
+def test_an_ultrasonic_sensor_reports_at_most_its_range() -> None:
     assert measure_distance_mm(Pose(500, 500, 0), UltrasonicSpec(max_range_mm=1000), WALLS) == 1000
 
 
-def test_a_sensor_mounted_backwards_looks_back() -> None:
+def test_an_ultrasonic_sensor_mounted_backwards_measures_behind_the_robot() -> None:
     assert (
         measure_distance_mm(Pose(1000, 500, 0), UltrasonicSpec(angle_deg=180, y_mm=-20), WALLS)
         == 980
     )
 
 
-def test_every_ray_is_given_and_the_nearest_counts() -> None:
+def test_an_ultrasonic_reading_is_the_shortest_of_its_seven_rays() -> None:
     rays = measure_rays_mm(Pose(1000, 500, 30), SENSOR, WALLS)
     assert [angle for angle, _ in rays] == [9, 16, 23, 30, 37, 44, 51]
     assert round(min(length for _, length in rays)) == measure_distance_mm(

@@ -45,7 +45,7 @@ def test_giving_a_motor_the_same_command_again_changes_nothing(
 
 
 @for_each(seed=range(10))
-def test_another_command_begins_where_the_motion_is(seed: int) -> None:
+def test_another_command_starts_from_the_present_position_and_speed(seed: int) -> None:
     control = build_controller()
     chance = random.Random(seed)
     now_us = 0
@@ -62,7 +62,7 @@ def test_another_command_begins_where_the_motion_is(seed: int) -> None:
         assert control.rate(now_us) == pytest.approx(rate, abs=2)
 
 
-def test_a_robot_that_was_held_begins_where_its_wheels_have_come_to() -> None:
+def test_after_being_held_back_a_new_command_starts_at_the_wheels_position() -> None:
     control = build_controller(slips=True)
     control.run(0, rest, 500, ACCELERATION)
     control.note_lag(200 * MS_US, HELD_US, FAR_MILLI, 0)
@@ -91,7 +91,7 @@ def test_a_held_back_move_goes_on_as_a_free_one_delayed_by_the_hold() -> None:
             )
 
 
-def test_a_motion_is_stalled_once_its_time_is_over() -> None:
+def test_a_motion_held_back_is_stalled_after_the_stall_time() -> None:
     control = build_controller()
     stall_us = control.settings.stall_time_ms * MS_US
     control.run(0, rest, 500, ACCELERATION)

@@ -106,7 +106,7 @@ def test_motor_records_do_not_depend_on_how_ticks_are_grouped(world: WorldSpec, 
     assert records[0] == records[1]
 
 
-def test_a_motor_that_held_stands_when_it_is_let_go() -> None:
+def test_a_drive_base_released_from_holding_has_speed_0() -> None:
     robot = Robot(WORLD)
     robot.base.drive(robot.now_us, 300, 0)
     robot.sim.advance(100)
@@ -115,7 +115,7 @@ def test_a_motor_that_held_stands_when_it_is_let_go() -> None:
     assert robot.base.find_rates(robot.now_us) == (0, 0)
 
 
-def test_a_robot_at_a_wall_drives_back() -> None:
+def test_a_robot_blocked_at_a_wall_can_drive_back() -> None:
     robot = Robot(WALLED)
     robot.base.drive(robot.now_us, 200, 0)
     while not robot.motors[0].blocked_ticks:

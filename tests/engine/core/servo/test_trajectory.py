@@ -48,7 +48,7 @@ def draw_move(seed: int) -> tuple[Segment, int, int, int]:
 
 
 @for_each(seed=SEEDS)
-def test_a_move_ends_at_its_target(seed: int) -> None:
+def test_the_trajectory_of_a_move_ends_at_its_target_at_rest(seed: int) -> None:
     start, rate, acceleration, target = draw_move(seed)
     trajectory = build_angle_move(start, target, rate, acceleration, FASTEST)
     check_joints(trajectory)
@@ -58,7 +58,7 @@ def test_a_move_ends_at_its_target(seed: int) -> None:
 
 
 @for_each(seed=SEEDS)
-def test_a_move_for_a_time_ends_with_it(seed: int) -> None:
+def test_the_trajectory_of_a_timed_move_ends_after_its_time(seed: int) -> None:
     start, rate, acceleration, target = draw_move(seed)
     time_us = (1 + 2 * abs(target)) * MS_US
     trajectory = build_timed_move(start, time_us, rate, acceleration, FASTEST)
@@ -71,7 +71,7 @@ def test_a_move_for_a_time_ends_with_it(seed: int) -> None:
 
 
 @for_each(seed=SEEDS)
-def test_a_move_without_an_end_reaches_its_rate(seed: int) -> None:
+def test_the_trajectory_of_an_endless_move_reaches_its_speed(seed: int) -> None:
     start, rate, acceleration, _ = draw_move(seed)
     trajectory = build_endless_move(start, rate, acceleration, FASTEST)
     check_joints(trajectory)
@@ -80,7 +80,7 @@ def test_a_move_without_an_end_reaches_its_rate(seed: int) -> None:
 
 
 @for_each(seed=SEEDS)
-def test_a_move_in_proportion_has_the_times_of_its_leader(seed: int) -> None:
+def test_a_follower_move_in_proportion_ends_at_the_same_time_as_its_leader(seed: int) -> None:
     start, rate, acceleration, target = draw_move(seed)
     leader = build_angle_move(start, 2000 + abs(target), rate, acceleration, FASTEST)
     ways = target * MILLI - start.milli, leader.end.milli - start.milli
@@ -97,7 +97,7 @@ def test_a_move_in_proportion_has_the_times_of_its_leader(seed: int) -> None:
 
 
 @pytest.mark.parametrize("is_endless", [False, True])
-def test_each_time_lies_in_a_part(is_endless: bool) -> None:
+def test_each_time_of_a_trajectory_lies_in_one_of_its_segments(is_endless: bool) -> None:
     start = Segment(7 * MS_US, 0, -300, 0)
     trajectory = (
         build_endless_move(start, 500, 900, FASTEST)

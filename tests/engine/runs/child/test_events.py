@@ -31,7 +31,7 @@ from tuisim.engine.runs.child.events import EventStream, decode_event
     ],
     ids=["text", "list", "missing", "unknown", "type", "bytes"],
 )
-def test_rubbish_from_the_child_is_a_host_error(line: bytes) -> None:
+def test_an_unreadable_event_from_a_programs_process_is_a_host_error(line: bytes) -> None:
     with pytest.raises(HostError):
         decode_event(line)
 
@@ -66,7 +66,9 @@ STARTED, SPOKE, ENDED = Started(PROTOCOL_VERSION, 7), Spoke("x", 5), Ended(End.F
         "large",
     ],
 )
-def test_events_come_in_their_order(events: list[Message], count: int, says: str) -> None:
+def test_events_of_a_process_out_of_order_count_as_falsified(
+    events: list[Message], count: int, says: str
+) -> None:
     read_fd, write_fd = os.pipe()
     os.set_blocking(read_fd, False)
     try:

@@ -139,7 +139,7 @@ def test_isolation_without_bubblewrap_is_refused(
     )
 
 
-def test_isolation_is_refused_with_the_reason_of_bubblewrap(
+def test_where_bubblewrap_fails_isolation_is_refused_with_its_reason(
     tmp_path: Path, here: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "goals.toml").write_text(GOALS)

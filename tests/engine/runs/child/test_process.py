@@ -49,7 +49,7 @@ def test_runs_of_many_threads_share_one_warm_process(monkeypatch: pytest.MonkeyP
     assert len(started) == 1
 
 
-def test_a_stack_is_awaited_until_it_is_whole(
+def test_the_stack_dump_of_a_stuck_program_is_read_once_it_is_complete(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path, parts = tmp_path / STACK_FILE, iter(["", "File", "File a", "File a", "late"])

@@ -11,7 +11,7 @@ from tests.running import PATIENCE_S
 from tuisim.engine.runs.child.process import measure_computed_s, measure_waited_s
 
 
-def test_the_time_that_a_process_waits_for_a_processor_is_known() -> None:
+def test_the_time_a_process_waits_for_a_processor_is_measured() -> None:
     # Two processes for one processor: at least one of them waits.
     start_s = time.monotonic()
     only = {min(os.sched_getaffinity(0))}
@@ -36,7 +36,7 @@ def test_the_time_that_a_process_waits_for_a_processor_is_known() -> None:
     assert measure_waited_s(spinning[0].pid) == measure_computed_s(spinning[0].pid) == 0.0
 
 
-def test_the_time_that_other_threads_wait_counts_too() -> None:
+def test_the_time_its_other_threads_wait_for_a_processor_is_measured_too() -> None:
     busy = f"import os, threading\nos.sched_setaffinity(0, {{{min(os.sched_getaffinity(0))}}})\n"
     busy += "threading.Thread(target=lambda: sum(range(10**12))).start()\nprint(flush=True)\n"
     spinning = [
