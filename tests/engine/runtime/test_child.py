@@ -50,7 +50,7 @@ def test_a_run_whose_folder_cannot_be_used_says_why(tmp_path: Path) -> None:
     assert (told, done.stderr) == ([Ended(End.CRASHED, 0, 0, 1, reason)], b"")
 
 
-def test_commands_before_the_first_line_wait_for_it(
+def test_commands_sent_before_the_first_line_take_effect_at_it(
     start: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     make, written = process._open_pipe, list[int]()
@@ -69,7 +69,7 @@ def test_commands_before_the_first_line_wait_for_it(
     assert (ended.end, [row.text for row in run.output.read_all_rows()]) == ("finished", ["1"])
 
 
-def test_a_child_that_is_killed_leaves_every_row(start: Start) -> None:
+def test_a_killed_programs_process_leaves_every_printed_row(start: Start) -> None:
     run = start(
         "import time\nfor i in range(10**6):\n    print('A:', i)\n    time.sleep(0.01)", live=True
     )

@@ -19,13 +19,13 @@ LATE = {
 
 
 @cases("text", LATE)
-def test_a_limit_in_what_python_calls_at_the_end_is_one(run: Run, text: str) -> None:
+def test_the_time_limit_also_ends_code_that_python_calls_at_exit(run: Run, text: str) -> None:
     done = run(text, prelude="none", time_limit_s=2.0)
     assert (done.ended.end, done.lines, done.errors) == ("time_limit", [], [])
 
 
 @cases("text", LATE)
-def test_a_stop_in_what_python_calls_at_the_end_is_one(start: Start, text: str) -> None:
+def test_a_stop_also_ends_code_that_python_calls_at_exit(start: Start, text: str) -> None:
     handle = start(text, prelude="none", live=True)
     until(handle, lambda: handle.telemetry.count > 2)
     handle.stop()
@@ -44,7 +44,9 @@ ASKS = "import itertools\ndef ask(_):\n    try: input('? ')\n    except EOFError
 @pytest.mark.parametrize(
     "options", [{}, {"live": True, "speed": 0.0}, {"live": True}], ids=["headless", "fast", "live"]
 )
-def test_asking_without_end_can_be_stopped(start: Start, options: dict[str, object]) -> None:
+def test_a_program_that_asks_for_input_without_end_can_be_stopped(
+    start: Start, options: dict[str, object]
+) -> None:
     handle = start(
         ASKS.format("map(int, itertools.count())"), prelude="none", time_limit_s=0.0, **options
     )
@@ -65,7 +67,9 @@ OWN_SIGNALS = {
 
 
 @cases("text, end", OWN_SIGNALS)
-def test_signals_are_the_programs(start: Start, text: str, end: str) -> None:
+def test_signal_handlers_of_the_program_do_not_prevent_a_stop(
+    start: Start, text: str, end: str
+) -> None:
     handle = start(text, prelude="none", live=True)
     until(handle, lambda: handle.telemetry.count > 2 or handle.ended is not None)
     handle.stop()

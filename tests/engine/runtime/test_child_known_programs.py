@@ -25,7 +25,7 @@ from tuisim.engine.runtime.loader import LOOP_HOOK, compile_program
     ],
     ids=["wrong", "with a warning", "with an ignored warning", "too deep", "too long"],
 )
-def test_a_program_with_anything_to_tell_is_compiled_by_its_own_process(text: str) -> None:
+def test_a_program_with_warnings_or_errors_is_compiled_in_its_own_process(text: str) -> None:
     known = KnownPrograms()
     filters = list(warnings.filters)
     limit = sys.getrecursionlimit()
@@ -33,7 +33,9 @@ def test_a_program_with_anything_to_tell_is_compiled_by_its_own_process(text: st
     assert (warnings.filters, sys.getrecursionlimit()) == (filters, limit)
 
 
-def test_a_program_is_compiled_when_it_is_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_run_a_second_time_is_compiled_once_and_remembered(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     known = KnownPrograms()
     program = Program("p.py", "for i in (1, 2): print(i)", path="/folder/p.py")
     compiled = []
@@ -58,7 +60,7 @@ def test_the_same_text_under_another_file_name_is_compiled_anew() -> None:
     assert [code and code.co_filename for code in codes] == [None, None, "a.py", "b.py"]
 
 
-def test_a_program_whose_annotations_are_dropped_is_another_program() -> None:
+def test_a_program_compiled_without_annotations_is_remembered_separately() -> None:
     known = KnownPrograms()
     program = Program("p.py", "def f(a: b): pass")
     codes = [known.code(program, drops) for drops in (True, False, True, False)]

@@ -49,7 +49,7 @@ def test_the_speed_may_change_while_a_program_sleeps(
     )
 
 
-def test_a_program_whose_turn_does_not_come_is_not_taken_for_stuck(
+def test_a_program_that_waits_for_a_busy_processor_is_not_called_stuck(
     start: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run = start("print('A: 1')\n" + GOES_ON, live=True)

@@ -58,16 +58,18 @@ def forked() -> bytes:
     return over(started(PROGRAM)).recording[1]
 
 
-def test_a_child_that_is_started_by_itself_prints_the_same(forked: bytes, real_start: None) -> None:
+def test_a_process_started_by_itself_prints_the_same_addresses_as_a_forked_one(
+    forked: bytes, real_start: None
+) -> None:
     assert over(started(PROGRAM)).recording[1] == forked
 
 
-def test_a_child_of_a_template_prints_the_same(forked: bytes) -> None:
+def test_a_process_forked_from_a_template_prints_the_same_addresses(forked: bytes) -> None:
     started("pass", live=True, speed=0.0).prepare_next()
     assert over(started(PROGRAM, live=True, speed=0.0)).recording[1] == forked
 
 
-def test_an_isolated_child_prints_the_same(forked: bytes) -> None:
+def test_an_isolated_process_prints_the_same_addresses(forked: bytes) -> None:
     isolated = True
     try:
         check_isolation()
@@ -92,7 +94,7 @@ TOLD = {
 
 
 @cases("text, told", TOLD)
-def test_an_address_stands_for_one_object(run: Run, text: str, told: str) -> None:
+def test_each_printed_address_stands_for_one_object(run: Run, text: str, told: str) -> None:
     lines = "\n".join(run(text, prelude="none").lines)
     names = [f"<object object at {0x7F0000000010 + 16 * n:#x}>" for n in range(3)]
     assert lines == told.format(*names)
@@ -104,7 +106,7 @@ def test_a_summary_has_the_address_of_the_error_text(run: Run) -> None:
     assert (done.ended.summary, done.errors[-1]) == (f"{told} (line 2)", told)
 
 
-def test_what_is_looked_at_keeps_nothing_alive(run: Run) -> None:
+def test_printing_an_objects_address_does_not_keep_it_alive(run: Run) -> None:
     text = "class A:\n    def __del__(self): print('gone')\na = A()\nprint('at', a is not None, a)\ndel a\nprint('end')"
     assert run(text, prelude="none").lines[1:] == ["gone", "end"]
 

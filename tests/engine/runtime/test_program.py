@@ -94,7 +94,7 @@ HINTS = {
 
 
 @pytest.mark.parametrize("name, how", HINTS.items(), ids=HINTS)
-def test_a_name_of_the_prelude_that_is_missing_names_the_prelude(
+def test_an_undefined_predefined_name_is_explained_in_the_error(
     run: Run, name: str, how: str
 ) -> None:
     done = run(f"print('A: 1')\n{name}\n", prelude="none")
@@ -149,9 +149,7 @@ REFUSED = {
 
 
 @cases("text, words", REFUSED)
-def test_what_the_library_has_for_other_hardware_is_refused(
-    run: Run, text: str, words: str
-) -> None:
+def test_library_classes_for_other_hardware_are_refused(run: Run, text: str, words: str) -> None:
     done = run(text)
     assert done.ended.end == "raised"
     assert words in done.errors[-1]
@@ -241,7 +239,7 @@ CHANCE = (
 )
 
 
-def test_every_kind_of_chance_comes_from_the_seed(run: Run) -> None:
+def test_every_source_of_random_numbers_follows_the_seed(run: Run) -> None:
     assert run(CHANCE).lines == run(CHANCE).lines
     assert run(CHANCE, seed=1).lines != run(CHANCE, seed=2).lines
 

@@ -56,7 +56,9 @@ READS = {
 
 
 @pytest.mark.parametrize("case", READS)
-def test_files_of_the_bricks_home_are_those_beside_the_program(folder: Path, case: str) -> None:
+def test_paths_in_the_bricks_home_folder_read_files_beside_the_program(
+    folder: Path, case: str
+) -> None:
     text, expected = READS[case]
     done = _run(folder, text)
     assert (done.lines, done.errors) == ([expected], [])
@@ -85,7 +87,9 @@ CHANGES = {
 
 
 @pytest.mark.parametrize("case", CHANGES)
-def test_files_and_folders_change_beside_the_program(folder: Path, case: str) -> None:
+def test_changing_files_in_the_bricks_home_folder_changes_those_beside_the_program(
+    folder: Path, case: str
+) -> None:
     text, added, removed = CHANGES[case]
     before = {str(path.relative_to(folder)) for path in folder.rglob("*")}
     assert _run(folder, text).errors == []
@@ -93,13 +97,13 @@ def test_files_and_folders_change_beside_the_program(folder: Path, case: str) ->
     assert (sorted(after - before), sorted(before - after)) == (added, removed)
 
 
-def test_a_file_that_is_missing_is_missing_beside_the_program(folder: Path) -> None:
+def test_the_error_about_a_missing_file_names_the_folder_of_the_program(folder: Path) -> None:
     errors = _run(folder, "open('/home/robot/none.txt')").errors
     assert (
         errors[-1] == f"FileNotFoundError: [Errno 2] No such file or directory: '{folder}/none.txt'"
     )
 
 
-def test_a_program_of_the_course_has_no_brick(folder: Path) -> None:
+def test_in_the_course_profile_the_bricks_home_folder_does_not_exist(folder: Path) -> None:
     errors = _run(folder, "open('/home/robot/a.txt')", "robolab").errors
     assert errors[-1].endswith("'/home/robot/a.txt'")

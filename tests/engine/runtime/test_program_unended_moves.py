@@ -55,7 +55,7 @@ MOVES = {
 
 
 @cases("text, least_s, turned", MOVES)
-def test_a_move_that_ends_goes_on_to_its_end(
+def test_a_move_still_under_way_at_the_programs_end_is_completed(
     run: Run, text: str, least_s: float, turned: tuple[int, int]
 ) -> None:
     done = run(_EV3DEV2 + text, profile="ev3")
@@ -78,7 +78,7 @@ RESTS = {
 
 
 @cases("text, most_s", RESTS)
-def test_wheels_come_to_rest(run: Run, text: str, most_s: float) -> None:
+def test_a_run_lasts_until_its_wheels_have_come_to_rest(run: Run, text: str, most_s: float) -> None:
     done = run(_EV3DEV2 + text, profile="ev3")
     alone = run(f"{_EV3DEV2}{text}; left.on(5)", profile="ev3")
     rests_s = (done.ended.time_ns - alone.ended.time_ns) / 1e9
@@ -88,13 +88,13 @@ def test_wheels_come_to_rest(run: Run, text: str, most_s: float) -> None:
     assert abs(before["x_mm"] - last["x_mm"]) < 0.01
 
 
-def test_wheels_that_come_to_rest_do_not_count_to_the_limit(run: Run) -> None:
+def test_wheels_rolling_out_at_the_end_do_not_make_a_run_hit_the_time_limit(run: Run) -> None:
     text = _EV3DEV2 + "left.on(50); sleep(1); left.off()"
     done = run(text, profile="ev3", time_limit_s=1.05)
     assert (done.ended.end, done.ended.time_ns) == ("finished", 1_050_000_000)
 
 
-def test_by_the_rules_of_the_course_a_run_ends_with_its_program(run: Run) -> None:
+def test_in_the_course_profile_a_run_ends_at_once_with_its_program(run: Run) -> None:
     done = run(_EV3DEV2 + "left.on(50); sleep(1); left.off()", profile="robolab")
     assert done.ended.time_ns < 1_010_000_000
 
@@ -106,7 +106,7 @@ def test_a_move_that_goes_on_after_the_program_ends_at_the_time_limit(run: Run) 
     assert (done.ended.end, done.ended.time_ns) == ("time_limit", 2_000_000_000)
 
 
-def test_a_threads_work_ends_with_the_program(run: Run) -> None:
+def test_a_daemon_thread_stops_when_the_program_ends(run: Run) -> None:
     done = run(
         "import threading\n"
         + _EV3DEV2
@@ -118,7 +118,7 @@ def test_a_threads_work_ends_with_the_program(run: Run) -> None:
     assert (done.lines, done.ended.time_ns > 1.9e9) == ([], True)
 
 
-def test_a_live_run_ends_as_one_in_the_background(run: Run) -> None:
+def test_a_live_run_ends_at_the_same_time_as_one_in_the_background(run: Run) -> None:
     text = _EV3DEV2 + "left.on_for_degrees(30, 200, block=False); right.on(10)"
     live = run(text, profile="ev3", live=True, speed=0.0)
     background = run(text, profile="ev3")

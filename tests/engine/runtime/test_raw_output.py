@@ -47,7 +47,7 @@ def test_raw_output_larger_than_the_buffer_is_stored_whole(run: Run) -> None:
 
 
 @pytest.mark.slow
-def test_an_endless_command_of_c_comes_to_an_end(run: Run) -> None:
+def test_an_endless_c_command_ends_once_its_output_is_too_long(run: Run) -> None:
     text = "import ctypes\nctypes.CDLL(None).system(b'yes 0123456789012345678901234567890123456789 2>&1')\nprint('on')"
     done = run(text, prelude="none")
     assert (done.ended.end, done.lines[-1][-2:]) == ("finished", "on")
@@ -62,7 +62,9 @@ def test_raw_output_counts_for_the_limit_of_output(run: Run) -> None:
     assert (done.ended.end, done.ended.error_line) == ("output_limit", 3)
 
 
-def test_a_file_that_takes_the_number_of_ours_is_no_output(run: Run, tmp_path: Path) -> None:
+def test_a_programs_file_that_reuses_our_descriptor_is_not_taken_for_output(
+    run: Run, tmp_path: Path
+) -> None:
     text = (
         f"import os\nos.closerange(100, 1024)\nheld = [open({str(tmp_path / 'own.txt')!r}, 'w+') for _ in range(250)]\n"
         "for f in held:\n    f.write('secret')\n    f.flush()\n"
@@ -71,7 +73,7 @@ def test_a_file_that_takes_the_number_of_ours_is_no_output(run: Run, tmp_path: P
     assert run(text, prelude="none").lines == ["{6}"]
 
 
-def test_what_is_looked_at_in_a_pause_writes_nothing(start: Start) -> None:
+def test_output_written_while_inspecting_a_value_is_dropped(start: Start) -> None:
     text = "import os\nclass A:\n    def __repr__(self): return str(os.write(1, b'seen\\n')) + 'A!'\na = A()\npass"
     driver = Driver(start(text, prelude="none", live=True, breaks=("5",)))
     driver.paused()

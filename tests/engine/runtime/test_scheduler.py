@@ -12,7 +12,7 @@ THREADS = (
 )
 
 
-def test_the_limit_of_threads_is_named(run: Run) -> None:
+def test_starting_too_many_threads_raises_with_the_limit(run: Run) -> None:
     summary = run(THREADS.format(1001), prelude="none").ended.summary
     assert (
         summary == "RuntimeError: can't start new thread: a program may have 1000 at once (line 3)"

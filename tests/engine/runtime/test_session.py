@@ -14,7 +14,7 @@ from tuisim.engine.protocol import (
 )
 
 
-def test_actions_come_at_their_ticks(run: Run) -> None:
+def test_planned_user_actions_take_effect_at_their_ticks(run: Run) -> None:
     done = run(
         "import time\ntime.sleep(1)",
         actions=(
@@ -29,7 +29,7 @@ def test_actions_come_at_their_ticks(run: Run) -> None:
     assert last is not None and last.actions == 3
 
 
-def test_an_action_comes_after_what_a_program_does_before_its_tick(run: Run) -> None:
+def test_a_user_action_takes_effect_after_what_the_program_did_before_its_tick(run: Run) -> None:
     # The driver notices the end of the move between two ticks, and the program goes on at once.
     text = """
 import time
@@ -44,7 +44,7 @@ print(button.enter)
     assert run(text, profile="ev3", actions=(press,)).lines == [tick, "False"]
 
 
-def test_a_button_is_held_between_its_actions(run: Run) -> None:
+def test_a_planned_press_holds_the_button_until_its_release(run: Run) -> None:
     done = run(
         "import time\nfrom ev3dev2.button import Button\nb = Button()\n"
         "for i in range(5):\n    print(b.buttons_pressed)\n    time.sleep(0.1)",
@@ -53,6 +53,6 @@ def test_a_button_is_held_between_its_actions(run: Run) -> None:
     assert done.lines == ["[]", "[]", "['enter']", "['enter']", "[]"]
 
 
-def test_only_actions_may_be_scripted() -> None:
+def test_only_user_actions_can_be_planned_for_a_run() -> None:
     with pytest.raises(TypeError, match="user action"):
         UserAction(0, SetSpeed(1.0))

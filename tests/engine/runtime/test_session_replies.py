@@ -46,7 +46,7 @@ def talked(run: RunHandle) -> Done:
     return talk(run, lambda: Reply(next(said)), lambda: run.waiting_for_reply)
 
 
-def test_the_program_gets_every_message_in_no_time(start: Start) -> None:
+def test_a_program_gets_every_reply_without_simulated_time_passing(start: Start) -> None:
     text = GLUE + "import time\nfor i in range(6):\n    print(pyState())\nprint(get_clock())"
     done = talked(start(text, replies=True))
     assert done.lines[0] == "{'messages': []}"
@@ -69,7 +69,7 @@ def test_a_run_with_messages_can_be_repeated(start: Start, tmp_path: Path) -> No
     assert again.lines == first.lines
 
 
-def test_without_anybody_who_replies_there_are_no_messages(run: Run) -> None:
+def test_without_a_responder_a_program_gets_no_messages(run: Run) -> None:
     assert run(GLUE + "print(pyState())").lines == ["{'messages': []}"]
 
 
@@ -91,7 +91,9 @@ def test_a_reply_may_be_larger_than_the_pipe(start: Start) -> None:
         ),
     },
 )
-def test_a_stop_ends_the_waiting(text: str, options: dict[str, Any], start: Start) -> None:
+def test_a_stop_ends_a_programs_wait_for_a_reply(
+    text: str, options: dict[str, Any], start: Start
+) -> None:
     handle = start(text, **options)
     until(handle, lambda: handle.waiting_for_reply or handle.waiting_for_input is not None)
     handle.stop()

@@ -30,7 +30,9 @@ OWN_STACK = {
 
 
 @cases("text, told", OWN_STACK)
-def test_a_program_sees_its_own_frames_only(run: Run, text: str, told: list[str]) -> None:
+def test_a_program_that_inspects_the_stack_sees_only_its_own_frames(
+    run: Run, text: str, told: list[str]
+) -> None:
     done = run(
         f"import faulthandler, inspect, time, traceback\ndef f(): {text}\nf()", prelude="none"
     )

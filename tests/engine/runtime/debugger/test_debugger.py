@@ -88,13 +88,13 @@ def places(driver: Driver, how: LineStep, most: int) -> list[int]:
         "out": (LineStep.OUT, [1]),
     },
 )
-def test_steps_show_the_lines_of_the_program_only(
+def test_steps_of_the_debugger_hold_only_at_lines_of_the_program(
     debug: Callable[..., Driver], how: LineStep, lines: list[int]
 ) -> None:
     assert places(debug(CALLS, hold_at=FIRST_LINE), how, 40) == lines
 
 
-def test_out_of_a_function_holds_in_its_caller(debug: Callable[..., Driver]) -> None:
+def test_stepping_out_of_a_function_holds_in_its_caller(debug: Callable[..., Driver]) -> None:
     driver = debug(CALLS, breaks=("3 if a == 1",))
     held = driver.paused()
     assert (held.line, held.reason, held.detail, held.value) == (
@@ -132,7 +132,7 @@ motor.on_for_degrees(30, 500)
 
 
 @pytest.mark.parametrize("profile", ["robolab", "ev3"])
-def test_breakpoints_use_the_sign_that_the_program_reads(
+def test_breakpoints_on_motor_columns_use_the_sign_that_the_program_reads(
     debug: Callable[..., Driver], profile: str
 ) -> None:
     names = ["left_position_deg > 90", "left_speed_dps < 0"]
@@ -154,7 +154,9 @@ DRIVE = "import time\ntank_drive.on(60, 40)\nfor n in range(200):\n    time.slee
 
 
 @pytest.mark.parametrize("text", BREAKS)
-def test_events_hold_the_run_where_they_are_met(debug: Callable[..., Driver], text: str) -> None:
+def test_a_breakpoint_on_an_event_holds_where_it_is_met(
+    debug: Callable[..., Driver], text: str
+) -> None:
     driver = debug(
         DRIVE,
         breaks=(text, "# 3"),
@@ -169,7 +171,7 @@ def test_events_hold_the_run_where_they_are_met(debug: Callable[..., Driver], te
     assert driver.finish(Resume()).end == "finished"
 
 
-def test_a_motor_that_is_held_fast_is_an_event(debug: Callable[..., Driver]) -> None:
+def test_the_breakpoint_stall_holds_when_a_motor_is_blocked(debug: Callable[..., Driver]) -> None:
     driver = debug(DRIVE, breaks=("stall",), solid=True, pose=(2200.0, 500.0, 0.0))
     assert driver.paused().detail == "stall"
 
@@ -190,7 +192,7 @@ CONDITIONS = {
 
 
 @pytest.mark.parametrize("text, expected", CONDITIONS.items(), ids=CONDITIONS)
-def test_conditions_are_evaluated_without_moving_anything(
+def test_evaluating_a_breakpoints_condition_does_not_change_the_run(
     debug: Callable[..., Driver], text: str, expected: tuple[str, int | None]
 ) -> None:
     value, i = expected
@@ -252,7 +254,7 @@ for i in range(2):
     [(2, 4), (3, 4), (5, 7), (8, 9), (10, 11)],
     ids=["blank", "comment", "doc", "between", "in a loop"],
 )
-def test_a_line_without_code_holds_at_the_next_one_that_has(
+def test_a_breakpoint_on_a_line_without_code_holds_at_the_next_line_of_code(
     debug: Callable[..., Driver], line: int, held: int
 ) -> None:
     assert debug(BLANKS, breaks=(str(line),)).paused().line == held
@@ -261,7 +263,7 @@ def test_a_line_without_code_holds_at_the_next_one_that_has(
     assert driver.do(RunToLine(line)).line == held
 
 
-def test_a_break_in_any_thread_holds_all(debug: Callable[..., Driver]) -> None:
+def test_a_breakpoint_met_in_one_thread_holds_all_threads(debug: Callable[..., Driver]) -> None:
     driver = debug(THREADS, breaks=("5 if name == 'B'",))
     held = driver.paused()
     assert (held.line, held.thread) == (5, "B")
@@ -276,7 +278,9 @@ def test_a_break_in_any_thread_holds_all(debug: Callable[..., Driver]) -> None:
     assert {(step.thread, step.line) for step in lines} <= {("B", line) for line in (3, 4, 5)}
 
 
-def test_stepping_breaks_and_looking_change_nothing(debug: Callable[..., Driver], run: Run) -> None:
+def test_stepping_and_inspecting_do_not_change_the_recorded_run(
+    debug: Callable[..., Driver], run: Run
+) -> None:
     plain = run(THREADS, noise=(20, 30), seed=4)
     driver = debug(
         THREADS, hold_at=FIRST_LINE, breaks=("14", "sample main"), noise=(20, 30), seed=4
@@ -361,7 +365,7 @@ HELD_THEN_STOPPED = {
 
 @pytest.mark.slow_cases("with a loop around")
 @cases("text, how", HELD_THEN_STOPPED)
-def test_stop_works_wherever_it_holds(
+def test_a_run_can_be_stopped_wherever_the_debugger_holds_it(
     debug: Callable[..., Driver], text: str, how: dict[str, object]
 ) -> None:
     driver = debug(text, **how)

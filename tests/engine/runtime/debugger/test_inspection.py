@@ -57,7 +57,7 @@ def test_a_value_whose_repr_never_ends_does_not_hide_the_other_variables(
     assert driver.finish(StepLine(LineStep.OUT)).end == "finished"
 
 
-def test_imports_are_no_variables_not_even_of_functions_that_are_replaced(start: Start) -> None:
+def test_imported_names_are_not_shown_as_variables(start: Start) -> None:
     text = "from time import time\nfrom math import sqrt\nimport random\nx = 1\nprint(x)\n"
     driver = Driver(start(text, live=True, speed=0.0, breaks=("5",)))
     driver.paused()

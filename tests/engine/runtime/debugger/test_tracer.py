@@ -53,7 +53,9 @@ def stops_at_once(driver: Driver) -> None:
 @pytest.mark.quick_cases("generators-into", "repr that raises-into")
 @pytest.mark.parametrize("how", LineStep)
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_every_awkward_program_is_stepped_through(start: Start, name: str, how: LineStep) -> None:
+def test_the_debugger_steps_through_every_awkward_program(
+    start: Start, name: str, how: LineStep
+) -> None:
     text = PROGRAMS[name]
     driver = begin(start, text)
     ended = step_through(driver, text, how)
@@ -65,7 +67,7 @@ def test_every_awkward_program_is_stepped_through(start: Start, name: str, how: 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_stop_works_at_every_step(start: Start, name: str) -> None:
+def test_a_stepped_program_can_be_stopped_at_every_step(start: Start, name: str) -> None:
     for steps in (0, 1, 3, 6):
         driver = begin(start, PROGRAMS[name])
         event = driver.wait_for(Paused, Ended)

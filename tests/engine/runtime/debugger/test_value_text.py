@@ -61,11 +61,11 @@ def test_each_kind_of_value_is_rendered_as_text(value: object, text: str) -> Non
     assert Renderer(1.0).render(value) == text
 
 
-def test_addresses_are_left_out() -> None:
+def test_shown_values_leave_out_memory_addresses() -> None:
     assert Renderer(1.0).render(Plain()).endswith(".Plain object>")
 
 
-def test_long_texts_are_cut() -> None:
+def test_long_texts_of_values_are_cut() -> None:
     shown = Renderer(1.0).render("x" * 10_000)
     assert len(shown) == MAX_CHARACTERS and shown.endswith("…")
     assert cut("abc", 3) == "abc" and cut("abcd", 3) == "ab…"
@@ -95,7 +95,9 @@ def test_an_error_whose_text_raises_is_its_kind() -> None:
     [("a + 1", ("4", "")), (" a ", ("3", "")), ("b", ("", "NameError: name 'b' is not defined"))],
     ids=["value", "spaces", "error"],
 )
-def test_an_expression_has_a_value_or_an_error(text: str, found: tuple[str, str]) -> None:
+def test_a_watched_expression_is_shown_as_its_value_or_error(
+    text: str, found: tuple[str, str]
+) -> None:
     assert evaluate(Renderer(1.0), text, {"a": 3}, builtins) == found
 
 

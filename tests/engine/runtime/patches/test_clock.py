@@ -106,7 +106,7 @@ def test_clocks_and_threads_give_the_same_run_twice(
     assert run(text).recording == first.recording
 
 
-def test_lines_of_the_program_are_recorded(run: Run) -> None:
+def test_output_and_ticks_are_recorded_with_the_programs_line(run: Run) -> None:
     done = run("import time\n\nprint('A: 1')\ntime.sleep(0.1)\nprint('A: 2')\n")
     rows = done.run.output.read_all_rows()
     assert [(row.text, row.line, row.time_ns, row.tick) for row in rows] == [
@@ -127,7 +127,9 @@ def test_lines_of_the_program_are_recorded(run: Run) -> None:
     ],
     ids=["computes", "reads"],
 )
-def test_a_long_loop_without_a_wait_is_told(start: Start, text: str, told: list[BusyLoop]) -> None:
+def test_a_long_loop_without_a_wait_sends_an_event_with_its_line(
+    start: Start, text: str, told: list[BusyLoop]
+) -> None:
     seen: list[Message] = []
     run = start(text, live=True, speed=0.0, time_limit_s=7.0)
     until(run, lambda: run.ended is not None, seen)

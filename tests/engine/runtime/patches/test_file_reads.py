@@ -52,7 +52,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @cases("text", READS)
-def test_a_file_that_was_there_is_noted_as_it_was(run: Run, folder: Path, text: str) -> None:
+def test_a_file_that_a_program_reads_is_noted_with_its_state_before(
+    run: Run, folder: Path, text: str
+) -> None:
     before = read_state(str(folder / "data.txt"))
     done = run(SETUP + text, prelude="none")
     assert done.ended.end == "finished", done.errors
@@ -68,20 +70,20 @@ def test_files_that_the_program_wrote_itself_are_not_noted_as_read(
     assert read_reads(done.run.folder).files == ()
 
 
-def test_a_file_that_is_not_there_is_noted(run: Run, folder: Path) -> None:
+def test_a_file_that_a_program_looks_for_in_vain_is_noted(run: Run, folder: Path) -> None:
     done = run("try:\n    open('calibration.json')\nexcept OSError:\n    pass", prelude="none")
     assert read_reads(done.run.folder).files == (
         FileRead(str(folder / "calibration.json"), there=False),
     )
 
 
-def test_further_files_are_counted(run: Run, folder: Path) -> None:
+def test_files_read_beyond_the_limit_are_only_counted(run: Run, folder: Path) -> None:
     text = f"for n in range({MAX_READS + 7}):\n    try:\n        open(f'n{{n}}')\n    except OSError:\n        pass"
     read = read_reads(run(text, prelude="none").run.folder)
     assert (len(read.files), read.left_out) == (MAX_READS, 7)
 
 
-def test_what_no_path_is_raises_the_errors_of_python(run: Run, folder: Path) -> None:
+def test_opening_what_is_no_path_raises_the_errors_of_python(run: Run, folder: Path) -> None:
     done = run(
         "class Odd:\n    def __fspath__(self): raise KeyError('odd')\nimport os\n"
         "for call in (lambda: open(), lambda: open(Odd()), lambda: open(3.5), lambda: open('a\\0b'),\n"

@@ -52,7 +52,7 @@ def builtins_of(module: str) -> list[tuple[str, str, str]]:
 
 
 @cases("check", CHECKS)
-def test_every_builtin_is_still_one(run: Run, check: str) -> None:
+def test_replaced_builtins_still_look_like_builtins(run: Run, check: str) -> None:
     names = [row for module in MODULES for row in builtins_of(module)]
     done = run(WALK.format(names=names, check=check), prelude="none")
     assert (done.ended.end, done.lines) == ("finished", [])
@@ -94,7 +94,7 @@ for call in {calls}:
 """
 
 
-def test_wrong_arguments_are_the_builtins_own_errors(run: Run) -> None:
+def test_replaced_builtins_raise_pythons_errors_for_wrong_arguments(run: Run) -> None:
     text = TELL.format(calls=CALLS)
     said: list[str] = []
     exec(text, {"said": said})
