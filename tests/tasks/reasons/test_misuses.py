@@ -121,6 +121,11 @@ def test_a_truth_that_never_changes_is_named_beside_the_wait_for_it() -> None:
             "time.sleep(1)",
             "while ultrasonic.distance_centimeters > 100:\n    pass\ntank_drive.off()",
         ),
+        "asked in each step": ASKS.format(15)
+        .replace("tank_drive.on", "for step in range(4):\n    tank_drive.on")
+        .replace("\nif", "\n    if")
+        .replace("    tank_drive.off()", "        tank_drive.off()")
+        .replace("time.sleep(1)", "    time.sleep(0.25)"),
         "stopped anyway": TOUCHES.format("sleep(0.2)\ntank.off()"),
         "global": LOST.replace("    speed = 60", "    global speed\n    speed = 60"),
     },

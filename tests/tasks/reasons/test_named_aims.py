@@ -58,9 +58,10 @@ def test_what_a_run_did_otherwise_than_its_words_say_is_told(text: str, words: s
         + "print('line: drive over it')\ntime.sleep(1.5)\ntank_drive.off()\n",
         "on to the middle of a band": UNTIL.format(90)
         + "print('grey')\ntime.sleep(0.1)\ntank_drive.off()\n",
+        "a long pause": f"{BANDS}tank_drive.on_for_seconds(5, 5, 1)\ntime.sleep(1000)\n",
         "a turn": f"{BANDS}# turn right\ntank_drive.on_for_seconds(30, -30, 1)\n",
         "another number": f"{BASE}base.straight(500)  # 50 cm\n",
     },
 )
 def test_a_run_that_did_as_it_says_has_no_reason(text: str) -> None:
-    assert find_reasons(run_text(text)) == ()
+    assert find_reasons(run_text(text, limit_s=12.0)) == ()

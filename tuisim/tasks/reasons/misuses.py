@@ -30,6 +30,8 @@ _OTHER_SHARE = 0.3
 """Moves that depend on a reading are wrong if the reading changes by this share."""
 _MIN_OTHER = 10.0
 """The change of the reading must also be at least so large."""
+_APART_S = 1.0
+"""A line that reads more often is in a loop that asks again."""
 _SOON_S = 0.3
 """A program that reads again so soon repeats its test."""
 _MIN_WAY_MM = 20.0
@@ -141,7 +143,10 @@ def _name(series: Series, value: float) -> str:
 def _find_lone_stops(data: RunData) -> Iterator[Unmet]:
     """Yield each stop that never came, since the program tested only once, and too early."""
     for stop in data.facts.lone_stops:
-        for read_tick in _list_ticks(data, stop.read_line):
+        read_ticks = _list_ticks(data, stop.read_line)
+        if np.diff(read_ticks).min(initial=data.hz) < _APART_S * data.hz:
+            continue
+        for read_tick in read_ticks:
             # The last reading may lie in the tick that the end of the program cut off.
             tick = min(read_tick, len(data.records) - 1)
             if _is_unstopped(data, stop, tick):

@@ -34,6 +34,7 @@ _MIN_ON_MM = 200.0
 """A robot that drives so far after a loop has ended has left the place whose light ended the loop."""
 _MIN_CHANGE_PC = 20.0
 _SOON_S = 0.6
+_MIN_ON_DEG = 90.0
 _MIN_SPIN_DEG = 60.0
 _MAX_SPOT_MM = 20.0
 """A robot that turns by so much, and gets no farther, turns on the spot."""
@@ -155,5 +156,13 @@ def _find_wrong_units(data: RunData) -> Iterator[Unmet]:
     is_cut_off = data.run.end is None or data.run.end.end is not End.FINISHED
     for wrong in data.facts.wrong_units:
         ticks = np.flatnonzero(lines == wrong.line)
-        if len(ticks) and (not wrong.is_endless or (is_cut_off and lines[-1] == wrong.line)):
+        is_stuck = is_cut_off and lines[-1] == wrong.line
+        if len(ticks) and (not wrong.is_endless or (is_stuck and _has_moved(data.records[ticks]))):
             yield Unmet(float(ticks[0] / data.hz), wrong.line, wrong.text)
+
+
+def _has_moved(records: Array) -> bool:
+    """Return whether a wheel turned on, and did not just come to rest."""
+    return any(
+        np.ptp(records[name]) > _MIN_ON_DEG for name in ("left_position_deg", "right_position_deg")
+    )
