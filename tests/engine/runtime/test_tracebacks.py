@@ -52,7 +52,7 @@ def test_of_a_long_chain_the_first_and_the_last_errors_are_told(run: Run) -> Non
     assert sum(line.startswith("ValueError: ") for line in errors) == 19
 
 
-def test_an_error_that_is_too_long_is_cut_off(run: Run) -> None:
+def test_an_error_text_that_is_too_long_is_cut_off(run: Run) -> None:
     done = run("raise ValueError('x' * (9 << 20))", prelude="none")
     assert done.ended.end == "raised"
     assert done.ended.summary.endswith("x… (too long: 9,437,196 characters) (line 1)")
@@ -99,7 +99,7 @@ def test_lone_surrogates_lose_neither_output_nor_export(here: Command, tmp_path:
     assert ",A,1" in (tmp_path / "cafe.csv").read_text()
 
 
-def test_an_error_that_python_cannot_raise_shows_the_programs_lines_only(run: Run) -> None:
+def test_an_ignored_error_in_a_destructor_shows_only_the_programs_lines(run: Run) -> None:
     done = run(
         "import time\nclass A:\n    def __del__(self): time.sleep(-1)\nA()\nprint('on')",
         prelude="none",

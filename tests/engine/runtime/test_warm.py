@@ -35,7 +35,7 @@ IMPORTS = "import datetime, gc, os, random, resource, signal, sys, threading, ti
 
 @pytest.mark.quick_cases("modules", "environment", "random")
 @pytest.mark.parametrize("name", SURROUNDINGS)
-def test_a_program_cannot_tell_how_it_was_started(
+def test_a_program_sees_the_same_surroundings_forked_or_started_by_itself(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The kept one may be older than a limit of this process.
@@ -49,7 +49,7 @@ def test_a_program_cannot_tell_how_it_was_started(
     assert forked == (alone, alone)
 
 
-def test_a_template_runs_each_program_as_it_is() -> None:
+def test_programs_forked_from_a_template_print_the_same_as_started_alone() -> None:
     process.end_warm_process()
     texts = [
         "import __main__; print(1, __main__.__file__)",
@@ -61,7 +61,7 @@ def test_a_template_runs_each_program_as_it_is() -> None:
     ]
 
 
-def test_a_template_is_told_what_is_different_in_a_run() -> None:
+def test_programs_forked_from_one_template_have_their_own_seed_start_and_arguments() -> None:
     process.end_warm_process()
     text = "print(random.random(), tank_drive, sys.argv)"
     seen = set()
@@ -107,7 +107,7 @@ else:
 
 
 @pytest.mark.usefixtures("home")
-def test_a_program_cannot_change_what_a_template_is_prepared_for() -> None:
+def test_a_program_cannot_affect_the_next_one_forked_from_its_template() -> None:
     process.end_warm_process()
     spec = build_run_spec(Settings())
     text = "tank_drive.on_for_rotations(20, 20, 1)\ntry: print(input())\nexcept EOFError: print('none')"
@@ -135,7 +135,7 @@ def test_a_program_cannot_change_what_a_template_is_prepared_for() -> None:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("real_mats", "home")
-def test_a_run_is_right_after_the_cached_mat_of_its_template_was_damaged() -> None:
+def test_readings_are_right_after_a_templates_cached_mat_was_damaged() -> None:
     text = "print(colorLeft.reflected_light_intensity_pc)"
     (seen,) = printed(text, True, "preloaded")
     files = field_files(build_run_spec(Settings({"seed": 3, "noise.light": 10})))

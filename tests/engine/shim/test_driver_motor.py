@@ -75,14 +75,14 @@ LINES = {
 
 
 @cases("text, lines", LINES)
-def test_a_motor_reads_and_waits_as_its_driver_does(
+def test_motor_calls_read_and_wait_as_the_ev3_driver_does(
     run_on: RunOn, text: str, lines: list[str]
 ) -> None:
     done = run_on(HEAD + text, profile="ev3")
     assert done.lines == lines, done.errors
 
 
-def test_a_move_goes_too_far_and_swings_back(run_on: RunOn) -> None:
+def test_a_move_on_the_ev3_overshoots_and_swings_back(run_on: RunOn) -> None:
     text = "m.on_for_degrees(50, 360)\nprint(m.position)\ntime.sleep(1)\nprint(m.position)"
     first, last = map(int, run_on(HEAD + text, profile="ev3").lines)
     assert 365 <= first <= 380
@@ -90,14 +90,14 @@ def test_a_move_goes_too_far_and_swings_back(run_on: RunOn) -> None:
 
 
 @pytest.mark.parametrize("seconds", [0.25, 1.0, 2.0])
-def test_a_timed_move_ends_late(run_on: RunOn, seconds: float) -> None:
+def test_a_timed_move_ends_as_late_as_with_the_ev3_driver(run_on: RunOn, seconds: float) -> None:
     text = f"t = time.time()\nm.on_for_seconds(50, {seconds})\nprint(time.time() - t)"
     [line] = run_on(HEAD + text, profile="ev3").lines
     # By the kernel's timer, by the driver's look, and by four attributes that are written.
     assert 0.004 < float(line) - seconds < 0.16
 
 
-def test_a_wait_ends_when_the_driver_looks(run_on: RunOn) -> None:
+def test_a_wait_for_a_motor_ends_when_the_driver_updates_its_state(run_on: RunOn) -> None:
     text = (
         "for _ in range(6):\n    m.on_for_degrees(50, 90, block=False)\n"
         "    while 'running' in m.state: pass\n    t = time.time()\n"
@@ -161,7 +161,9 @@ LIBRARIES = {"ev3": EV3DEV, "lego-micropython": PYBRICKS}
 
 @pytest.mark.parametrize("profile", LIBRARIES)
 @pytest.mark.parametrize("seed", range(2))
-def test_random_programs_come_out_the_same(run_on: RunOn, profile: str, seed: int) -> None:
+def test_random_motor_programs_give_the_same_output_twice(
+    run_on: RunOn, profile: str, seed: int
+) -> None:
     """A random program on a robot with an arm, among obstacles, comes out the same in every way of running it."""
     text = LIBRARIES[profile].format(seed=seed)
     done = run_on(text, "arm", "furnished", profile)
@@ -182,7 +184,7 @@ def test_the_battery_is_the_one_that_motors_feel(run_on: RunOn) -> None:
     assert 7.9 < float(line) < 8.0
 
 
-def test_who_polls_the_file_of_a_state_goes_on_with_the_look(run_on: RunOn) -> None:
+def test_polling_a_motors_state_file_returns_when_the_driver_updates_it(run_on: RunOn) -> None:
     text = (
         "import select\n"
         "f = open(f'/sys/class/tacho-motor/motor{m.device_index}/state')\np = select.poll()\n"

@@ -53,7 +53,7 @@ def test_bold_letters_have_more_ink(lighter: str, bolder: str) -> None:
 
 @pytest.mark.quick_cases("helvR")
 @pytest.mark.parametrize("family", ["charI", "helvR", "ncenB"])
-def test_letters_are_as_high_as_the_name_says(family: str) -> None:
+def test_letters_are_as_high_as_the_fonts_name_says(family: str) -> None:
     heights = [
         drawn(FACES[f"{family}{size:02}"]).getmask("H").getbbox() for size in (8, 12, 18, 24)
     ]
@@ -89,7 +89,7 @@ def test_fonts_that_are_drawn_are_told_once(run_on: RunOn, profile: str) -> None
     ]
 
 
-def test_what_later_versions_of_pillow_remove_is_no_news_to_a_program_for_the_brick(
+def test_deprecations_of_pillow_do_not_warn_a_program_for_the_brick(
     run: Run,
 ) -> None:
     warn = "warnings.warn('x is deprecated and will be removed in Pillow 14 (2027-10-15).', DeprecationWarning)"

@@ -66,7 +66,7 @@ print(arm.wait_until('stalled', timeout=2000), arm.position)
 """
 
 
-def test_an_arm_homes_at_its_end_stop_and_every_wait_ends_there(run_on: RunOn) -> None:
+def test_every_kind_of_wait_ends_when_an_arm_reaches_its_end_stop(run_on: RunOn) -> None:
     assert run_on(HOMES, "arm").lines == [
         "-90 0 ['running', 'overloaded', 'stalled']",
         "90 ['holding']",
@@ -78,7 +78,7 @@ def test_an_arm_homes_at_its_end_stop_and_every_wait_ends_there(run_on: RunOn) -
     ]
 
 
-def test_an_arm_of_the_browser_simulator_stops_but_never_stalls(run_on: RunOn) -> None:
+def test_in_the_browser_simulators_profile_an_arm_at_its_stop_is_not_stalled(run_on: RunOn) -> None:
     waits = (
         HOMES.partition("arm.off()")[0]
         .replace("-20", "20")

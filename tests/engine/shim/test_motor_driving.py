@@ -65,6 +65,6 @@ def test_the_librarys_own_follower_drives_the_lollipop(run_on: RunOn) -> None:
     assert way[-1][0] > 1860
 
 
-def test_following_too_fast_stops(run_on: RunOn) -> None:
+def test_follow_line_too_fast_raises_and_stops_the_robot(run_on: RunOn) -> None:
     text = FOLLOW.format(gains="kp=1000, ki=0, kd=0, speed=SpeedPercent(90)", errors=ERRORS)
     assert run_on(text, "default", "lollipop").lines == ["LineFollowErrorTooFast False"]

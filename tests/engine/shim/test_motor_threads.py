@@ -105,7 +105,7 @@ def test_three_threads_give_the_same_log_in_20_runs(run_on: RunOn) -> None:
     assert len(lines) > 60
 
 
-def test_other_presses_give_another_log(run_on: RunOn) -> None:
+def test_a_press_at_another_time_gives_another_log(run_on: RunOn) -> None:
     first, second = (
         run_on(PROGRAM, "default", "lollipop", "robolab", presses=presses)
         for presses in (PRESSES, ("enter@0.41", *PRESSES[1:]))

@@ -94,7 +94,7 @@ def run_program(
     return over(RunHandle(program, spec, field_files(spec), how, RunStore(), of_many=of_many))
 
 
-def test_a_sensor_is_there_when_the_program_asks_for_it(home: Path, tmp_path: Path) -> None:
+def test_a_sensor_is_plugged_in_when_the_program_asks_for_it(home: Path, tmp_path: Path) -> None:
     done = run_program(tmp_path, LATE_TOUCH)
     assert (done.ended.end, done.lines) == ("finished", ["0"])
     (part,) = done.run.plugged
@@ -107,7 +107,9 @@ def test_a_sensor_is_there_when_the_program_asks_for_it(home: Path, tmp_path: Pa
 
 
 @pytest.mark.parametrize("text", [TAKEN, OPENED])
-def test_a_port_that_is_used_stays_taken(home: Path, tmp_path: Path, text: str) -> None:
+def test_a_sensor_asked_for_on_a_used_port_is_not_plugged_in(
+    home: Path, tmp_path: Path, text: str
+) -> None:
     done = run_program(tmp_path, text)
     assert done.run.plugged == []
     assert "DeviceNotFound: TouchSensor(in1) is not connected" in done.errors[-1]
@@ -193,7 +195,9 @@ def test_a_program_that_asks_for_parts_late_runs_the_same_in_every_way(
     assert read_columns(live) == read_columns(again) == read_columns(many) == read_columns(done)
 
 
-def test_exports_have_the_columns_of_the_whole_robot(home: Path, tmp_path: Path) -> None:
+def test_telemetry_exports_have_columns_also_of_parts_plugged_in_late(
+    home: Path, tmp_path: Path
+) -> None:
     late = LATE_PROGRAMS["late, after driving"]
     done = run_program(tmp_path, late.text)
     run = done.run.stored()

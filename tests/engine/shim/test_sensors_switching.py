@@ -92,7 +92,7 @@ print(half - before < 0.05, 1.1 <= time.time() - half < 1.15)
 """
 
 
-def test_an_infrared_sensor_needs_more_than_a_second(run_on: RunOn) -> None:
+def test_an_infrared_sensors_first_reading_takes_more_than_a_second(run_on: RunOn) -> None:
     assert run_on(INFRARED, "eyes", "furnished").lines == ["True True"]
 
 

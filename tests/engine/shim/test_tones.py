@@ -19,7 +19,7 @@ from tuisim.engine.shim.tones import Tone, parse_beep
         ("-l 1 -n -l 2 --new -l 3 -d 9", [Tone(440, 1), Tone(440, 2), Tone(440, 3)]),
     ],
 )
-def test_beep_reads_its_options_as_tones(words: str, tones: list[Tone]) -> None:
+def test_options_of_the_beep_command_are_read_as_tones(words: str, tones: list[Tone]) -> None:
     assert parse_beep(words.split()) == tones
 
 
@@ -39,6 +39,6 @@ def test_beep_reads_its_options_as_tones(words: str, tones: list[Tone]) -> None:
         "loud",
     ],
 )
-def test_beep_refuses_wrong_options(words: str) -> None:
+def test_the_beep_command_refuses_wrong_options(words: str) -> None:
     with pytest.raises(ValueError):
         parse_beep(words.split())

@@ -108,7 +108,7 @@ print('looked')
 """
 
 
-def test_every_item_resolves_and_has_its_signature(run_on: RunOn) -> None:
+def test_every_name_of_ev3dev2_exists_with_its_signature(run_on: RunOn) -> None:
     wanted = [(item.id, item.kind, item.signature) for item in items()]
     assert len(wanted) == 849
     done = run_on(f"ITEMS = {json.dumps(wanted)!r}\n{WALK}")

@@ -47,12 +47,14 @@ print(ticks_diff(ticks_ms(), start))
 
 
 @pytest.mark.parametrize("case", PROGRAMS)
-def test_what_the_bricks_python_has_works_without_a_warning(run: Run, case: str) -> None:
+def test_functions_that_only_the_bricks_older_python_has_work_without_a_warning(
+    run: Run, case: str
+) -> None:
     text, printed = PROGRAMS[case]
     done = run(text, profile="ev3", prelude="none")
     assert (done.lines, done.errors) == ([printed], [])
 
 
-def test_a_program_of_the_course_has_todays_python(run: Run) -> None:
+def test_a_program_in_the_course_profile_has_todays_python(run: Run) -> None:
     text = "import threading\nprint(hasattr(threading.Thread, 'isAlive'))"
     assert run(text, profile="robolab", prelude="none").lines == ["False"]

@@ -8,7 +8,7 @@ from tests.running import Run
 LOOK = "import evdev\ndevices = [evdev.InputDevice(fn) for fn in evdev.list_devices()]\n"
 
 
-def test_every_name_can_be_imported(run: Run) -> None:
+def test_every_public_name_of_evdev_can_be_imported(run: Run) -> None:
     done = run(
         "from evdev import InputDevice, InputEvent, KeyEvent, UInput, categorize, ecodes, event_factory, list_devices\n"
         "from evdev.events import AbsEvent\nfrom evdev.util import is_device\nimport evdev.ecodes as e\n"
@@ -31,7 +31,7 @@ def test_opening_a_gamepad_is_refused(run: Run) -> None:
     assert (done.ended.exit_code, done.ended.error_line) == (1, 2)
 
 
-def test_making_a_device_is_refused(run: Run) -> None:
+def test_creating_an_evdev_device_is_refused(run: Run) -> None:
     assert (
         run("import evdev\nevdev.UInput()", prelude="none")
         .errors[-1]
@@ -39,7 +39,7 @@ def test_making_a_device_is_refused(run: Run) -> None:
     )
 
 
-def test_looking_for_a_gamepad_in_vain_tells_why(run: Run) -> None:
+def test_a_name_error_after_looking_for_a_gamepad_says_that_none_is_simulated(run: Run) -> None:
     text = f"{LOOK}for one in devices:\n    if one.name == 'Wireless Controller':\n        pad = one\npad.grab()"
     done = run(text, prelude="none")
     assert done.errors[-2:] == [
@@ -54,7 +54,7 @@ def test_another_error_of_a_program_that_reads_buttons_says_nothing_of_gamepads(
     assert done.errors[-1] == "NameError: name 'unknown' is not defined"
 
 
-def test_events_of_the_buttons_are_read_one_after_the_other(run_on: RunOn) -> None:
+def test_evdev_reads_events_of_the_bricks_buttons_in_order(run_on: RunOn) -> None:
     done = run_on(
         f"{LOOK}import asyncio, time\n(pad,) = devices\nprint(pad.name, pad.read_one())\n"
         "try:\n    pad.read()\nexcept BlockingIOError:\n    print('none')\n"
@@ -66,7 +66,7 @@ def test_events_of_the_buttons_are_read_one_after_the_other(run_on: RunOn) -> No
     assert done.lines == ["EV3 Brick Buttons None", "none", "[(103, 1), (105, 1)] None", "3.01304"]
 
 
-def test_buttons_cannot_be_waited_for_as_a_file(run: Run) -> None:
+def test_waiting_for_the_buttons_event_file_with_select_is_refused(run: Run) -> None:
     done = run(f"{LOOK}import select\nselect.select(devices, [], [])", prelude="none")
     assert done.errors[-1].startswith(
         "NotSimulated: evdev.InputDevice.fileno is not part of the simulated brick"

@@ -33,11 +33,11 @@ CODES: Any = codes_module("evdev.ecodes")
         ("ABS_MT_POSITION_X", 53),
     ],
 )
-def test_codes_of_events_have_the_kernels_numbers(name: str, number: int) -> None:
+def test_evdev_event_codes_have_the_kernels_numbers(name: str, number: int) -> None:
     assert (getattr(CODES, name), CODES.ecodes[name]) == (number, number)
 
 
-def test_names_are_found_by_number() -> None:
+def test_evdev_event_names_are_found_by_number() -> None:
     assert (CODES.KEY[103], CODES.bytype[CODES.EV_ABS][0], CODES.keys[CODES.BTN_B]) == (
         "KEY_UP",
         "ABS_X",
@@ -45,5 +45,5 @@ def test_names_are_found_by_number() -> None:
     )
 
 
-def test_a_name_without_a_number_has_the_next() -> None:
+def test_an_event_name_without_a_number_gets_the_next_one() -> None:
     assert list(numbered("A B=7 C")) == [("A", 0), ("B", 7), ("C", 8)]

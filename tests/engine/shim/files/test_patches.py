@@ -26,7 +26,7 @@ print(subprocess.run(['cat', led + 'no'], capture_output=True, text=True).stderr
 """
 
 
-def test_the_shell_reads_and_writes_the_same_files(run_on: RunOn) -> None:
+def test_shell_commands_read_and_write_device_files(run_on: RunOn) -> None:
     lines = [line for line in run_on(IN_THE_SHELL).lines if line]
     assert lines == [
         "lego-ev3-l-motor",

@@ -22,7 +22,7 @@ print(count > 200)
 """
 
 
-def test_every_file_that_is_listed_is_there(run_on: RunOn) -> None:
+def test_every_device_file_that_is_listed_can_be_read(run_on: RunOn) -> None:
     lines = run_on(WALK, "eyes", "furnished").lines
     assert lines[-1] == "True"
     # As from the drivers: LEGO's sensors take no commands, and have values only as far as the mode has them.

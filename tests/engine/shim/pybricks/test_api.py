@@ -263,7 +263,9 @@ def robot_of(member: str) -> str:
 
 
 @pytest.mark.parametrize("robot", sorted({USUAL_ROBOT, *ROBOTS.values()}))
-def test_every_member_takes_every_keyword(run_on: RunOn, robot: str, tmp_path: Path) -> None:
+def test_every_pybricks_member_takes_every_documented_keyword(
+    run_on: RunOn, robot: str, tmp_path: Path
+) -> None:
     tried = [one for one in attempts() if robot_of(one[0]) == robot]
     lines = [f"show({member!r}, {text!r})" for member, text in tried]
     done = run_on(
@@ -278,7 +280,7 @@ def test_every_member_takes_every_keyword(run_on: RunOn, robot: str, tmp_path: P
 
 
 @pytest.mark.parametrize("name", API["enums"])
-def test_an_enumeration_has_its_members(name: str) -> None:
+def test_each_pybricks_enumeration_has_its_members(name: str) -> None:
     members = API["enums"][name]
     kind = getattr(parameters, name)
     assert [*kind.__members__] == members or {*kind.__members__} == {*members}
@@ -286,7 +288,7 @@ def test_an_enumeration_has_its_members(name: str) -> None:
 
 
 @pytest.mark.parametrize("kind", API["files"])
-def test_every_file_of_the_brick_has_its_name_and_place(kind: str) -> None:
+def test_each_sound_and_image_file_constant_has_the_bricks_path(kind: str) -> None:
     files = API["files"][kind]
     for module in ("pybricks.media.ev3dev", "pybricks.parameters"):
         named = vars(MODULES[module][kind])

@@ -24,7 +24,7 @@ def lights(run_on: RunOn, text: str) -> list[tuple[int, str]]:
     return [(row.time_ns // 1_000_000, row.text) for row in rows]
 
 
-def test_the_light_blinks_until_it_is_told_otherwise(run_on: RunOn) -> None:
+def test_the_bricks_light_blinks_until_it_is_set_again(run_on: RunOn) -> None:
     shown = lights(
         run_on,
         "ev3.light.off()\nev3.light.blink(Color.RED, [100, 50])\nwait(330)\nev3.light.off()\nwait(500)",
@@ -33,7 +33,7 @@ def test_the_light_blinks_until_it_is_told_otherwise(run_on: RunOn) -> None:
     assert len({text for _, text in shown[1:]}) == 2
 
 
-def test_the_light_shows_colors_in_turn(run_on: RunOn) -> None:
+def test_an_animated_light_shows_its_colours_in_turn(run_on: RunOn) -> None:
     text = "ev3.light.animate([Color.GREEN, Color(20, 90, 90)], 100)\nwait(350)\nev3.light.on(Color.BLUE)\nwait(300)"
     times = [time for time, _ in lights(run_on, text)]
     assert times[-4:] == [100, 200, 300, 350]
@@ -42,7 +42,9 @@ def test_the_light_shows_colors_in_turn(run_on: RunOn) -> None:
 @pytest.mark.parametrize(
     "call", ["blink(Color.RED, [])", "animate([Color.RED], 0)", "blink(Color.RED, [5, 0])"]
 )
-def test_a_light_that_cannot_change_is_refused(run_on: RunOn, call: str) -> None:
+def test_an_animation_of_the_light_without_times_or_colours_is_refused(
+    run_on: RunOn, call: str
+) -> None:
     done = run_on(f"{HEAD}ev3.light.{call}", profile=PROFILE)
     assert done.errors[-1] == "ValueError: Invalid argument"
 
@@ -124,7 +126,7 @@ def test_a_sound_goes_on_although_its_task_is_closed(run_on: RunOn) -> None:
     assert rows[-1].text == "[silence]"
 
 
-def test_buttons_of_the_remote_are_a_set(run_on: RunOn) -> None:
+def test_pressed_buttons_of_the_remote_are_returned_as_a_set(run_on: RunOn) -> None:
     text = (
         "from pybricks.ev3devices import InfraredSensor\nfrom pybricks.parameters import Port\n"
         "remote = InfraredSensor(Port.S3)\nprint(remote.buttons(1), remote.keypad())"
@@ -132,7 +134,7 @@ def test_buttons_of_the_remote_are_a_set(run_on: RunOn) -> None:
     assert run_on(HEAD + text, robot="eyes", profile=PROFILE).lines == ["set() set()"]
 
 
-def test_the_model_of_a_motor_is_refused(run_on: RunOn) -> None:
+def test_using_motor_model_is_refused_as_not_simulated(run_on: RunOn) -> None:
     text = "from pybricks.ev3devices import Motor\nfrom pybricks.parameters import Port\nMotor(Port.B).model.state()"
     errors = run_on(HEAD + text, profile=PROFILE).errors
     assert errors[-1].startswith("NotSimulated: Motor.model.state: the model of a motor")

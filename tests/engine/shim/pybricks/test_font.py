@@ -22,7 +22,7 @@ def test_the_default_font_is_lucida_12() -> None:
     )
 
 
-def test_sizes_differ_in_height_and_width() -> None:
+def test_fonts_of_different_sizes_differ_in_height_and_width() -> None:
     small = Font(size=8)
     large = Font(None, 24, bold=True)
     assert small.height < Font.DEFAULT.height < large.height
@@ -41,7 +41,7 @@ def test_characters_of_a_monospaced_font_are_equally_wide(size_px: int, cell_px:
     assert font.width == cell_px
 
 
-def test_the_height_of_a_text_is_that_of_a_line() -> None:
+def test_text_height_is_the_fonts_line_height_for_any_text() -> None:
     assert Font.DEFAULT.text_height("") == Font.DEFAULT.text_height("gÄ") == Font.DEFAULT.height
     assert Font.DEFAULT.text_width("") == 0
 
@@ -55,10 +55,12 @@ def test_a_font_is_no_higher_than_the_screen() -> None:
     "given, error",
     [({"size": 0}, ValueError), ({"size": "12"}, TypeError), ({"family": 12}, TypeError)],
 )
-def test_a_font_must_be_possible(given: dict[str, Any], error: type[Exception]) -> None:
+def test_a_font_with_impossible_arguments_is_refused(
+    given: dict[str, Any], error: type[Exception]
+) -> None:
     with pytest.raises(error):
         Font(**given)
 
 
-def test_characters_without_a_shape_are_replaced() -> None:
+def test_characters_that_a_font_lacks_are_drawn_as_question_marks() -> None:
     assert drawable("Größe 5 €\t✓\x07") == "Größe 5 ? ? "

@@ -38,11 +38,11 @@ def test_colors_are_equal_by_their_numbers() -> None:
     assert {Color.GREEN: 1}[Color(120)] == 1
 
 
-def test_a_color_is_shown_by_its_name() -> None:
+def test_a_pybricks_color_is_printed_by_its_name_or_numbers() -> None:
     assert (str(Color.CYAN), str(Color(180, 90, 80))) == ("Color.CYAN", "Color(h=180, s=90, v=80)")
 
 
-def test_a_program_names_its_own_colors() -> None:
+def test_a_program_can_add_its_own_named_colors() -> None:
     colors: Any = Color
     own = Color(20, 60, 90)
     colors.SKIN = own
@@ -61,7 +61,7 @@ def test_a_program_names_its_own_colors() -> None:
         del colors.SKIN
 
 
-def test_a_color_paints_by_its_name_or_its_numbers() -> None:
+def test_a_pybricks_color_is_drawn_in_its_rgb_value() -> None:
     assert (paint_of(Color.WHITE), paint_of(Color.NONE)) == ((255, 255, 255), None)
     assert paint_of(Color(120, 100, 50)) == (0, 128, 0)
     with pytest.raises(TypeError):

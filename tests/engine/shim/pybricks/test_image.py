@@ -94,7 +94,9 @@ def test_images_are_saved_and_loaded_as_png_without_naming_the_suffix(
         Image("missing")
 
 
-def test_images_of_the_brick_are_named(lab: Lab, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_built_in_image_is_drawn_as_a_stand_in_and_noted_once(
+    lab: Lab, capsys: pytest.CaptureFixture[str]
+) -> None:
     one = Image(vars(ImageFile)["ANGRY"])
     other = Image(vars(ImageFile)["UP"])
     assert (one.width, one.height) == (178, 128) and dark(one) != dark(other)
@@ -119,7 +121,7 @@ def test_drawing_takes_a_millisecond(lab: Lab, monkeypatch: pytest.MonkeyPatch) 
     assert charged == [1_000_000]
 
 
-def test_print_has_its_own_cursor_and_scrolls(lab: Lab) -> None:
+def test_screen_print_keeps_its_own_cursor_and_scrolls(lab: Lab) -> None:
     screen = Image(image.THE_SCREEN)
     screen.set_font(Font(size=24))
     lines = screen.height // screen._font.height

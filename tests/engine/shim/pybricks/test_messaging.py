@@ -81,7 +81,7 @@ order.send('nobody hears it')
 """
 
 
-def test_a_server_and_a_client_of_one_program_talk(run_on: RunOn) -> None:
+def test_a_mailbox_server_and_client_in_one_program_exchange_messages(run_on: RunOn) -> None:
     done = run_on(TALK, profile=PROFILE)
     unknown = 'no paired devices matching "elsewhere"'
     assert done.lines == ["None", "got go", "0.0 7.0", unknown], done.errors

@@ -39,7 +39,9 @@ def test_every_module_of_micropython_can_be_imported(run_on: RunOn) -> None:
     assert done.lines == ["True"], done.errors
 
 
-def test_a_file_of_the_program_is_no_built_in_module(here: Command, tmp_path: Path) -> None:
+def test_a_built_in_micropython_module_precedes_a_file_of_that_name(
+    here: Command, tmp_path: Path
+) -> None:
     for name in ("utime", "umqtt"):
         (tmp_path / f"{name}.py").write_text("own = True\n")
     text = "import pybricks, utime, umqtt\nprint(hasattr(utime, 'own'), hasattr(umqtt, 'own'))"
@@ -47,7 +49,9 @@ def test_a_file_of_the_program_is_no_built_in_module(here: Command, tmp_path: Pa
     assert here("run", "main.py").stdout == "False True\n"
 
 
-def test_the_interpreter_has_its_name_and_still_imports(here: Command, tmp_path: Path) -> None:
+def test_sys_implementation_is_pybricks_micropython_and_imports_still_work(
+    here: Command, tmp_path: Path
+) -> None:
     (tmp_path / "helper.py").write_text("import usys\nprint(usys.implementation[0])\n")
     (tmp_path / "main.py").write_text(
         "import pybricks, sys, helper\nprint(sys.implementation.cache_tag)"
@@ -60,12 +64,16 @@ def test_the_interpreter_has_its_name_and_still_imports(here: Command, tmp_path:
 @pytest.mark.parametrize(
     ("profile", "version"), [(PROFILE, "(1, 11, 0)"), ("pybricks4", "(1, 26, 0)")]
 )
-def test_the_interpreter_tells_another_version(run_on: RunOn, profile: str, version: str) -> None:
+def test_sys_implementation_tells_the_micropython_version_of_the_profile(
+    run_on: RunOn, profile: str, version: str
+) -> None:
     done = run_on("import pybricks, usys\nprint(usys.implementation[1])", profile=profile)
     assert done.lines == [version], done.errors
 
 
-def test_the_compiler_knows_its_names_and_drops_annotations(here: Command, tmp_path: Path) -> None:
+def test_const_native_and_viper_are_known_and_annotations_dropped(
+    here: Command, tmp_path: Path
+) -> None:
     (tmp_path / "helper.py").write_text(
         "SIZE: Length = const(2)\n@micropython.viper\ndef half(x: ptr8) -> Half:\n    return x // SIZE\n"
     )
@@ -105,12 +113,12 @@ except TypeError:
 """
 
 
-def test_ticks_count_simulated_time(run_on: RunOn) -> None:
+def test_micropython_ticks_count_simulated_time(run_on: RunOn) -> None:
     assert run_on(CLOCK, profile=PROFILE).lines == ["521 5215", "whole numbers"]
 
 
 @pytest.mark.parametrize("late", [0, 5, TICKS_PERIOD // 2 - 1, -1, -TICKS_PERIOD // 2])
-def test_ticks_that_began_again_differ_by_what_was_added(late: int) -> None:
+def test_ticks_diff_is_right_after_the_counter_wraps_around(late: int) -> None:
     start = TICKS_PERIOD - 3
     assert 0 <= ticks_add(start, late) < TICKS_PERIOD
     assert ticks_diff(ticks_add(start, late), start) == late

@@ -50,7 +50,7 @@ def test_a_member_cannot_be_called_by_the_names_of_its_parameters(hub: Any, memb
 
 
 @pytest.mark.parametrize("name", [name for names in HUB_CLASSES.values() for name in names])
-def test_a_class_that_is_not_simulated_can_be_used(name: str) -> None:
+def test_creating_a_pybricks_class_that_is_not_simulated_is_refused_by_name(name: str) -> None:
     with pytest.raises(NotSimulated, match=name):
         NAMES[name]()
 

@@ -183,7 +183,7 @@ def ends_ms(key: str) -> Iterator[tuple[int, int]]:
 
 
 @pytest.mark.parametrize("key", RETURNING)
-def test_a_call_returns_when_the_trajectory_has_ended(key: str) -> None:
+def test_each_move_call_returns_at_the_recorded_time(key: str) -> None:
     for recorded_ms, now_ms in ends_ms(key):
         assert 0 <= recorded_ms - now_ms <= LATEST_MS
 
@@ -200,7 +200,7 @@ where the motor was measured to be."""
 
 
 @pytest.mark.parametrize("key", HELD)
-def test_a_motor_that_holds_is_where_it_was_sent(key: str) -> None:
+def test_a_held_motor_ends_where_the_recorded_one_did(key: str) -> None:
     experiment = Experiment(key).run()
     now = experiment.base.state()[::2] if experiment.base else (experiment.motor.angle(),)
     for recorded, found in zip(experiment.recorded["final"][1:], now, strict=True):
@@ -260,7 +260,7 @@ def test_a_stalled_motor_stops_when_the_recorded_one_did(key: str) -> None:
     assert experiment.motor.simulated.guide is None
 
 
-def test_resetting_the_angle_ends_a_motion() -> None:
+def test_resetting_a_motors_angle_ends_its_motion() -> None:
     experiment = Experiment("L_reset_angle_while_running").run()
     assert experiment.motor.angle() == 0
     assert experiment.motor.control.done() and experiment.motor.simulated.guide is not None

@@ -19,7 +19,7 @@ def lab() -> Lab:
     return Lab(MotorLaw.PYBRICKS, {})
 
 
-def test_a_beep_takes_its_time_and_one_without_an_end_none(lab: Lab) -> None:
+def test_a_beep_takes_its_duration_and_an_endless_one_returns_at_once(lab: Lab) -> None:
     Speaker().beep()
     Speaker().beep(880, duration=250)
     assert [(text, at_ms) for text, at_ms, _ in lab.sounds] == [
@@ -40,7 +40,7 @@ def test_a_beep_takes_its_time_and_one_without_an_end_none(lab: Lab) -> None:
         ("R/1", (0, 2000, 0)),
     ],
 )
-def test_a_note_has_its_frequency_length_and_pause(
+def test_a_notes_text_gives_its_frequency_length_and_pause(
     note: str, expected: tuple[int, int, int]
 ) -> None:
     tone = note_of(note, 2000)
@@ -55,7 +55,7 @@ def test_a_wrong_note_raises_a_value_error(note: str) -> None:
         note_of(note, 2000)
 
 
-def test_notes_play_up_to_a_wrong_one(lab: Lab) -> None:
+def test_play_notes_plays_up_to_a_wrong_note_and_raises(lab: Lab) -> None:
     with pytest.raises(ValueError, match="X"):
         Speaker().play_notes(iter(["C4/4", "R/4", "X"]), tempo=60)
     assert lab.now == 2_000_000_000
@@ -64,7 +64,7 @@ def test_notes_play_up_to_a_wrong_one(lab: Lab) -> None:
         Speaker().play_notes(["C4/4"], 0)
 
 
-def test_a_sound_file_plays_as_long_as_it_is(lab: Lab, tmp_path: Path) -> None:
+def test_playing_a_sound_file_takes_as_long_as_the_file(lab: Lab, tmp_path: Path) -> None:
     path = tmp_path / "own.wav"
     with wave.open(str(path), "wb") as file:
         file.setnchannels(1)
@@ -79,7 +79,7 @@ def test_a_sound_file_plays_as_long_as_it_is(lab: Lab, tmp_path: Path) -> None:
         Speaker().play_file(file="none.wav")
 
 
-def test_speech_is_as_fast_as_it_is_set(lab: Lab) -> None:
+def test_speech_takes_the_time_of_the_set_speed(lab: Lab) -> None:
     speaker = Speaker()
     speaker.say("one two three four")
     slow_ns = lab.now
@@ -90,7 +90,7 @@ def test_speech_is_as_fast_as_it_is_set(lab: Lab) -> None:
         speaker.say(5)  # type: ignore[arg-type]
 
 
-def test_volumes_are_clamped_and_wrong_names_raise(lab: Lab) -> None:
+def test_speaker_volumes_are_clamped_and_wrong_channels_raise(lab: Lab) -> None:
     speaker = Speaker()
     speaker.set_volume(150)
     assert [lab.mixer.volume(which) for which in ("PCM", "Beep")] == [100, 100]

@@ -18,7 +18,7 @@ def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Lab:
     return Lab(MotorLaw.PYBRICKS, {})
 
 
-def test_a_wait_lets_whole_milliseconds_pass(lab: Lab) -> None:
+def test_wait_lets_whole_milliseconds_pass(lab: Lab) -> None:
     wait(12.9)
     wait(0)
     wait(-5)
@@ -45,7 +45,7 @@ def test_a_stopwatch_counts_while_it_runs(lab: Lab) -> None:
     assert watch.time() == 0
 
 
-def test_a_log_is_a_file_and_samples(lab: Lab, tmp_path: Path) -> None:
+def test_a_datalog_writes_a_file_and_records_samples(lab: Lab, tmp_path: Path) -> None:
     log = DataLog("time", "light in %", name="run", timestamp=False)
     log.log(1, 50)
     log.log(2, "none", 7.5)
@@ -64,7 +64,7 @@ def test_an_appended_log_has_one_header(lab: Lab, tmp_path: Path) -> None:
     assert (tmp_path / "run.csv").read_text() == "a\n0\n1\n"
 
 
-def test_a_log_is_named_after_the_time(lab: Lab, tmp_path: Path) -> None:
+def test_a_datalog_without_a_name_is_named_after_the_time(lab: Lab, tmp_path: Path) -> None:
     DataLog(extension="txt").file.close()
     (file,) = tmp_path.iterdir()
     date, clock = file.stem.removeprefix("log_").rsplit("_", 1)

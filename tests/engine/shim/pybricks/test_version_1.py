@@ -39,7 +39,7 @@ def test_sound_functions_of_version_1_play_in_turn_at_their_times(run_on: RunOn)
     ]
 
 
-def test_text_of_version_1_has_a_place_or_follows_the_last(run_on: RunOn) -> None:
+def test_text_in_version_1_is_drawn_at_its_place_or_below_the_last(run_on: RunOn) -> None:
     done = run_on(
         HEAD
         + "brick.display.text('Hello', (60, 50))\nbrick.display.text('one')\nbrick.display.text('two')\n"
@@ -73,7 +73,7 @@ def filled(left: int, top: int) -> set[tuple[int, int]]:
     return {(x, y) for x in range(left, left + 20) for y in range(top, top + 10)}
 
 
-def test_an_image_of_version_1_has_its_place(run_on: RunOn, tmp_path: Path) -> None:
+def test_an_image_in_version_1_is_drawn_at_its_place(run_on: RunOn, tmp_path: Path) -> None:
     file = str(tmp_path / "mark")
     calls = [f"brick.display.image(file, {place})" for place in PLACES]
     done = run_on(

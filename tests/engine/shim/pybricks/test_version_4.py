@@ -47,14 +47,14 @@ def test_a_move_refuses_a_stop_type_of_the_wrong_kind(base: DriveBase) -> None:
         call(base.straight, 100, Port.A)
 
 
-def test_a_move_without_an_end_drives_on(base: DriveBase) -> None:
+def test_a_move_with_stop_none_keeps_driving_afterwards(base: DriveBase) -> None:
     base.straight(100, Stop.NONE)
     assert base.state()[1] == 156
     wait(1000)
     assert base.distance() == pytest.approx(257, abs=3)
 
 
-def test_an_arc_between_moves_without_an_end_turns_by_its_whole_angle(base: DriveBase) -> None:
+def test_an_arc_between_moves_with_stop_none_turns_by_its_whole_angle(base: DriveBase) -> None:
     base.straight(300, Stop.NONE)
     base.curve(150, 90, Stop.NONE)
     base.straight(300)
@@ -75,7 +75,7 @@ def test_a_move_with_wait_false_returns_before_it_is_done(base: DriveBase) -> No
     assert base.angle() == pytest.approx(90, abs=0.2)
 
 
-def test_both_parts_of_an_arc_end_together(base: DriveBase) -> None:
+def test_distance_and_angle_of_an_arc_stay_in_proportion(base: DriveBase) -> None:
     base.arc(200, angle=60, wait=False)
     for _ in range(8):
         wait(100)
@@ -156,7 +156,7 @@ def test_a_smart_stop_ends_when_the_motors_rest(base: DriveBase) -> None:
         assert times_ms[then] == pytest.approx(hold_ms, abs=5)
 
 
-def test_a_deceleration_stays_until_it_is_set_again(base: DriveBase) -> None:
+def test_a_drive_bases_deceleration_stays_until_it_is_set_again(base: DriveBase) -> None:
     base.settings(straight_acceleration=(500, 600))
     base.settings(straight_speed=100)
     assert base.settings() == (100, (500, 600), 131, 737)
@@ -232,7 +232,7 @@ def test_tasks_that_wait_for_0_ms_take_turns(base: DriveBase) -> None:
     assert base.done()
 
 
-def test_time_passes_in_a_loop_that_only_takes_turns(run_on: RunOn) -> None:
+def test_a_loop_of_waits_of_0_ms_lets_simulated_time_pass(run_on: RunOn) -> None:
     text = (
         "from pybricks.parameters import Port\nfrom pybricks.pupdevices import Motor\n"
         "from pybricks.tools import StopWatch, multitask, run_task, wait\n"
@@ -246,7 +246,7 @@ def test_time_passes_in_a_loop_that_only_takes_turns(run_on: RunOn) -> None:
     assert int(done.lines[0]) in range(60), done.errors
 
 
-def test_another_command_ends_the_wait_for_the_first(base: DriveBase) -> None:
+def test_a_second_command_to_a_motor_ends_the_wait_for_its_first(base: DriveBase) -> None:
     arm, watch = Motor(Port.C), StopWatch()
 
     async def turn(angle: int, after: int) -> tuple[int, Any]:
@@ -268,7 +268,7 @@ def test_another_command_ends_the_wait_for_the_first(base: DriveBase) -> None:
     assert arm.simulated.guide is not None
 
 
-def test_another_command_ends_the_wait_for_a_stall(base: DriveBase) -> None:
+def test_a_command_to_a_motor_ends_another_tasks_wait_for_its_stall(base: DriveBase) -> None:
     arm = Motor(Port.C)
 
     async def find_stop() -> int:
@@ -327,7 +327,7 @@ def test_an_error_in_a_task_closes_the_others(base: DriveBase) -> None:
     assert base.done()
 
 
-def test_move_by_drives_to_a_place(base: DriveBase) -> None:
+def test_move_by_drives_to_a_position_given_by_x_and_y(base: DriveBase) -> None:
     base.move_by(100, 100)
     assert base.distance() == pytest.approx(141, abs=1)
     assert base.angle() == pytest.approx(-45, abs=0.5)
@@ -351,7 +351,7 @@ def test_reset_sets_the_distance_and_angle_of_a_drive_base(base: DriveBase) -> N
 
 
 @pytest.mark.parametrize("port", [Port.A, Port.B])
-def test_a_motor_that_is_made_anew_leaves_its_drive_base(base: DriveBase, port: Port) -> None:
+def test_creating_a_motor_again_stops_its_drive_base(base: DriveBase, port: Port) -> None:
     base.drive(100, 0)
     wait(500)
     Motor(port, reset_angle=False)

@@ -67,7 +67,9 @@ def test_a_motor_has_what_version_1_had(run_on: RunOn, text: str, lines: list[st
         "not all settings": ("m.set_run_settings(500)", "missing 1 required positional argument"),
     },
 )
-def test_a_motor_refuses_what_version_1_refused(run_on: RunOn, text: str, error: str) -> None:
+def test_a_motor_in_version_1_refuses_arguments_it_never_took(
+    run_on: RunOn, text: str, error: str
+) -> None:
     assert error in "\n".join(run_on(HEAD + text, profile=PROFILE).errors)
 
 
@@ -87,7 +89,7 @@ def test_a_motor_refuses_what_version_1_refused(run_on: RunOn, text: str, error:
         "from pybricks.uev3dev.messaging import Mailbox\nfrom pybricks.uev3dev import sound, util",
     ],
 )
-def test_every_name_of_a_module_can_be_imported(run_on: RunOn, text: str) -> None:
+def test_every_name_of_each_pybricks_module_can_be_imported(run_on: RunOn, text: str) -> None:
     done = run_on(f"{text}\nprint('END')", profile=PROFILE)
     assert done.lines[-1] == "END", done.errors
 

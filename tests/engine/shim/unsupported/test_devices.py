@@ -81,7 +81,7 @@ def test_using_an_unsupported_device_ends_the_program_with_its_name(
     )
 
 
-def test_a_program_may_try_what_is_connected(run: Run) -> None:
+def test_trying_for_a_device_that_is_not_connected_raises_device_not_found(run: Run) -> None:
     done = run(
         "from ev3dev2 import DeviceNotFound\nfrom ev3dev2.sensor.lego import *\n"
         "for kind in (LightSensor, TouchSensor, GyroSensor):\n    try:\n        print(kind())\n"

@@ -91,7 +91,7 @@ def test_hints_have_the_names_of_the_programs_library(
     )
 
 
-def test_every_module_of_the_brick_can_be_imported(run: Run) -> None:
+def test_every_python_module_of_the_brick_can_be_imported(run: Run) -> None:
     names = sorted(ON_THE_BRICK)
     stars = "".join(f"from {name} import *\n" for name in names)
     done = run(
@@ -140,7 +140,7 @@ def test_error_classes_of_unsupported_modules_work_in_except(run: Run) -> None:
     assert done.lines == ["invalid literal for int() with base 10: 'x'"]
 
 
-def test_a_module_beside_the_program_comes_first(
+def test_a_module_beside_the_program_precedes_an_unsupported_one(
     start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "serial.py").write_text("print('own')\n")
@@ -210,7 +210,7 @@ def test_programs_for_other_hubs_are_named(run: Run, text: str, profile: str, to
     assert run(tried, profile=profile, prelude="none").lines == ["without"]
 
 
-def test_a_name_that_no_hub_has_is_missing(run: Run) -> None:
+def test_importing_a_name_that_no_hub_has_raises_import_error(run: Run) -> None:
     errors = run("from pybricks.hubs import Nothing", profile="pybricks4", prelude="none").errors
     assert errors[-1].startswith("ImportError: cannot import name 'Nothing' from 'pybricks.hubs'")
 

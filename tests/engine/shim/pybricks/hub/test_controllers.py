@@ -42,7 +42,7 @@ def build_base() -> DriveBase:
     return DriveBase(left, right, 56, 112)
 
 
-def test_a_remote_control_does_not_drive_the_robot(lab: Lab) -> None:
+def test_a_program_drives_the_robot_by_buttons_of_a_remote_control(lab: Lab) -> None:
     press(lab, {500: "remote.left_plus", 1500: "remote.right_minus", 2000: "remote.center"})
     remote = Remote()
     base = build_base()
@@ -72,7 +72,7 @@ def test_a_game_controller_does_not_drive_the_robot(lab: Lab) -> None:
     ("pressed", "told"),
     [("", 0), ("up", 1), ("up right", 2), ("down", 5), ("up left", 8), ("up down", 0)],
 )
-def test_the_pad_of_a_game_controller_tells_another_direction(
+def test_a_game_controllers_pad_tells_its_direction_as_a_number(
     lab: Lab, pressed: str, told: int
 ) -> None:
     lab.pressed = frozenset(f"xbox.dpad_{way}" for way in pressed.split())
@@ -80,7 +80,9 @@ def test_the_pad_of_a_game_controller_tells_another_direction(
 
 
 @pytest.mark.parametrize(("make", "port"), [(Remote, "remote"), (XboxController, "xbox")])
-def test_a_key_is_a_button_of_another_name(lab: Lab, make: Any, port: str) -> None:
+def test_each_key_of_a_controller_is_read_as_its_pybricks_button(
+    lab: Lab, make: Any, port: str
+) -> None:
     controller = make()
     lab.pressed = frozenset(CONTROLLERS[port]) | {"enter", "left"}
     names = {f"{port}.{button.name.lower()}" for button in controller.buttons.pressed()}
@@ -95,7 +97,7 @@ def test_the_light_of_a_remote_control_is_not_that_of_the_hub(lab: Lab) -> None:
     assert levels["remote red"] == 255 and levels["red"] == levels["remote blue"] == 0
 
 
-def test_a_disconnected_remote_control_has_buttons(lab: Lab) -> None:
+def test_a_remote_controls_buttons_work_again_only_after_reconnecting(lab: Lab) -> None:
     remote = Remote("mine")
     assert remote.name() == "mine"
     remote.disconnect()
@@ -105,7 +107,7 @@ def test_a_disconnected_remote_control_has_buttons(lab: Lab) -> None:
     assert remote.buttons.pressed() == set()
 
 
-def test_a_task_makes_a_remote_control(lab: Lab) -> None:
+def test_creating_a_remote_control_inside_a_task_is_refused(lab: Lab) -> None:
     async def main() -> None:
         Remote()
 

@@ -31,7 +31,7 @@ def read_rows(lab: Lab) -> list[str]:
     return [pixels[at : at + 5] for at in range(0, 25, 5)]
 
 
-def test_characters_and_numbers_are_drawn(lab: Lab, hub: Any) -> None:
+def test_a_hubs_matrix_shows_characters_and_numbers(lab: Lab, hub: Any) -> None:
     hub.display.char("1")
     assert read_rows(lab) == ["  #  ", " ##  ", "  #  ", "  #  ", " ### "]
     hub.display.number(-42)
@@ -40,7 +40,7 @@ def test_characters_and_numbers_are_drawn(lab: Lab, hub: Any) -> None:
     assert read_rows(lab) == [" #   ", "  #  ", "   # ", "  #  ", " #   "]
 
 
-def test_a_picture_turns_with_the_matrix(lab: Lab, hub: Any) -> None:
+def test_an_icon_turns_with_the_orientation_of_a_hubs_matrix(lab: Lab, hub: Any) -> None:
     hub.display.icon(Icon.ARROW_UP)  # type: ignore[attr-defined]
     up = read_rows(lab)
     hub.display.orientation(Side.LEFT)
@@ -62,7 +62,9 @@ def test_an_animation_has_another_number_of_icons_than_a_hub_takes(hub: Any, cou
         hub.display.animate([[[100] * 5] * 5] * count, 100)
 
 
-def test_a_text_is_shown_character_by_character(lab: Lab, hub: Any) -> None:
+def test_a_hubs_matrix_shows_a_text_character_by_character_and_then_nothing(
+    lab: Lab, hub: Any
+) -> None:
     hub.display.text("Hi")
     assert lab.now == 2 * (500 + 50) * 1_000_000
     assert read_rows(lab) == ["     "] * 5

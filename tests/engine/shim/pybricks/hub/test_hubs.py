@@ -21,7 +21,7 @@ def test_a_hub_tells_what_programs_look_up() -> None:
     }
 
 
-def test_a_storage_is_read_or_written() -> None:
+def test_a_hubs_storage_is_either_read_or_written() -> None:
     Lab(MotorLaw.PYBRICKS_4, {}, hub="PrimeHub")
     hub: Any = PrimeHub()
     hub.system.storage(3, write=b"abc")

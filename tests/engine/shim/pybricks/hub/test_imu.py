@@ -25,7 +25,7 @@ def hub() -> Any:
     return PrimeHub()
 
 
-def test_no_digits_are_told_beyond_those_of_the_hub(hub: Any) -> None:
+def test_a_hubs_heading_is_rounded_to_the_hubs_number_of_digits(hub: Any) -> None:
     hub.imu.reset_heading(0.1 + 0.2)
     assert hub.imu.heading() == 0.3
     hub.imu.reset_heading(-1e-15)
@@ -33,7 +33,7 @@ def test_no_digits_are_told_beyond_those_of_the_hub(hub: Any) -> None:
     assert hub.imu.acceleration(Axis.Z) == 9806.65
 
 
-def test_the_heading_is_not_reset_while_it_is_needed(hub: Any) -> None:
+def test_resetting_the_heading_while_a_drive_base_uses_the_gyro_is_refused(hub: Any) -> None:
     ports: Any = Port
     base = DriveBase(Motor(ports.A), Motor(ports.B), 56, 112)
     base.use_gyro(True)
@@ -47,7 +47,7 @@ def test_the_heading_is_not_reset_while_it_is_needed(hub: Any) -> None:
         hub.imu.reset_heading()
 
 
-def test_settings_are_told_as_they_were_made(hub: Any) -> None:
+def test_imu_settings_are_returned_as_set_and_wrong_ones_refused(hub: Any) -> None:
     hub.imu.settings(3, heading_correction=363)
     assert hub.imu.settings()[:2] == (3, 2500.0) and hub.imu.settings()[-1] == 363
     for wrong in ({"heading_correction": 180}, {"angular_velocity_scale": (360, 376, 360)}):
@@ -74,7 +74,7 @@ def test_a_hub_whose_motors_are_held_is_not_stationary(run_on: RunOn) -> None:
     assert done.lines == ["True", "False", "False", "True"], done.errors
 
 
-def test_nobody_types_at_a_hub(run_on: RunOn) -> None:
+def test_polling_a_hubs_standard_input_finds_nothing_typed(run_on: RunOn) -> None:
     text = (
         "from uselect import poll\nfrom usys import stdin\nkeyboard = poll()\n"
         "keyboard.register(stdin)\nprint(keyboard.poll(0))"

@@ -207,7 +207,7 @@ def test_motors_of_a_hub_reproduce_recordings_of_the_firmware(key: str) -> None:
     assert bool(find_misses(key)) == (key in MISSED)
 
 
-def test_a_light_shines_on_its_port_only_where_nothing_else_is() -> None:
+def test_a_light_on_a_port_with_another_device_is_refused() -> None:
     lab = Lab(MotorLaw.PYBRICKS_4, {"A": "medium-angular"}, hub="PrimeHub")
     light = Light(Port.F)
     light.on(80)
@@ -248,7 +248,7 @@ def test_a_profile_sets_the_tolerance_and_the_gains(profile: int, degrees: int) 
     assert control.target_tolerances() == (50, degrees)
 
 
-def test_a_motor_with_gears_tells_what_the_gears_leave() -> None:
+def test_limits_of_a_hubs_motor_are_divided_by_its_gears() -> None:
     Lab(MotorLaw.PYBRICKS_4, {"A": "medium-angular"}, hub="PrimeHub")
     control = Motor(Port["A"], gears=[12, 36]).control  # type: ignore[arg-type]
     assert control.limits() == (333, 666, 199)
@@ -273,7 +273,7 @@ def test_controllers_of_a_drive_base_take_the_settings_of_motor_controllers() ->
         base.distance_control.limits(978)
 
 
-def test_a_motor_that_stands_at_full_power_is_stalled() -> None:
+def test_a_hubs_motor_that_power_cannot_turn_is_stalled() -> None:
     lab = Lab(MotorLaw.PYBRICKS_4, {"A": "medium-angular"}, 120, hub="PrimeHub")
     ports: Any = Port
     motor: Any = Motor(ports.A)
@@ -288,7 +288,7 @@ def test_a_motor_that_stands_at_full_power_is_stalled() -> None:
 
 
 @pytest.mark.parametrize(("kind", "percent"), [("small-angular", 75), ("medium-angular", 100)])
-def test_a_motor_gets_more_than_its_highest_voltage(kind: str, percent: int) -> None:
+def test_dc_on_a_hubs_motor_is_limited_by_its_highest_voltage(kind: str, percent: int) -> None:
     Lab(MotorLaw.PYBRICKS_4, {"A": kind}, hub="PrimeHub")
     ports: Any = Port
     motor: Any = Motor(ports.A)
@@ -299,7 +299,7 @@ def test_a_motor_gets_more_than_its_highest_voltage(kind: str, percent: int) -> 
     assert motor.simulated.duty == 5000
 
 
-def test_ambient_light_is_grey(run_on: RunOn) -> None:
+def test_a_hubs_colour_sensor_reads_ambient_light_as_grey(run_on: RunOn) -> None:
     text = (
         "from pybricks.hubs import PrimeHub\nfrom pybricks.parameters import Color, Port\n"
         "from pybricks.pupdevices import ColorSensor\nfrom pybricks.tools import StopWatch\n"
@@ -310,7 +310,7 @@ def test_ambient_light_is_grey(run_on: RunOn) -> None:
     assert done.lines == ["True Color.NONE 30"], done.errors
 
 
-def test_no_motor_is_made_in_a_task() -> None:
+def test_creating_a_hubs_motor_inside_a_task_is_refused() -> None:
     Lab(MotorLaw.PYBRICKS_4, {"A": "medium-angular"}, hub="PrimeHub")
     ports: Any = Port
 
