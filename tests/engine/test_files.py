@@ -448,7 +448,7 @@ def test_paths_in_a_world_are_relative_to_its_folder(
 
 
 @pytest.mark.parametrize("name", ["mat.png", "mat", "pics/mat.png"])
-def test_an_image_is_written_as_seen_from_the_worlds_folder(
+def test_a_saved_world_names_its_mat_image_relative_to_its_folder(
     name: str, root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "lab" / "pics").mkdir(parents=True)
@@ -481,7 +481,9 @@ def test_layers_of_settings_are_laid_key_by_key_also_those_of_the_start(write: W
     [("", False), ("--solid", True), ("--profile ev3", True), ("--profile ev3 --no-solid", False)],
     ids=["default", "switch", "profile", "switch against the profile"],
 )
-def test_things_are_solid_as_the_profile_says_unless_a_switch_does(words: str, solid: bool) -> None:
+def test_walls_are_solid_as_the_profile_says_unless_a_switch_says_otherwise(
+    words: str, solid: bool
+) -> None:
     assert build_run_spec(merge_settings(parse_words(words.split()))).world.solid is solid
 
 
@@ -532,7 +534,7 @@ def test_a_place_that_cannot_be_written_is_told_and_left_as_it_is(
     assert [path.name for path in tmp_path.iterdir()] == ["folder.toml"]
 
 
-def test_the_files_of_the_guide_work_together(tmp_path: Path) -> None:
+def test_the_toml_files_printed_in_the_guide_can_be_used_together(tmp_path: Path) -> None:
     pages = (page.source for page in guide_pages().values())
     blocks = [block for text in pages for block in text.split("```toml\n# ")[1:]]
     for block in blocks:

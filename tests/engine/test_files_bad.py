@@ -400,7 +400,7 @@ def test_a_broken_settings_file_is_refused_with_the_reason(
 
 
 @pytest.mark.parametrize("case", WRONG)
-def test_a_wrong_value_is_told_with_its_key(case: str, tmp_path: Path) -> None:
+def test_a_wrong_value_in_a_settings_file_is_told_with_its_key(case: str, tmp_path: Path) -> None:
     switch, name = FILES[case.partition(":")[0]]
     text, said = WRONG[case]
     check(switch, tmp_path / name, text, said)

@@ -95,7 +95,7 @@ ROBOT_FILES = {
     "robot", [RobotSpec(name="new", weight=4.5), ROBOTS["Explorer"]], ids=["plain", "parts"]
 )
 @cases("old", ROBOT_FILES)
-def test_a_robot_reads_back_from_a_file_that_was_another(
+def test_a_robot_saved_into_another_robots_file_is_read_back(
     old: str, robot: RobotSpec, tmp_path: Path
 ) -> None:
     saved("robot", old, robot, tmp_path)
@@ -112,7 +112,9 @@ BOXES = {
 
 @pytest.mark.parametrize("count", [0, 1, 3])
 @cases("old", BOXES)
-def test_obstacles_read_back_from_a_file_of_others(old: str, count: int, tmp_path: Path) -> None:
+def test_obstacles_saved_into_a_file_of_others_are_read_back(
+    old: str, count: int, tmp_path: Path
+) -> None:
     saved(
         "obstacles",
         old,
@@ -121,7 +123,7 @@ def test_obstacles_read_back_from_a_file_of_others(old: str, count: int, tmp_pat
     )
 
 
-def test_an_obstacle_keeps_its_comments(tmp_path: Path) -> None:
+def test_saving_a_changed_obstacle_keeps_the_files_comments(tmp_path: Path) -> None:
     text = saved("obstacles", BOX, (Obstacle(1, 2, 9.0, 4),), tmp_path)
     assert text == BOX.replace("width_mm = 3 ", "width_mm = 9.0 ")
 
@@ -152,7 +154,7 @@ light = 5              # a dark room
     ],
     ids=["seed", "noise"],
 )
-def test_a_world_keeps_what_is_not_in_a_run(
+def test_saving_a_world_keeps_keys_that_are_not_part_of_a_run(
     changes: dict[str, Any], expected: str, tmp_path: Path
 ) -> None:
     assert in_order(expected, saved("world", WORLD, build_run_spec(Settings(changes)), tmp_path))
@@ -171,7 +173,7 @@ WORLDS = {
 
 @pytest.mark.parametrize("robot", ["Small_Robot", "other"])
 @cases("old", WORLDS)
-def test_a_world_reads_back_from_a_file_that_was_another(
+def test_a_world_saved_into_another_worlds_file_is_read_back(
     old: str, robot: str, tmp_path: Path
 ) -> None:
     (tmp_path / "other.toml").write_text("back_mm = -80")

@@ -223,7 +223,9 @@ def test_opening_a_mat_whose_cache_file_is_missing_raises(home: Path, tmp_path: 
         files.open_field()
 
 
-def test_an_open_field_outlives_its_files(home: Path, tmp_path: Path) -> None:
+def test_an_open_field_stays_readable_after_its_files_were_deleted(
+    home: Path, tmp_path: Path
+) -> None:
     files = mat_cache.prepare(picture(tmp_path, fill="white"), [10])
     field = files.open_field()
     for path in cached(home):
@@ -231,7 +233,7 @@ def test_an_open_field_outlives_its_files(home: Path, tmp_path: Path) -> None:
     assert field.sum_disc(10, 50, 50) == (69 * 255,) * 3
 
 
-def test_the_cache_drops_what_was_not_used_longest(
+def test_the_cache_of_mats_drops_the_files_unused_for_longest(
     home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(mat_cache, "MAX_CACHED_FILES", 3)
@@ -248,7 +250,7 @@ def test_the_cache_drops_what_was_not_used_longest(
     assert cached(home) == sorted([made[0], made[2], last])
 
 
-def test_a_file_that_is_used_while_others_are_dropped_is_kept(
+def test_a_cached_mat_used_while_others_are_dropped_is_not_dropped(
     home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(mat_cache, "MAX_CACHED_FILES", 1)
@@ -267,7 +269,7 @@ def test_a_file_that_is_used_while_others_are_dropped_is_kept(
 
 
 @pytest.mark.slow
-def test_a_mat_with_many_diameters_is_kept_whole(
+def test_all_cached_files_of_the_mat_just_prepared_are_kept(
     home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(mat_cache, "MAX_CACHED_FILES", 1)
@@ -299,7 +301,9 @@ def test_several_processes_preparing_a_mat_at_once_make_the_same_files(
     assert files.open_field().sum_disc(20, 500, 500) == (0, 0, 305 * 128)
 
 
-def test_a_copied_field_outlives_what_is_cut_off_its_files(home: Path, tmp_path: Path) -> None:
+def test_a_copied_field_stays_readable_after_its_files_were_cut_off(
+    home: Path, tmp_path: Path
+) -> None:
     files = mat_cache.prepare(picture(tmp_path, fill="white"), [10])
     field = files.open_field(is_copied=True)
     pixels = files.read_pixels()
@@ -325,7 +329,7 @@ def test_a_cache_folder_that_cannot_be_created_is_named(
         mat_cache.prepare(picture(tmp_path), [20])
 
 
-def test_without_a_home_the_users_cache_is_used(
+def test_without_tuisim_home_the_users_cache_folder_is_used(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.delenv("TUISIM_HOME")

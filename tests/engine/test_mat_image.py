@@ -115,7 +115,7 @@ BAD = [
 
 
 @pytest.mark.parametrize("make, message", BAD)
-def test_bad_files_are_explained_and_nothing_is_kept(
+def test_a_bad_mat_image_is_refused_with_a_reason_and_leaves_no_cache_file(
     make: Callable[[Path], object], message: str, home: Path, tmp_path: Path
 ) -> None:
     make(tmp_path / "mat.png")
@@ -139,7 +139,9 @@ def test_the_command_refuses_bad_files_in_one_line(
     assert not (tmp_path / "out.csv").exists()
 
 
-def test_a_bomb_is_refused_quickly_and_in_little_memory(tmp_path: Path, root: Path) -> None:
+def test_a_decompression_bomb_is_refused_quickly_and_in_little_memory(
+    tmp_path: Path, root: Path
+) -> None:
     (tmp_path / "bomb.png").write_bytes(BOMB)
     code = (
         "import resource, sys\n"
@@ -195,7 +197,9 @@ def test_an_image_file_beyond_the_size_limit_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("fit", ["", "Stretch", "tile"])
-def test_an_unknown_fit_is_refused_with_those_that_exist(fit: str, tmp_path: Path) -> None:
+def test_an_unknown_fit_of_a_mat_image_is_refused_with_the_known_ones(
+    fit: str, tmp_path: Path
+) -> None:
     (tmp_path / "mat.png").write_bytes(WHOLE)
     with pytest.raises(BackgroundError, match="no such fit") as caught:
         mat_cache.prepare(tmp_path / "mat.png", [20], fit)
@@ -243,7 +247,7 @@ def test_fit_centre_copies_the_image_pixel_for_pixel(size: tuple[int, int], dark
 
 
 @pytest.mark.slow
-def test_a_picture_of_the_fields_size_is_left_alone() -> None:
+def test_a_mat_image_of_the_fields_size_is_not_scaled() -> None:
     image = Image.effect_noise((WIDTH, HEIGHT), 90).convert("RGB")
     content = saved(image, compress_level=1)
     for fit in BACKGROUND_FITS:
@@ -291,7 +295,7 @@ def _lab(shade: str) -> Image.Image:
         "infinite": (np.full((9, 9), np.inf, np.float32), 255),
     },
 )
-def test_deep_greys_become_eight_bits(array: np.ndarray, shade: int) -> None:
+def test_an_image_of_deep_greys_is_reduced_to_8_bits(array: np.ndarray, shade: int) -> None:
     assert middle(decoded(saved(Image.fromarray(array), "TIFF"))) == [shade] * 3
 
 
@@ -301,7 +305,7 @@ def test_a_png_of_16_bits_is_reduced_to_8_bits() -> None:
 
 
 @pytest.mark.parametrize("mode", ["RGBA", "LA", "PA"])
-def test_transparent_parts_are_white(mode: str) -> None:
+def test_transparent_parts_of_a_mat_image_become_white(mode: str) -> None:
     image = Image.new("RGBA", (9, 9), (0, 0, 0, 51))
     if mode == "LA":
         image = image.convert("LA")
@@ -321,7 +325,7 @@ def test_a_transparent_colour_is_white() -> None:
 @pytest.mark.parametrize(
     "orientation, red_at", [(1, "left"), (3, "right"), (6, "top"), (8, "bottom")]
 )
-def test_a_photograph_is_turned_upright(orientation: int, red_at: str) -> None:
+def test_a_photograph_is_turned_as_its_exif_orientation_says(orientation: int, red_at: str) -> None:
     image = Image.new("RGB", (80, 80), "white")
     image.paste("red", (0, 0, 20, 80))
     exif = Image.Exif()
@@ -366,7 +370,7 @@ def test_damaged_bytes_never_escape_as_something_else(seed: int) -> None:
     [((WIDTH, HEIGHT), True), ((300, 200), False)],
     ids=["the field's", "another"],
 )
-def test_fits_share_what_is_cached_only_if_they_are_alike(
+def test_mat_fits_share_a_cached_image_only_if_they_give_the_same_pixels(
     size: tuple[int, int], alike: bool, home: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "mat.png").write_bytes(saved(Image.new("RGB", size, "gray"), compress_level=1))

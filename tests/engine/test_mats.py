@@ -68,7 +68,7 @@ def catalog(folder: Path, text: str) -> None:
     (folder / "backgrounds" / "catalog.toml").write_text(text, encoding="utf-8")
 
 
-def test_mats_have_their_start_poses() -> None:
+def test_each_mat_has_its_start_pose() -> None:
     for name, start in STARTS.items():
         found = mats.background(name)
         assert found.start == Pose(*start), name
@@ -170,18 +170,20 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("./Loop", "Loop", "Loop"),
     ],
 )
-def test_an_image_is_a_mat(word: str, file: str, name: str, here: Path) -> None:
+def test_the_path_of_an_image_can_be_given_as_a_mat(
+    word: str, file: str, name: str, here: Path
+) -> None:
     mat = mats.background(word)
     assert (mat.name, mat.image, mat.start) == (name, here / file, Pose(200, 800, 0))
     assert mat.title == f"The image {Path(file).name}"
     assert not mat.obstacles and not mat.sensor_x_mm
 
 
-def test_a_whole_path_is_a_mat(here: Path) -> None:
+def test_an_absolute_path_of_an_image_can_be_given_as_a_mat(here: Path) -> None:
     assert mats.background(str(here / "maze.png")).image == here / "maze.png"
 
 
-def test_the_catalogue_goes_before_files(here: Path) -> None:
+def test_a_built_in_mat_precedes_an_image_file_of_its_name(here: Path) -> None:
     assert mats.background("Loop").image == folders.backgrounds_folder() / "Loop.png"
 
 
@@ -260,7 +262,7 @@ def test_an_installed_copy_is_found_in_the_package(tmp_path: Path, root: Path) -
     ]
 
 
-def test_obstacles_and_sensors_are_read(given: Path) -> None:
+def test_obstacles_and_sensor_positions_of_a_catalogue_of_mats_are_read(given: Path) -> None:
     catalog(
         given,
         GOOD + "obstacles = [[46, 388, 150, 150], [9, 8, 7, 6]]\nsensor_x_mm = { left = -30 }\n",

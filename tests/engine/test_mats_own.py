@@ -64,7 +64,7 @@ def test_a_picture_of_the_users_is_found_by_the_mats_name(
     assert (world.background, world.start) == (str(picture), Pose(*map(float, start)))
 
 
-def test_what_stands_on_the_mat_and_moves_sensors_stays(own: Path) -> None:
+def test_a_users_picture_of_a_mat_keeps_the_mats_obstacles_and_sensor_places(own: Path) -> None:
     paint(own / "Obstacles_Test.png")
     paint(own / "_radial_grey.png")
     assert len(build_run_spec(Settings({"background": "Obstacles_Test"})).world.obstacles) == 6
@@ -92,9 +92,7 @@ def test_the_fit_of_a_users_mat_follows_its_file_name_or_the_users_choice(
     )
 
 
-def test_the_named_folder_goes_before_the_usual_one_and_old_files_before_names(
-    own: Path, tmp_path: Path
-) -> None:
+def test_a_named_folder_of_mats_precedes_the_usual_one(own: Path, tmp_path: Path) -> None:
     paint(own / "Loop.png")
     assert find_mat("Loop").image.name == "Loop.png"
     paint(own / "_loop.png")
@@ -103,12 +101,12 @@ def test_the_named_folder_goes_before_the_usual_one_and_old_files_before_names(
     assert find_mat("Loop", str(tmp_path / "pics")).image.name == "Loop.jpg"
 
 
-def test_without_a_folder_mats_are_ours(home: Path) -> None:
+def test_without_a_folder_of_own_mats_the_built_in_ones_are_used(home: Path) -> None:
     assert build_run_spec(Settings({"background": "Loop"})).world.background == "Loop"
     assert not any(mat.is_own for mat in mats().values())
 
 
-def test_a_world_file_keeps_names_and_names_a_folder(own: Path, tmp_path: Path) -> None:
+def test_a_saved_world_keeps_the_mats_name_and_names_its_folder(own: Path, tmp_path: Path) -> None:
     paint(own / "FLL2018.jpg")
     spec = build_run_spec(Settings({"background": "FLL_2018_Into_Orbit"}))
     save_world(spec, tmp_path / "lab.toml")
@@ -125,7 +123,7 @@ def test_a_world_file_keeps_names_and_names_a_folder(own: Path, tmp_path: Path) 
     )
 
 
-def test_a_run_on_our_mat_stays_on_it_when_the_user_brings_another(own: Path) -> None:
+def test_a_rebuilt_run_stays_on_the_built_in_mat_though_the_user_adds_another(own: Path) -> None:
     spec = build_run_spec(Settings({"background": "Radial_grey"}))
     paint(own / "_radial_grey.png")
     assert build_run_spec(merge_settings(extract_settings(spec))) == spec
@@ -143,7 +141,7 @@ def test_a_stored_run_is_repeated_on_the_mat_that_it_was_made_on(
 
 
 @pytest.mark.slow
-def test_the_switch_works_in_a_magic_line_from_the_programs_folder(
+def test_the_switch_mats_in_a_magic_line_is_relative_to_the_programs_folder(
     here: Command, home: Path, tmp_path: Path
 ) -> None:
     paint(tmp_path / "course" / "pics" / "maze.png")
@@ -167,7 +165,7 @@ def test_the_switch_works_in_a_magic_line_from_the_programs_folder(
         "no picture": ("-b text --mats pics", "text.png: is not a readable image"),
     },
 )
-def test_a_missing_mat_or_picture_is_named(
+def test_a_missing_mat_or_picture_of_the_user_is_named(
     words: str, expected: str, here: Command, own: Path, tmp_path: Path
 ) -> None:
     paint(tmp_path / "pics" / "maze.png")
@@ -178,7 +176,9 @@ def test_a_missing_mat_or_picture_is_named(
     assert expected.format(own=own) in done.stderr
 
 
-def test_originals_are_imported_and_used(here: Command, own: Path, tmp_path: Path) -> None:
+def test_backgrounds_use_originals_imports_mat_pictures_that_runs_then_use(
+    here: Command, own: Path, tmp_path: Path
+) -> None:
     for name in ("_loop.png", "FLL2018.jpg", "holiday.png"):
         paint(tmp_path / "old" / name)
     paint(tmp_path / "old" / "FuBK_testcard_vectorized.png", BLUE, (2215, 1073))
@@ -218,7 +218,7 @@ def test_originals_are_imported_and_used(here: Command, own: Path, tmp_path: Pat
         "no picture": ("broken", "_square.png: is not a readable image"),
     },
 )
-def test_a_folder_without_originals_changes_nothing(
+def test_backgrounds_use_originals_of_a_folder_without_them_changes_nothing(
     folder: str, expected: str, here: Command, own: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "p.py").write_text(READ)

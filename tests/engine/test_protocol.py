@@ -26,7 +26,7 @@ SENT: tuple[Message, ...] = (Stop(), SetPose(1.5, -2.0, 90.0), SetNoise(3, 4), R
 
 
 @pytest.mark.parametrize("message", SENT, ids=[message.kind for message in SENT])
-def test_a_command_is_read_as_it_was_sent(message: Message) -> None:
+def test_a_protocol_command_is_read_as_it_was_sent(message: Message) -> None:
     line = message.encode()
     assert line.endswith(b"\n") and line.count(b"\n") == 1
     assert parse_command(line) == message
@@ -37,7 +37,7 @@ def test_the_kind_of_each_message_is_its_class_name_in_snake_case() -> None:
     assert not COMMANDS.keys() & EVENTS.keys()
 
 
-def test_names_that_are_not_utf_8_are_sent_as_escapes() -> None:
+def test_text_that_is_not_utf_8_is_sent_between_processes_as_escapes() -> None:
     line = Spoke("é\udcff", 7).encode()
     assert json.loads(line)["text"] == "é\\udcff"
 
@@ -45,12 +45,12 @@ def test_names_that_are_not_utf_8_are_sent_as_escapes() -> None:
 @pytest.mark.parametrize(
     "line", [b"rubbish", b'{"kind": "fly"}', b'{"kind": "stop", "now": 1}', b'{"tick": 3}'], ids=str
 )
-def test_a_line_that_is_no_command_is_an_error(line: bytes) -> None:
+def test_a_line_that_is_no_protocol_command_raises(line: bytes) -> None:
     with pytest.raises((ValueError, KeyError, TypeError)):
         parse_command(line)
 
 
-def test_an_action_comes_back_from_its_stored_form() -> None:
+def test_a_user_action_written_and_read_back_is_the_same() -> None:
     action = UserAction(12, SetNoise(1, 2))
     plain = action.to_plain()
     assert (plain["tick"], plain["kind"]) == (12, "set_noise")
@@ -58,7 +58,7 @@ def test_an_action_comes_back_from_its_stored_form() -> None:
     assert all(kind.kind in COMMANDS for kind in ACTIONS)
 
 
-def test_what_a_debugger_does_is_no_action_of_a_run() -> None:
+def test_a_debugger_command_is_refused_as_user_action_of_a_run() -> None:
     with pytest.raises(TypeError, match="not a user action"):
         UserAction(1, Pause())
 
@@ -76,5 +76,7 @@ def test_what_a_debugger_does_is_no_action_of_a_run() -> None:
         ("finished", "", "finished"),
     ],
 )
-def test_the_words_of_an_end_do_not_repeat_its_state(state: str, summary: str, words: str) -> None:
+def test_the_description_of_a_runs_end_does_not_repeat_its_state(
+    state: str, summary: str, words: str
+) -> None:
     assert describe_state(state, summary) == words
