@@ -37,7 +37,7 @@ def test_every_file_is_a_page_of_the_contents() -> None:
     assert {page.part for page in load_pages().values()} == set(GuidePart)
 
 
-def test_every_table_is_in_a_page() -> None:
+def test_every_generated_table_is_used_in_a_page_of_the_guide() -> None:
     marks = re.compile(r"<!-- table: ([\w-]+) -->")
     assert {name for page in load_pages().values() for name in marks.findall(page.source)} == set(
         TABLES
@@ -45,14 +45,14 @@ def test_every_table_is_in_a_page() -> None:
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_a_table_has_a_cell_for_each_column(name: str) -> None:
+def test_every_row_of_a_guides_table_has_a_cell_for_each_column(name: str) -> None:
     made = load_table(name)
     assert made.rows
     assert {len(row) for row in made.rows} == {len(made.columns)}
 
 
 @pytest.mark.parametrize("name", WORDS_OF)
-def test_a_table_says_what_the_code_says(name: str) -> None:
+def test_each_generated_table_of_the_guide_equals_what_the_code_says(name: str) -> None:
     text = load_table(name).to_markdown()
     missing = [
         word
@@ -72,7 +72,7 @@ def test_a_table_says_what_the_code_says(name: str) -> None:
         "a class": (["mark", str(ROOT / "programs" / "log_greys_goals.toml"), "nobody"], "marking"),
     },
 )
-def test_an_error_names_the_page_that_helps(
+def test_an_error_names_the_page_of_the_guide_that_helps(
     words: list[str], topic: str, tmp_path: Path, here: Command
 ) -> None:
     (tmp_path / "magic.py").write_text("# %%sim_magic_preload\nprint(1)\n")
@@ -130,7 +130,7 @@ def test_a_page_that_cannot_be_shown_says_why(
 
 @pytest.mark.tmux
 @pytest.mark.slow
-def test_a_terminal_shows_a_page_in_a_pager(tmp_path: Path) -> None:
+def test_tuisim_guide_in_a_terminal_shows_the_page_in_a_pager(tmp_path: Path) -> None:
     terminal = Terminal(f"guide{tmp_path.name}", tmp_path)
     terminal.start(["guide", "breakpoints"], 80, 24)
     try:

@@ -120,7 +120,7 @@ def test_code_blocks_without_a_language_contain_no_command() -> None:
 
 
 @pytest.mark.parametrize("name", load_pages())
-def test_no_line_of_code_is_broken_in_a_narrow_terminal(name: str) -> None:
+def test_no_line_of_code_in_the_guide_is_too_long_for_a_narrow_terminal(name: str) -> None:
     lines = "\n".join(block.code for block in blocks(name)).splitlines()
     drawn = render_markdown("\n".join(["```", *lines, "```"]), NARROW_PAGE_COLUMNS)
     rows = ["".join(text for text, _ in row).strip() for row in drawn]

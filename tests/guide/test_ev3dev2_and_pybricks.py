@@ -50,7 +50,7 @@ def programs(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("programs")
-def test_each_column_runs_to_its_end_on_one_robot(here: Command) -> None:
+def test_ev3dev2_and_pybricks_calls_of_the_guides_table_run_without_an_error(here: Command) -> None:
     assert len(rows()) > 30
     assert here("robots", "--from", "ev3dev2_calls.py", "--out", "robot.toml").returncode == 0
     done = {

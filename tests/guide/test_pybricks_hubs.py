@@ -46,7 +46,7 @@ for module, classes in {refused}.items():
 """
 
 
-def test_every_hub_has_its_ports_and_its_motor_in_the_table() -> None:
+def test_the_guides_table_of_hubs_has_each_hubs_ports_and_motor() -> None:
     assert set(ROWS) == {*HUBS, "EV3Brick"}
     for hub, kind in HUBS.items():
         (first, last), motors, *_ = ROWS[hub]
@@ -56,7 +56,7 @@ def test_every_hub_has_its_ports_and_its_motor_in_the_table() -> None:
 
 @pytest.mark.quick_cases("PrimeHub", "CityHub")
 @pytest.mark.parametrize("hub", ROWS)
-def test_a_hub_has_the_parts_in_the_table_and_no_others(
+def test_each_hub_has_exactly_the_parts_in_the_guides_table(
     hub: str, here: Command, tmp_path: Path
 ) -> None:
     _, _, parts, refused = ROWS[hub]
@@ -70,7 +70,7 @@ def test_a_hub_has_the_parts_in_the_table_and_no_others(
     ]
 
 
-def test_the_page_names_each_class_that_is_refused() -> None:
+def test_the_guides_page_on_hubs_names_each_class_that_is_refused() -> None:
     start = LINES.index("| module | not simulated on a hub |") + 2
     rows = [line.split("|")[1:3] for line in LINES[start : start + len(REFUSED)]]
     assert {module.strip(" `"): re.findall(r"`(\w+)`", cell) for module, cell in rows} == {

@@ -44,12 +44,12 @@ def test_a_passage_is_neither_a_fence_nor_a_rule(question: str) -> None:
 
 
 @pytest.mark.parametrize("question", ["", "how do I", "xyzzy", "%&"])
-def test_nothing_is_found_where_nothing_is_asked(question: str) -> None:
+def test_an_empty_search_of_the_guide_finds_nothing(question: str) -> None:
     assert search(question) == []
 
 
 @pytest.mark.parametrize("width", [24, 33, 50])
-def test_what_is_shown_of_an_answer_fits_its_width(width: int) -> None:
+def test_lines_shown_of_a_guides_answer_fit_the_width(width: int) -> None:
     for question in ("sensor", "motor", "wall", "noise"):
         for one in search(question):
             lines = [line for most in range(1, 6) for line in shown_of(one, width, most)]
@@ -64,13 +64,15 @@ def test_a_mistyped_word_finds_the_page_of_the_right_one() -> None:
 @pytest.mark.parametrize(
     "parts", [("gyro drift", "compare runs"), ("keyboard shortcuts", "own mat")]
 )
-def test_each_part_of_a_question_is_answered(parts: tuple[str, ...]) -> None:
+def test_a_question_of_two_parts_finds_an_answer_to_each(parts: tuple[str, ...]) -> None:
     answers = search(" and ".join(parts))[:4]
     assert all(search(part)[0] in answers for part in parts)
 
 
 @pytest.mark.parametrize("width, begins", [(36, "gyro"), (76, "gyro"), (118, " gyro  ")])
-def test_a_row_of_a_table_is_found_in_each_width(width: int, begins: str) -> None:
+def test_a_found_row_of_a_table_is_located_on_the_page_at_each_width(
+    width: int, begins: str
+) -> None:
     found = next(
         one for one in search("gyro angle INPUT_4 Port.S4") if one.name == "ev3dev2-and-pybricks"
     )
@@ -81,7 +83,7 @@ def test_a_row_of_a_table_is_found_in_each_width(width: int, begins: str) -> Non
 
 @pytest.mark.parametrize("width", [36, 76, 118])
 @pytest.mark.parametrize("question", ["why does the sensor say White on grey", "threshold"])
-def test_a_passage_ends_where_the_next_one_begins(question: str, width: int) -> None:
+def test_a_found_passage_ends_where_the_next_one_begins(question: str, width: int) -> None:
     first = search(question)[0]
     lines = draw_page(load_pages()[first.name], width)
     _, row = find_rows(lines, first.heading, first.passage)
@@ -92,7 +94,7 @@ def test_a_passage_ends_where_the_next_one_begins(question: str, width: int) -> 
     )
 
 
-def test_the_beginning_of_an_answer_has_its_code_in_lines_of_their_own() -> None:
+def test_code_in_a_shown_answer_stands_on_lines_of_its_own() -> None:
     one = SearchResult(
         "writing-programs", "", "- **To wait**, write:\n\n      for n in x:\n          wait()\n"
     )
@@ -101,7 +103,7 @@ def test_the_beginning_of_an_answer_has_its_code_in_lines_of_their_own() -> None
     assert shown_of(one, 9, 1) == ["To wait, …"]
 
 
-def test_a_longer_answer_begins_at_the_sentence_that_has_the_words_of_the_question() -> None:
+def test_a_long_answer_is_shown_from_the_sentence_with_the_questions_words() -> None:
     one = SearchResult(
         "writing-programs", "", "First of all, it drives. The wheels turn. Then the robot beeps."
     )
@@ -112,7 +114,7 @@ def test_a_longer_answer_begins_at_the_sentence_that_has_the_words_of_the_questi
     ]
 
 
-def test_what_introduces_a_list_shows_its_items() -> None:
+def test_an_answer_that_introduces_a_list_shows_the_lists_items() -> None:
     (first, *_) = search("the robot does not move")
     lines = shown_of(first, 100, 9)
     assert first.passage.endswith(":") and sum(line.startswith("• ") for line in lines) > 2
@@ -120,14 +122,14 @@ def test_what_introduces_a_list_shows_its_items() -> None:
     assert len(shown_of(first, 100, 2)) == 2
 
 
-def test_the_lines_of_a_long_code_that_have_the_words_of_the_question_are_in_sight() -> None:
+def test_of_a_long_code_block_the_lines_with_the_questions_words_are_shown() -> None:
     (first, *_) = search("explorer.toml left_port outD gyro = false ultrasonic = false")
     lines = shown_of(first, 90, 9, re.compile("left_port|outD|gyro"))
     assert 'left_port = "outD"  # the motor of the left wheel' in lines
     assert "gyro = false" in lines and lines[-1] == "…" and len(lines) == 9
 
 
-def test_a_number_in_a_sentence_is_no_item_of_a_list() -> None:
+def test_a_number_in_a_sentence_is_not_taken_for_a_list_item() -> None:
     one = SearchResult("keys", "", "- It grows - by\n  90. Then it stops.")
     assert shown_of(one, 60, 9) == ["It grows - by 90. Then it stops."]
 
@@ -144,11 +146,11 @@ def test_code_alone_keeps_its_lines() -> None:
     assert shown_of(one, 40, 9) == ["# a.toml", "x = 1", "y = 2"]
 
 
-def test_what_is_far_behind_the_best_answer_is_left_out() -> None:
+def test_answers_far_worse_than_the_best_one_are_left_out() -> None:
     assert len(search("How do I make the robot slower?")) < 6 < len(search("robot"))
 
 
-def test_a_row_of_a_table_says_what_its_columns_are() -> None:
+def test_a_shown_row_of_a_table_names_its_columns() -> None:
     row = next(
         one
         for one in search("which formats can I export, csv or arrow")
@@ -161,6 +163,6 @@ def test_a_row_of_a_table_says_what_its_columns_are() -> None:
     assert shown_of(pair, 80, 1) == ["x · does this"]
 
 
-def test_what_follows_a_colon_is_of_the_same_passage() -> None:
+def test_what_follows_a_colon_belongs_to_the_same_passage_of_the_guide() -> None:
     found = next(one for one in search("export a stored run") if one.heading == "After the run")
     assert found.passage.endswith("tuisim log export last --out again.arrow")

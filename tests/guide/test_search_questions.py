@@ -9,7 +9,7 @@ from tuisim.guide.search import load_questions, search
 from tuisim.guide.tables import build_markdown
 
 
-def test_each_answer_is_in_its_page() -> None:
+def test_each_expected_answer_is_text_of_its_page() -> None:
     for name, answers in load_questions().items():
         text = build_markdown(load_pages()[name])
         assert [key for key in answers if key not in text] == [], name
@@ -26,7 +26,7 @@ def test_each_question_finds_its_answer_among_the_first_two(name: str) -> None:
     assert missed == []
 
 
-def test_no_question_has_two_answers() -> None:
+def test_no_test_question_has_two_expected_answers() -> None:
     asks = [
         ask for answers in load_questions().values() for asks in answers.values() for ask in asks
     ]
