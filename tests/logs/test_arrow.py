@@ -50,7 +50,7 @@ def test_convert_to_floats_gives_numbers_with_nan_for_missing_cells(
 
 
 @pytest.mark.parametrize("rows", [0, 1, 9])
-def test_a_table_of_columns_is_that_of_their_frame(rows: int) -> None:
+def test_an_arrow_table_built_of_columns_equals_that_of_a_pandas_frame(rows: int) -> None:
     known = np.arange(rows) / 3
     columns: dict[str, Any] = {
         "index": (np.arange(rows) * 7).astype("m8[ns]"),
@@ -67,7 +67,7 @@ def test_a_table_of_columns_is_that_of_their_frame(rows: int) -> None:
     assert table.cast(expected.schema).equals(expected)
 
 
-def test_whole_numbers_are_not_copied() -> None:
+def test_wrapping_and_reading_int64_columns_gives_their_numbers() -> None:
     numbers = np.arange(5, dtype=np.int64)
     assert wrap_int64(numbers).to_pylist() == [0, 1, 2, 3, 4]
     chunk = pa.array([1, 2, 3], pa.int32()).slice(1)
@@ -102,7 +102,7 @@ def test_a_number_is_not_compared_with_a_text() -> None:
         match_condition(column([1]), ValueCondition("a", Operator.LESS, "x"))
 
 
-def test_coded_texts_are_sorted_as_texts() -> None:
+def test_dictionary_encoded_texts_are_sorted_as_texts() -> None:
     coded = column(["b", "a", "c"]).dictionary_encode()
     assert sort_places(coded, descending=False).tolist() == [1, 0, 2]
     assert sort_places(column([3, 1, 2]), descending=True).tolist() == [0, 2, 1]

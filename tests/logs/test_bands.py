@@ -117,7 +117,7 @@ CLEAN = {
 
 
 @cases("values, expected", CLEAN)
-def test_plateaus_are_found_with_their_limits_and_levels(
+def test_find_plateaus_gives_start_stop_and_level_of_each(
     values: list[float], expected: list[tuple[int, int, float]]
 ) -> None:
     found = find_plateaus(np.array(values, np.float64))
@@ -125,7 +125,7 @@ def test_plateaus_are_found_with_their_limits_and_levels(
 
 
 @pytest.mark.parametrize("giant", [65535.0, -1e9, 1e300])
-def test_a_stray_giant_hides_no_step(giant: float) -> None:
+def test_a_huge_stray_value_does_not_hide_a_step(giant: float) -> None:
     values = np.repeat([100.0, 86.27, 100.0, 50.2, 0.0], 10)
     values[[14, 33, 34]] = giant
     found = find_plateaus(values)
@@ -143,7 +143,7 @@ def test_values_near_the_largest_number_do_no_harm() -> None:
     find_plateaus(np.tile([1e308, -1e308], 20))
 
 
-def test_level_of_equal_samples_is_exact() -> None:
+def test_the_level_of_equal_samples_is_exact() -> None:
     grey = 86.27450980392157
     assert [
         plateau.level for plateau in find_plateaus(np.array([100.0] * 4 + [grey] * 7 + [100.0] * 4))
@@ -154,13 +154,13 @@ def test_level_of_equal_samples_is_exact() -> None:
     ]
 
 
-def test_a_difference_of_rounding_is_no_step() -> None:
+def test_values_that_differ_by_rounding_make_no_step() -> None:
     level = 38.98
     (found,) = find_plateaus(np.repeat([level, np.nextafter(level, 99.0), level], 9))
     assert (found.start, found.stop) == (0, 27)
 
 
-def test_long_log_is_cut_as_a_short_one() -> None:
+def test_a_long_log_gets_the_same_plateaus_as_a_short_one() -> None:
     rng = np.random.default_rng(4)
     levels = np.cumsum(rng.uniform(5.0, 20.0, 300)) % 100.0
     values = np.repeat(levels, 40) + rng.normal(0.0, 0.3, 300 * 40)
@@ -203,7 +203,7 @@ def test_plateaus_found_in_drawn_logs_have_the_recorded_sums(
         ("x_mm", ""),
     ],
 )
-def test_only_what_may_be_light_has_names_of_greys(name: str, grey: str) -> None:
+def test_only_variables_that_may_be_light_get_names_of_greys(name: str, grey: str) -> None:
     values = np.repeat([0.0, 100.0], 50)
     table = pa.table({"time": np.arange(100) / 10, name: values})
     report = build_band_report(Log("test", table, guess_columns(table)), name)

@@ -34,7 +34,7 @@ from tuisim.logs.log import Log
 
 
 @for_each(value=[0, 3, 10, 128, 240, 250, 255], noise=[5, 20, 128])
-def test_the_level_before_clamped_noise_is_found(value: int, noise: int) -> None:
+def test_the_true_light_level_is_estimated_from_clamped_noise(value: int, noise: int) -> None:
     mean_percent = np.array([(value + compute_clamping(noise).shift[value]) / 2.55])
     assert undo_clamping(mean_percent, noise) == pytest.approx(
         value / 2.55, abs=0.8 if noise < 128 else 4.0
@@ -115,7 +115,7 @@ def test_a_log_without_known_noise_is_read_as_light_without_noise(
     assert read_light(metadata, 0) == Light()
 
 
-def test_greys_as_a_brick_reads_them() -> None:
+def test_levels_measured_by_a_brick_get_the_right_names_of_greys() -> None:
     light = find_light(RunSpec(RobotSpec(), WorldSpec(), EV3))
     values = np.repeat([85.0, 74.0, 70.0, 45.0, 5.0], 5)
     found = measure_levels(values, light)
@@ -127,7 +127,7 @@ def test_greys_as_a_brick_reads_them() -> None:
     assert noisy.true_level[3] == pytest.approx(45.0)
 
 
-def test_empty_cells_belong_to_no_band() -> None:
+def test_empty_cells_of_a_log_belong_to_no_band() -> None:
     table = pa.table({"time": np.arange(12.0), "light": [50.0, None] * 3 + [100.0, None] * 3})
     report = build_band_report(Log("log", table, guess_columns(table)), "light")
     assert [(band.level, band.samples) for band in report.bands] == [(50, 3), (100, 3)]
@@ -146,7 +146,7 @@ def test_empty_cells_belong_to_no_band() -> None:
     ],
     ids=["at the end", "at the start", "after an edge", "after the longest edge", "none", "a ramp"],
 )
-def test_one_sample_at_an_end_is_a_level(
+def test_a_single_sample_at_an_end_of_a_log_counts_as_a_level(
     light: list[float], levels: list[tuple[float, int]]
 ) -> None:
     table = pa.table({"time": np.arange(len(light)) / 10, "Light": light})
@@ -157,7 +157,7 @@ def test_one_sample_at_an_end_is_a_level(
     assert (words == "Light: no level: its values stand still nowhere") is (not levels)
 
 
-def test_bands_of_one_level_are_told_together() -> None:
+def test_bands_of_the_same_level_are_described_together() -> None:
     columns: dict[str, Any] = {
         "number": np.arange(4),
         "grey": ["grey", "", "grey", "white"],
@@ -170,7 +170,7 @@ def test_bands_of_one_level_are_told_together() -> None:
     )
 
 
-def test_noisy_bands_of_one_level_are_one_level() -> None:
+def test_noisy_bands_of_nearly_one_level_are_described_as_one() -> None:
     columns: dict[str, Any] = {
         "number": np.arange(5),
         "grey": [""] * 5,

@@ -70,7 +70,9 @@ def test_a_chosen_decimal_sign_decides(tmp_path: Path, sign: str, number: float)
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "gbk", "shift_jis"])
-def test_numbers_are_right_in_whatever_encoding_is_guessed(tmp_path: Path, encoding: str) -> None:
+def test_numbers_of_a_log_are_right_whatever_encoding_is_guessed(
+    tmp_path: Path, encoding: str
+) -> None:
     words = {"cp1252": "Größe", "gbk": "亮度", "shift_jis": "光ー"}
     path = tmp_path / "a.csv"
     path.write_bytes(f"time;{words[encoding]}\n0;5,5\n1;6,5\n2;7,5\n".encode(encoding))
@@ -87,7 +89,7 @@ def test_numbers_are_right_in_whatever_encoding_is_guessed(tmp_path: Path, encod
         "Japanese": ("shift_jis", "光", ""),
     },
 )
-def test_a_guessed_encoding_is_noted_and_a_chosen_one_not(
+def test_a_guessed_encoding_of_a_log_is_noted_and_a_chosen_one_is_not(
     tmp_path: Path, encoding: str, sign: str, note: str
 ) -> None:
     path = tmp_path / "a.csv"

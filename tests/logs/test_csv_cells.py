@@ -31,7 +31,7 @@ PLAIN = ("ada", "", "'quoted'", "a = 1", "-5", "+3.25", "-1e-9", "x-1", "print('
 
 
 @pytest.mark.parametrize("text", FORMULAS)
-def test_a_text_that_would_be_computed_gets_an_apostrophe(text: str) -> None:
+def test_a_csv_text_that_looks_like_a_formula_gets_an_apostrophe(text: str) -> None:
     assert escape_formula(text) == f"'{text}"
 
 
@@ -40,7 +40,7 @@ def test_other_texts_and_numbers_stay_as_they_are(text: str) -> None:
     assert escape_formula(text) == text
 
 
-def test_no_cell_of_a_file_is_a_formula_and_reading_gives_back_the_texts(tmp_path: Path) -> None:
+def test_an_exported_csv_has_no_formulas_and_reads_back_the_same_texts(tmp_path: Path) -> None:
     texts = [*FORMULAS, *PLAIN]
     frame = pd.DataFrame(
         {"=name": texts, "value": [-1.5] * len(texts), "count": range(-3, len(texts) - 3)}
@@ -53,7 +53,7 @@ def test_no_cell_of_a_file_is_a_formula_and_reading_gives_back_the_texts(tmp_pat
     pd.testing.assert_frame_equal(read_log(tmp_path / "out.csv"), frame, check_dtype=False)
 
 
-def test_what_a_log_prints_as_csv_is_harmless_too(tmp_path: Path, here: Command) -> None:
+def test_csv_printed_by_log_commands_contains_no_formula(tmp_path: Path, here: Command) -> None:
     (tmp_path / "log.csv").write_text("time,=x,note\n0,1,a\n1,2,b\n2,3,c\n")
     done = here("log", "derive", "log.csv")
     assert (done.returncode, done.stdout.splitlines()[1]) == (0, "0.0,'=x,1.0,1.0"), done.stderr

@@ -66,7 +66,7 @@ REFUSED = {
 }
 
 
-def test_wheels_without_numbers_cannot_be_reckoned() -> None:
+def test_dead_reckoning_from_text_columns_is_refused() -> None:
     table = pa.table(
         {"time": [0.0, 1.0], "value": [1.0, 2.0], **{name: ["a", "b"] for name in NEEDED}}
     )
@@ -75,7 +75,9 @@ def test_wheels_without_numbers_cannot_be_reckoned() -> None:
 
 
 @cases("text, said", REFUSED)
-def test_a_faulty_expression_changes_nothing(text: str, said: str) -> None:
+def test_a_faulty_derived_variable_is_refused_and_leaves_the_log_unchanged(
+    text: str, said: str
+) -> None:
     model = model_of(long_log())
     before = model.log
     with pytest.raises(LogError, match=said):
@@ -83,7 +85,7 @@ def test_a_faulty_expression_changes_nothing(text: str, said: str) -> None:
     assert model.log is before
 
 
-def test_each_run_has_its_own() -> None:
+def test_a_derived_variable_is_computed_for_each_run_by_itself() -> None:
     log = long_log(runs=2)
     first, second = compute_derived(log, parse_definition("slope(Colour)"), "Left #1")
     assert (first.name, second.name) == ("slope(Colour) #1", "slope(Colour) #2")
@@ -134,7 +136,7 @@ def test_a_derived_variable_is_replaced_removed_and_kept_when_the_log_grows() ->
     assert model.selected == "wave" and len(model.rows) == 100
 
 
-def test_columns_that_mean_something_else_have_nothing_derived() -> None:
+def test_columns_of_another_meaning_get_no_dead_reckoning() -> None:
     model = model_of(wide_log(100))
     model.derive("v = wave + 1")
     other = model.log.replace_layout(model.log.layout)
@@ -153,7 +155,7 @@ class TestReckoning:
         assert_allclose(got.y_mm, [20, 20, 20], atol=1e-9)
         assert_allclose(got.heading_deg, [0, 0, 90])
 
-    def test_the_positions_are_those_of_the_motors(self) -> None:
+    def test_dead_reckoning_uses_gear_and_direction_of_the_motors(self) -> None:
         usual = RobotSpec()
         geared = RobotSpec(left_reversed=True, gear_ratio=0.5)
         left, right = column(0, 100, 130), column(0, 120, 160)
@@ -164,7 +166,7 @@ class TestReckoning:
             [expected.x_mm, expected.y_mm, expected.heading_deg],
         )
 
-    def test_an_arc_is_round(self) -> None:
+    def test_dead_reckoning_of_an_arc_ends_where_a_circle_would(self) -> None:
         robot = RobotSpec()
         per_degree = math.pi * robot.wheel_diameter_mm / 360
         radius = 200.0
@@ -192,5 +194,5 @@ class TestReckoning:
     ],
     ids=str,
 )
-def test_damaged_metadata_describe_no_run(metadata: dict[str, Any]) -> None:
+def test_damaged_metadata_of_a_log_are_read_as_no_run(metadata: dict[str, Any]) -> None:
     assert read_spec(metadata) is None

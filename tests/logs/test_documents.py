@@ -116,7 +116,7 @@ CASES: dict[str, Case] = {
 
 
 @cases("name, content, expected", CASES)
-def test_json_in_one_piece_is_read_as_rows_or_columns(
+def test_a_json_document_is_read_as_a_log_of_rows_or_columns(
     tmp_path: Path, name: str, content: bytes, expected: Read | str
 ) -> None:
     check_input(tmp_path / name, content, expected)

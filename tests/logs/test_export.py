@@ -150,7 +150,7 @@ def test_frames_that_are_no_logs_are_exported_and_read_back(
 
 
 @each_format
-def test_frame_without_rows_comes_back_with_its_types(
+def test_an_exported_frame_without_rows_is_read_back_with_its_types(
     record: Callable[..., Recorder], spec: RunSpec, tmp_path: Path, suffix: str
 ) -> None:
     run = record(spec).end()
@@ -161,7 +161,7 @@ def test_frame_without_rows_comes_back_with_its_types(
 @pytest.mark.quick_cases("samples-*")
 @each_format
 @pytest.mark.parametrize("table", ["samples", "telemetry"])
-def test_identical_runs_give_identical_files(
+def test_identical_runs_give_identical_export_files(
     record: Callable[..., Recorder],
     noisy_spec: RunSpec,
     tmp_path: Path,
@@ -183,7 +183,9 @@ def test_identical_runs_give_identical_files(
 
 
 @each_format
-def test_an_export_holds_what_its_runs_were(logged: StoredRun, tmp_path: Path, suffix: str) -> None:
+def test_an_export_holds_metadata_of_its_runs_and_units(
+    logged: StoredRun, tmp_path: Path, suffix: str
+) -> None:
     export_samples([logged], tmp_path / f"x{suffix}")
     found = open_log(tmp_path / f"x{suffix}").metadata
     (run,) = found["runs"]
@@ -218,7 +220,7 @@ def test_a_failed_export_leaves_the_old_file(
 
 
 @each_format
-def test_suffix_in_capitals_is_the_same_format(
+def test_an_export_suffix_in_capitals_means_the_same_format(
     logged: StoredRun, tmp_path: Path, suffix: str
 ) -> None:
     export_samples([logged], tmp_path / f"X{suffix.upper()}")
@@ -226,7 +228,7 @@ def test_suffix_in_capitals_is_the_same_format(
 
 
 @each_format
-def test_damaged_file_is_named(tmp_path: Path, suffix: str) -> None:
+def test_a_damaged_export_is_refused_with_its_name(tmp_path: Path, suffix: str) -> None:
     target = tmp_path / f"x{suffix}"
     magic = {".parquet": b"PAR1", ".arrow": b"ARROW1"}.get(suffix, b"")
     target.write_bytes(magic + b'\xff\x00"rubbish\n{"')
@@ -247,7 +249,9 @@ def test_a_csv_export_has_one_heading_and_plain_rows(logged: StoredRun, tmp_path
     assert (len(lines), lines[-1]) == (6, "")
 
 
-def test_pandas_alone_reads_the_same_rows(logged: StoredRun, tmp_path: Path) -> None:
+def test_pandas_reads_the_same_rows_from_every_export_format(
+    logged: StoredRun, tmp_path: Path
+) -> None:
     for suffix in EXPORTERS:
         export_samples([logged], tmp_path / f"x{suffix}")
     parquet = pd.read_parquet(tmp_path / "x.parquet")
@@ -257,7 +261,9 @@ def test_pandas_alone_reads_the_same_rows(logged: StoredRun, tmp_path: Path) -> 
         assert text["value"].tolist() == pytest.approx(parquet["value"].tolist())
 
 
-def test_csv_without_companion_is_read_all_the_same(logged: StoredRun, tmp_path: Path) -> None:
+def test_a_csv_export_without_its_companion_file_is_read_the_same(
+    logged: StoredRun, tmp_path: Path
+) -> None:
     export_samples([logged], tmp_path / "x.csv")
     find_companion(tmp_path / "x.csv").unlink()
     frame = read_log(tmp_path / "x.csv")
@@ -268,7 +274,7 @@ def test_csv_without_companion_is_read_all_the_same(logged: StoredRun, tmp_path:
 # Targets
 
 
-def test_good_target_is_checked_without_a_trace(tmp_path: Path) -> None:
+def test_checking_a_good_export_target_creates_no_file(tmp_path: Path) -> None:
     assert check_target(tmp_path / "x.csv") == tmp_path / "x.csv"
     assert list(tmp_path.iterdir()) == []
 
@@ -289,7 +295,7 @@ BAD_TARGETS = {
 
 
 @cases("name, message", BAD_TARGETS)
-def test_bad_target_is_refused_before_anything_is_done(
+def test_a_bad_export_target_is_refused_with_the_reason(
     tmp_path: Path, name: str, message: str
 ) -> None:
     (tmp_path / "folder.csv").mkdir()
@@ -300,7 +306,7 @@ def test_bad_target_is_refused_before_anything_is_done(
         check_target(tmp_path / name)
 
 
-def test_folder_that_cannot_be_written_is_refused() -> None:
+def test_an_export_into_a_folder_that_cannot_be_written_is_refused() -> None:
     # Nobody can make a file there, not even root.
     with pytest.raises(ExportError, match=r"cannot write /proc/self/x\.csv"):
         check_target("/proc/self/x.csv")

@@ -41,7 +41,7 @@ VALUES = {
 
 
 @pytest.mark.parametrize("text, expected", VALUES.items(), ids=VALUES)
-def test_an_expression_computes_its_values(text: str, expected: list[float]) -> None:
+def test_each_expression_computes_the_expected_values(text: str, expected: list[float]) -> None:
     assert_allclose(evaluate(text, COLUMNS), expected)
 
 
@@ -73,7 +73,7 @@ REFUSED = {
 }
 
 
-def test_an_expression_may_be_as_long_as_is_said() -> None:
+def test_an_expression_beyond_the_longest_allowed_is_refused() -> None:
     text = f"{'left':{MAX_CHARS}}"
     assert [*evaluate(text, COLUMNS)] == [1, 2, 3]
     with pytest.raises(LogError, match=f"{MAX_CHARS + 1} characters"):

@@ -41,7 +41,7 @@ def test_read_log_takes_files_from_elsewhere(tmp_path: Path) -> None:
     }
 
 
-def test_the_numbers_of_lines_are_no_times(tmp_path: Path) -> None:
+def test_read_log_does_not_use_line_numbers_as_times(tmp_path: Path) -> None:
     (path := tmp_path / "a.txt").write_text("Light: 12\nfoo\nLight: 13\n")
     with pytest.warns(UserWarning, match="not a sample"):
         frame = read_log(path)
@@ -106,7 +106,7 @@ def test_read_log_has_the_options_of_the_commands() -> None:
     assert {field.name for field in fields(ReadChoices)} == names
 
 
-def test_an_editor_knows_the_words_of_a_choice() -> None:
+def test_type_hints_of_read_log_list_the_words_of_each_choice() -> None:
     types = get_type_hints(read_log, {**vars(frames), "pd": pandas})
     assert {name: get_args(types[name]) for name in WORDS} == {
         name: ("", *words) for name, words in WORDS.items()

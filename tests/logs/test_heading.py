@@ -99,7 +99,7 @@ CASES: dict[str, Case] = {
 
 
 @cases("name, content, expected", CASES)
-def test_the_table_below_a_preamble_is_found(
+def test_the_table_below_a_log_files_preamble_is_found(
     tmp_path: Path, name: str, content: bytes, expected: Read | str
 ) -> None:
     check_input(tmp_path / name, content, expected)

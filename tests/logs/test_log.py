@@ -60,19 +60,19 @@ ROWS = {
 
 
 @cases("log, expected", ROWS)
-def test_each_series_has_its_rows(log: Log, expected: dict[str, list[int]]) -> None:
+def test_each_variable_of_a_log_has_its_rows(log: Log, expected: dict[str, list[int]]) -> None:
     assert {name: list(log.series(name).rows) for name in log.names} == expected
     assert list(log.names) == list(expected)
 
 
-def test_series_share_what_they_have_in_common() -> None:
+def test_variables_of_a_log_share_the_memory_of_their_times() -> None:
     log = log_of(time=[0.0, 1.0], red=[1.0, 2.0], blue=[3.0, 4.0])
     red, blue = log.series("red"), log.series("blue")
     assert np.shares_memory(red.time_s, blue.time_s)
     assert np.shares_memory(red.values, log.numbers("red"))
 
 
-def test_a_column_that_stays_empty_holds_numbers(tmp_path: Path) -> None:
+def test_a_log_column_that_stays_empty_is_read_as_missing_numbers(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("time,red,none\n1,2,\n2,3,NA\n")
     assert np.isnan(open_log(tmp_path / "a.csv").series("none").values).all()
 
@@ -87,7 +87,7 @@ def test_a_column_without_a_type_has_no_numbers(tmp_path: Path) -> None:
     assert np.isnan(open_log(path).series("none").values).all()
 
 
-def test_infinite_numbers_are_compared_without_a_warning() -> None:
+def test_infinite_numbers_in_a_log_raise_no_warning() -> None:
     infinite = float("inf")
     assert log_of(a=[infinite, infinite, 3.0], b=[1.0, 2.0, 3.0]).names == ("a", "b")
 

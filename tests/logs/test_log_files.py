@@ -30,14 +30,14 @@ def list_failures(verdicts: Iterable[Verdict]) -> str:
     return "\n".join([*map(str, ranks.items()), *(text for *_, text in sorted(wrong)[:MAX_SHOWN])])
 
 
-def test_drawn_files_are_read_as_they_were_written(tmp_path: Path) -> None:
+def test_randomly_drawn_log_files_are_read_as_they_were_written(tmp_path: Path) -> None:
     seeds = [*QUICK_SEEDS, *FAILED_SEEDS]
     failures = list_failures(read_file(draw(seed), tmp_path) for seed in seeds)
     assert not failures, failures
 
 
 @pytest.mark.slow
-def test_many_files_are_read_as_they_were_written(tmp_path: Path) -> None:
+def test_many_randomly_drawn_log_files_are_read_as_they_were_written(tmp_path: Path) -> None:
     first = SystemRandom().randrange(MAX_SEED)
     verdicts = [read_file(draw(first + index), tmp_path) for index in range(MANY)]
     failures = list_failures(verdicts)
@@ -46,5 +46,5 @@ def test_many_files_are_read_as_they_were_written(tmp_path: Path) -> None:
     assert refused <= MAX_REFUSED * MANY, f"{refused} refused from seed {first}"
 
 
-def test_a_seed_draws_the_same_file() -> None:
+def test_a_seed_draws_the_same_log_file() -> None:
     assert [draw(seed) for seed in QUICK_SEEDS] == [draw(seed) for seed in QUICK_SEEDS]

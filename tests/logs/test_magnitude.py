@@ -45,7 +45,7 @@ def _are_equal(found: float, expected: float) -> bool:
 
 
 @pytest.mark.parametrize("low, high", ODD[:4], ids=str)
-def test_mean_and_spread_of_two_are_exact(low: float, high: float) -> None:
+def test_mean_and_spread_of_two_extreme_numbers_are_exact(low: float, high: float) -> None:
     mean = low / 2 + high / 2
     half = abs(high / 2 - low / 2)
     printed = compute_statistics(_printed([low, high]))["A"]
@@ -56,7 +56,7 @@ def test_mean_and_spread_of_two_are_exact(low: float, high: float) -> None:
 
 
 @pytest.mark.parametrize("values", ODD, ids=lambda values: f"{values[0]:g} {values[-1]:g}")
-def test_huge_levels_are_found(values: Sequence[float]) -> None:
+def test_levels_of_huge_numbers_are_found(values: Sequence[float]) -> None:
     found = measure_levels(np.tile(values, 10 if len(values) == 2 else 1))
     assert all(value in found.level for value in values) or len(values) == 2
     assert np.isfinite(found.level).all() and np.isfinite(found.spread).all()

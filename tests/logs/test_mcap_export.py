@@ -87,7 +87,7 @@ def test_telemetry_reads_back_from_mcap(
         assert math.remainder(yaw_deg - heading_deg[at], 360) == pytest.approx(0, abs=1e-9)
 
 
-def test_each_run_has_channels(
+def test_each_run_has_its_own_channels_in_an_mcap_export(
     record: Callable[..., Recorder], spec: RunSpec, tmp_path: Path
 ) -> None:
     runs = []
@@ -113,7 +113,7 @@ def test_each_run_has_channels(
     assert (tmp_path / "a.mcap").read_bytes() == first
 
 
-def test_missing_and_infinite_values_have_no_message(tmp_path: Path) -> None:
+def test_missing_and_infinite_values_are_left_out_of_an_mcap_export(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("time,red,blue\n0,1,\n1,inf,6\n2,,7\n3,-inf,8\n")
     log = open_log(tmp_path / "a.csv")
     assert export(log, tmp_path / "a.mcap") == 2
@@ -128,7 +128,7 @@ def test_the_export_command_writes_mcap(tmp_path: Path, here: Command) -> None:
     assert set(read_back(tmp_path / "a.MCAP")[0]) == {"/red"}
 
 
-def test_times_before_0_are_refused(tmp_path: Path) -> None:
+def test_an_mcap_export_of_times_before_0_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("time,red\n-1,1\n0,2\n")
     (tmp_path / "a.mcap").write_text("old")
     with pytest.raises(ExportError, match="no times before 0"):
@@ -149,7 +149,7 @@ def test_a_failed_mcap_export_leaves_the_old_file(tmp_path: Path) -> None:
     assert (tmp_path / "a.mcap").read_text() == "old"
 
 
-def test_missing_library_is_named(
+def test_an_mcap_export_without_its_library_says_what_to_install(
     tmp_path: Path, here: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "a.csv").write_text("time,red\n0,1\n1,2\n")

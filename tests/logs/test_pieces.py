@@ -33,7 +33,7 @@ def test_steps_between_pieces_are_those_of_least_squares(seed: int) -> None:
     assert spread == pytest.approx([float(np.linalg.norm(inverse[2]))])
 
 
-def test_a_stray_is_told_from_a_drift() -> None:
+def test_a_single_stray_sample_is_found_beside_a_drift() -> None:
     part = np.stack((np.arange(20.0), np.where(np.arange(20) == 7, 30.0, 5.0)))
     off = find_strays(part, 1.0)
     assert np.argwhere(off).tolist() == [[1, 7]]

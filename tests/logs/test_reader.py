@@ -347,7 +347,7 @@ CASES: dict[str, Case] = {
 
 @pytest.mark.slow_cases("a line of 100 MB", "nothing but a line of 100 MB")
 @cases("name, content, expected", CASES)
-def test_a_damaged_or_odd_log_is_read_or_refused(
+def test_each_damaged_or_odd_log_is_read_or_refused_as_expected(
     tmp_path: Path, name: str, content: bytes | Callable[[], bytes], expected: Read | str
 ) -> None:
     check_input(tmp_path / name, content, expected)
@@ -401,7 +401,7 @@ def test_choosing_a_missing_or_text_column_is_refused_with_a_hint(
         open_log(path, ReadChoices(time=time, value=columns))
 
 
-def test_chosen_columns_are_time_and_values(tmp_path: Path) -> None:
+def test_chosen_columns_of_a_log_are_used_as_time_and_values(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("n,clock_ms,red,blue\n0,100,1,5\n1,200,2,6\n")
     log = open_log(path, ReadChoices(time="clock_ms", value=("blue",)))
@@ -428,7 +428,7 @@ def test_reading_a_log_from_closed_standard_input_is_refused(
         open_log("-")
 
 
-def test_damaged_records_are_told_of_telemetry_only(
+def test_damaged_telemetry_records_are_not_noted_for_a_log_of_samples(
     record: Callable[..., Recorder], noisy_spec: RunSpec
 ) -> None:
     recorder = record(noisy_spec)

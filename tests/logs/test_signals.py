@@ -64,7 +64,7 @@ class TestSignals:
         [(Between.LINEAR, [0, 1.5, 6.5]), (Between.HOLD, [0, 1, 5])],
         ids=["linear", "hold"],
     )
-    def test_integrals_hold_or_interpolate_between_samples(
+    def test_integrals_hold_or_interpolate_values_between_samples(
         self, between: Between, expected: list[float]
     ) -> None:
         assert_allclose(compute_integral(column(0, 1, 3), column(1, 2, 3), between), expected)
@@ -80,7 +80,7 @@ class TestSignals:
             atol=1e-6,
         )
 
-    def test_moving_average_is_of_its_window_only(self) -> None:
+    def test_the_moving_average_depends_on_its_window_only(self) -> None:
         values = np.full(40, 50.0)
         values[3] = 1e20
         assert_allclose(compute_moving_average(values, 5)[6:], 50.0)
@@ -139,7 +139,7 @@ class TestOrder:
         assert_allclose(resample(*BACK, 1)[1], [0, 1, 4, 9])
         assert [(one.sample, one.time_s) for one in find_crossings(*BACK, 2.5)] == [(1, 1.5)]
 
-    def test_very_large_values_do_not_overflow(self) -> None:
+    def test_crossings_integrals_and_sums_of_very_large_values_do_not_overflow(self) -> None:
         found = find_crossings(column(0, 1), column(-1e308, 1e308), 0)
         assert [one.time_s for one in found] == [0.5]
         assert_allclose(compute_integral(column(0, 1), column(1e308, 1e308)), [0, 1e308])

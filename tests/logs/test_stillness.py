@@ -31,7 +31,7 @@ UNLEVEL = {
 
 
 @cases("values", UNLEVEL)
-def test_a_moving_signal_has_no_level(values: list[float]) -> None:
+def test_no_plateau_is_found_in_a_signal_that_keeps_moving(values: list[float]) -> None:
     rng = np.random.default_rng(1)
     assert find_plateaus(np.array(values)) == []
     assert find_plateaus(np.array(values) + rng.normal(0.0, 0.3, len(values))) == []
@@ -39,7 +39,7 @@ def test_a_moving_signal_has_no_level(values: list[float]) -> None:
 
 @pytest.mark.parametrize("samples", [8, 10, 14, 20, 30])
 @pytest.mark.parametrize("noise", [0.0, 0.4])
-def test_a_slope_between_levels_is_none_of_them(samples: int, noise: float) -> None:
+def test_a_slope_between_two_levels_is_not_taken_for_a_level(samples: int, noise: float) -> None:
     values = np.array([60.0] * 20 + ramp(samples, 62.0, 88.0) + [90.0] * 20)
     values += np.random.default_rng(2).normal(0.0, noise, len(values))
     found = find_plateaus(values)
@@ -47,7 +47,9 @@ def test_a_slope_between_levels_is_none_of_them(samples: int, noise: float) -> N
 
 
 @pytest.mark.parametrize("make", [lambda seed: made_log(seed).values, lambda seed: short_log(seed)])
-def test_the_spread_is_that_of_the_samples(make: Callable[[int], NDArray[np.float64]]) -> None:
+def test_a_plateaus_spread_is_that_of_its_samples_without_strays(
+    make: Callable[[int], NDArray[np.float64]],
+) -> None:
     for seed in range(60):
         values = make(seed)
         for plateau in find_plateaus(values):
@@ -59,7 +61,7 @@ def test_the_spread_is_that_of_the_samples(make: Callable[[int], NDArray[np.floa
 
 
 @pytest.mark.parametrize("samples", [30, 50, 100, 400])
-def test_levels_at_both_ends_of_a_slow_slope_are_told(samples: int) -> None:
+def test_levels_at_both_ends_of_a_slow_slope_are_found(samples: int) -> None:
     values = np.array([10.0] * 20 + ramp(samples, 10.0, 90.0) + [90.0] * 20)
     found = find_plateaus(values)
     # The first steps of the slowest slope are no farther from the level than the smallest step.

@@ -83,7 +83,7 @@ def test_a_faulty_filter_condition_is_refused_and_keeps_all_rows(text: str) -> N
     assert len(model.rows) == 20
 
 
-def test_sorting_goes_with_a_filter() -> None:
+def test_a_filtered_table_can_be_sorted() -> None:
     model = model_of(long_log())
     model.rows.view = model.rows.build_filtered_view(
         tuple(parse_conditions("variable == Colour", model.rows.columns))
@@ -98,7 +98,7 @@ def test_sorting_goes_with_a_filter() -> None:
     assert values(model)[:2] == [90.0, 80.0]
 
 
-def test_columns_are_hidden_and_kept_at_the_left() -> None:
+def test_columns_of_a_table_can_be_hidden_or_kept_at_the_left() -> None:
     rows = model_of(long_log()).rows
     rows.choose(2)
     rows.freeze()
@@ -111,7 +111,7 @@ def test_columns_are_hidden_and_kept_at_the_left() -> None:
     assert rows.columns[:3] == ["variable", "value", "time"]
 
 
-def test_a_search_goes_on_from_the_other_end() -> None:
+def test_a_search_of_a_table_goes_on_from_its_other_end() -> None:
     rows = model_of(long_log()).rows
     assert rows.find("left", 0, 1) == 1
     assert rows.find("left", 19, 1) == 1
