@@ -14,12 +14,13 @@ from random import Random
 import pytest
 
 from tests.conftest import ROOT
-from tests.proof import __main__, attempts, kind
+from tests.proof import __main__, attempts, kind, run_model
 from tests.proof.found import FOUND
 from tests.proof.injection import killed_at
 from tests.proof.kind import FaultError, Kind, TooLongError
 from tests.proof.kinds import KINDS
-from tests.running import PATIENCE_S
+from tests.proof.run_model import RunModel
+from tests.running import PATIENCE_S, Run
 
 CASES = 30
 FEWER = {"clients": 3}
@@ -109,6 +110,14 @@ def test_a_process_of_the_proof_searches_for_garbage() -> None:
         [sys.executable, "-c", words], cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE_S
     )
     assert done.stdout == "True\n", done.stderr
+
+
+def test_a_rerun_that_has_not_ended_in_time_is_compared_as_far_as_it_came(
+    monkeypatch: pytest.MonkeyPatch, run: Run
+) -> None:
+    done = run("import time\ntime.sleep(5_000)\n", time_limit_s=9_000.0)
+    monkeypatch.setattr(run_model, "PATIENCE_S", 0.05)
+    RunModel.check_replay(done.run.stored())
 
 
 def test_the_cases_of_fixed_seeds_are_the_same_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
