@@ -127,7 +127,7 @@ print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
 
 
 @pytest.mark.slow
-def test_cells_run_their_programs_in_the_app_and_its_runs_are_in_the_log(
+def test_a_cell_runs_its_program_in_the_shown_app_and_gets_its_data(
     cell: Cell, view: AppView
 ) -> None:
     shown = cell(RUN)
@@ -145,7 +145,7 @@ def test_cells_run_their_programs_in_the_app_and_its_runs_are_in_the_log(
 
 
 @pytest.mark.slow
-def test_the_log_follows_a_run_that_the_user_has_started(cell: Cell, view: AppView) -> None:
+def test_a_run_started_in_the_app_is_in_the_notebooks_log(cell: Cell, view: AppView) -> None:
     endless = "print('Colour: 5')\nprint('image_data left')\nimport time\nwhile True:\n    time.sleep(1)\n"
     cell(f"%%sim_magic -b Grey_bands -x 100\n{endless}")
     view.ask(
@@ -166,7 +166,7 @@ def test_the_log_follows_a_run_that_the_user_has_started(cell: Cell, view: AppVi
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("view")
-def test_a_program_that_is_answered_runs_in_the_cell(cell: Cell) -> None:
+def test_a_program_that_talks_to_a_responder_runs_in_the_cell_not_in_the_app(cell: Cell) -> None:
     cell("roboSim.responder = lambda text: text * 2")
     shown = cell(
         "%%sim_magic -RL\nfrom ev3dev2_glue import pyState\nprint('PY::a')\nprint(pyState())\n"
@@ -222,7 +222,7 @@ async def test_only_the_newest_page_and_only_the_notebook_show_the_app(hidden: A
 
 
 @pytest.mark.slow
-def test_the_end_of_the_app_leaves_no_process(hidden: AppView) -> None:
+def test_ending_a_notebooks_app_leaves_no_process(hidden: AppView) -> None:
     hidden.ask("stop")
     process = hidden._visit._session._process
     assert process is not None
@@ -232,7 +232,7 @@ def test_the_end_of_the_app_leaves_no_process(hidden: AppView) -> None:
 
 
 @pytest.mark.slow
-def test_the_app_begins_with_the_run_of_its_cell_and_nothing_of_other_apps(cell: Cell) -> None:
+def test_a_notebooks_app_starts_with_its_cells_run_and_nothing_of_other_apps(cell: Cell) -> None:
     keep_draft("", "print('unsaved')\n")
     save_layout(TerminalSize.MEDIUM, KeptLayout(asked={"brick": True}))
     cell("%%sim_magic_preloaded -b Grey_bands -RAc\nprint('Colour: 7')")
@@ -246,7 +246,7 @@ def test_the_app_begins_with_the_run_of_its_cell_and_nothing_of_other_apps(cell:
 
 
 @pytest.mark.slow
-def test_the_app_shows_a_run_that_ended_while_no_page_showed_it(
+def test_a_notebooks_app_shows_a_run_that_ended_while_no_page_showed_it(
     cell: Cell, hidden: AppView
 ) -> None:
     page = Page(hidden)
@@ -281,7 +281,7 @@ print('Light: ' + str(colorLeft.reflected_light_intensity_pc))
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("view")
-def test_pictures_and_data_are_the_same_with_the_app_and_without_it(cell: Cell) -> None:
+def test_a_cells_pictures_and_data_are_the_same_with_and_without_the_app(cell: Cell) -> None:
     live = cell(DRIVE), cell("%sim_data").result
     assert lab.roboSim.results_log[0].spec.seed == 0
     cell("%sim_app --off\n%sim_data --clear")
@@ -300,7 +300,7 @@ SPEEDS = {
 
 @pytest.mark.slow
 @cases("words, chosen, speed", SPEEDS)
-def test_a_cell_runs_as_fast_as_possible_unless_a_speed_is_set(
+def test_a_cells_program_runs_in_the_app_at_full_speed_unless_a_speed_is_set(
     words: str, chosen: float | None, speed: float, cell: Cell, view: AppView
 ) -> None:
     if chosen is not None:

@@ -49,12 +49,12 @@ def test_a_long_output_shows_its_ends_and_the_rest_on_a_click(kernel_cell: Cell)
 
 
 @pytest.mark.parametrize("count", [1, FIRST_LINES])
-def test_a_short_output_is_as_it_is(count: int, kernel_cell: Cell) -> None:
+def test_a_cells_short_output_is_not_folded(count: int, kernel_cell: Cell) -> None:
     shown = kernel_cell(printing(count))
     assert (shown.out, shown.bundles) == (lines(0, count), ())
 
 
-def test_a_few_more_lines_are_not_folded(kernel_cell: Cell) -> None:
+def test_a_few_lines_more_than_fit_a_cells_output_are_not_folded(kernel_cell: Cell) -> None:
     count = FIRST_LINES + FEWEST_FOLDED + LAST_LINES - 1
     (bundle,) = kernel_cell(printing(count)).bundles
     assert "<details>" not in str(bundle["text/html"])
@@ -67,22 +67,22 @@ def test_a_few_more_lines_are_not_folded(kernel_cell: Cell) -> None:
     )
 
 
-def test_a_terminal_prints_everything(cell: Cell) -> None:
+def test_in_a_terminal_a_cells_long_output_is_printed_whole(cell: Cell) -> None:
     shown = cell(printing(530))
     assert (shown.out, shown.bundles) == (lines(0, 530), ())
 
 
-def test_the_picture_is_above_a_long_output(kernel_cell: Cell) -> None:
+def test_the_picture_stands_above_a_cells_long_output(kernel_cell: Cell) -> None:
     shown: Shown = kernel_cell(printing(530, "-Rc"))
     assert ["image/png" in bundle for bundle in shown.bundles] == [True, True, False, False]
 
 
-def test_an_error_is_never_folded(kernel_cell: Cell) -> None:
+def test_an_error_after_a_cells_long_output_is_not_folded(kernel_cell: Cell) -> None:
     shown = kernel_cell(printing(530) + "1 / 0\n")
     assert "ZeroDivisionError" in shown.err
 
 
-def test_an_endless_output_keeps_its_newest_lines() -> None:
+def test_a_cells_endless_output_keeps_its_newest_lines() -> None:
     page = fold_lines([f"line {at}" for at in range(MAX_FOLDED_LINES)], MAX_FOLDED_LINES + 7)[
         "text/html"
     ]

@@ -51,7 +51,7 @@ def test_a_single_peak_among_many_samples_is_seen() -> None:
     assert many.max() - many.min() > CHART_SIZE[1] / 2
 
 
-def test_samples_are_drawn_as_log_plot_draws_them() -> None:
+def test_a_notebooks_chart_draws_samples_as_log_plot_does() -> None:
     times = np.arange(5000) / 100
     values = np.sin(np.arange(5000)) * 90
     here = chart_of([Sample("Gyro", v, t, 0, 0, 1) for t, v in zip(times, values, strict=True)])
@@ -69,7 +69,9 @@ def test_samples_are_drawn_as_log_plot_draws_them() -> None:
         ("full_reflected_light_intensity", "mean 100.0 %, red 100.0 %"),
     ],
 )
-def test_the_table_tells_the_number_that_the_program_reads(read: str, words: str) -> None:
+def test_the_table_of_instruments_shows_the_number_that_the_program_reads(
+    read: str, words: str
+) -> None:
     spec = RunSpec(RobotSpec(), WorldSpec(background="Grey_bands"), ROBOLAB)
     asking = Program("prog.py", f"v = colorLeft.{read}\n", "preloaded")
     scene = Scene(spec, field_files(spec), asking, start_record(spec))
@@ -77,7 +79,7 @@ def test_the_table_tells_the_number_that_the_program_reads(read: str, words: str
     assert rows["Sensor1 (left)"].startswith(words)
 
 
-def test_the_gyro_of_a_robot_that_starts_turned_shows_zero() -> None:
+def test_the_table_shows_gyro_0_for_a_robot_that_starts_turned() -> None:
     spec = RunSpec(RobotSpec(), WorldSpec(start=Pose(700, 500, 90)), ROBOLAB)
     rows = dict(list_instruments(Scene(spec, field_files(spec), None, start_record(spec))))
     assert rows["Gyro"].startswith("0")
@@ -94,7 +96,7 @@ def test_the_gyro_of_a_robot_that_starts_turned_shows_zero() -> None:
         "almost everything": [-1e149, 1e149],
     },
 )
-def test_each_label_of_a_chart_stands_for_another_value(values: list[float]) -> None:
+def test_no_two_labels_of_a_notebooks_chart_are_equal(values: list[float]) -> None:
     rows = [Sample("Grey", value, at / 10, at, at, 1) for at, value in enumerate(values)]
     labels = [words.text for words in drawn(chart_of(rows), Words) if words.anchor == "end"]
     assert len(labels) == len(set(labels)) >= 3

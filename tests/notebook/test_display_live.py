@@ -15,7 +15,7 @@ DRIVE = (
 
 
 @pytest.mark.slow
-def test_displays_are_drawn_anew_in_their_places_until_the_end(kernel: Kernel) -> None:
+def test_a_running_cells_picture_table_and_chart_are_updated_in_place(kernel: Kernel) -> None:
     parent = kernel.begin(DRIVE)
     drawn: dict[str, list[str]] = {}
     kinds: list[str] = []

@@ -22,7 +22,7 @@ LINES = [
 
 
 @pytest.mark.parametrize("text, side", LINES, ids=[text for text, _ in LINES])
-def test_a_line_asks_for_sides(text: str, side: str) -> None:
+def test_a_printed_line_image_data_names_the_sensor_sides_to_log(text: str, side: str) -> None:
     assert parse_side(OutputRow(text, 0, 0, 1, Stream.STDOUT)) == side
     assert parse_side(OutputRow(text, 0, 0, 1, Stream.STDERR)) == ""
 
@@ -36,14 +36,16 @@ RECORDS = [("left", ["left"]), ("right", ["right"]), ("both", ["left", "right"])
 
 
 @pytest.mark.parametrize("side, sides", RECORDS, ids=[side for side, _ in RECORDS])
-def test_each_side_is_a_record(side: str, sides: list[str], cell: Cell) -> None:
+def test_logging_pixel_arrays_makes_a_record_for_each_side(
+    side: str, sides: list[str], cell: Cell
+) -> None:
     shown = cell(program(f"print('image_data {side}')"))
     assert shown.out == f"{side} image data logged...\n"
     assert cell(SIDES).result == sides
 
 
 @pytest.mark.slow
-def test_records_add_up_until_they_are_cleared(cell: Cell) -> None:
+def test_logged_pixel_arrays_add_up_until_they_are_cleared(cell: Cell) -> None:
     cell(program("print('image_data left')\nprint('IMG_DATA left')"))
     cell(program("print('image_data right')"))
     assert cell(SIDES).result == ["left", "right"]
@@ -63,7 +65,7 @@ HANDLER = "seen = []\ndef handle(count):\n    seen.append((count, len(roboSim.ra
 LOGGER = "from ev3dev2_glue import pyState\nfor i in range(2):\n    print('image_data both')\nprint(pyState())"
 
 
-def test_a_handler_is_called_after_each_record(cell: Cell) -> None:
+def test_the_live_image_handler_is_called_after_each_logged_pixel_array(cell: Cell) -> None:
     cell(f"{HANDLER}roboSim.live_image_handler = handle")
     shown = cell(program(LOGGER))
     # The program is further by then: a handler sees what was logged up to its record.
@@ -71,14 +73,14 @@ def test_a_handler_is_called_after_each_record(cell: Cell) -> None:
     assert shown.out == "both image data logged...\n" * 2 + "{'messages': []}\n"
 
 
-def test_a_true_answer_of_a_handler_is_an_answer(cell: Cell) -> None:
+def test_a_live_image_handlers_answer_is_sent_to_the_program(cell: Cell) -> None:
     cell("roboSim.live_image_handler = lambda count: 'JSON::[2]' if count == 2 else ''")
     assert cell(program(LOGGER)).out == (
         "both image data logged...\nPY RESPONSE\nJSON::[2]\nboth image data logged...\n{'messages': [[2]]}\n"
     )
 
 
-def test_a_handler_must_be_a_function(cell: Cell) -> None:
+def test_a_live_image_handler_that_is_no_function_is_refused(cell: Cell) -> None:
     cell("roboSim.live_image_handler = 3")
     assert (
         cell(program(LOGGER)).err
@@ -86,7 +88,7 @@ def test_a_handler_must_be_a_function(cell: Cell) -> None:
     )
 
 
-def test_a_log_may_be_cleared_while_it_grows(cell: Cell) -> None:
+def test_the_live_image_handler_may_clear_the_log(cell: Cell) -> None:
     cell(
         "seen = []\ndef handle(count):\n    seen.append(count)\n    if count == 3:\n        roboSim.clear_datalog()\n"
         "roboSim.live_image_handler = handle"
@@ -96,7 +98,7 @@ def test_a_log_may_be_cleared_while_it_grows(cell: Cell) -> None:
     assert cell(SIDES).result == ["right"]
 
 
-def test_what_an_interrupt_leaves_unheard_is_in_the_log(
+def test_pixel_arrays_printed_before_an_interrupt_are_still_logged(
     cell: Cell, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tuisim.notebook.cell_run.ROWS_AT_ONCE", 2)

@@ -152,7 +152,7 @@ def test_charts_in_the_lesson_hold_the_logged_data(done: Done) -> None:
     assert result(done["marks"]) == "((1, 1), 'x', 51)"
 
 
-def test_a_lesson_that_is_repeated_comes_out_the_same(done: Done) -> None:
+def test_the_lessons_noisy_run_gives_the_same_values_each_time(done: Done) -> None:
     noisy = levels(done["noisy"])
     assert ast.literal_eval(result(done["noisy frame"])) == noisy
     # Without noise most of them are.
@@ -176,7 +176,7 @@ def test_the_example_notebook_shows_chart_and_bands() -> None:
 
 
 @pytest.mark.slow
-def test_the_study_answers_its_question_with_a_table_and_figures() -> None:
+def test_the_example_notebook_of_a_study_shows_its_table_and_figures() -> None:
     notebook = nbformat.read(ROOT / "programs" / "python_study.ipynb", as_version=4)
     cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
     *_, table, figure, paths = execute({text: text for text in cells}).values()

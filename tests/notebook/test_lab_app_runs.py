@@ -25,7 +25,7 @@ def _run_elsewhere() -> str:
     return run.run_id
 
 
-def test_the_state_and_the_picture_are_of_the_world_of_the_run(cell: Cell) -> None:
+def test_state_and_picture_after_a_run_in_the_app_are_of_that_runs_world(cell: Cell) -> None:
     from tuisim.notebook.lab import roboSim as lab  # noqa: N813 - as the cells call it
 
     cell("%sim_magic -b Grey_bands")

@@ -99,7 +99,9 @@ def test_no_data_cell_of_the_course_prints_an_error(done: Mapping[str, NotebookN
     } == {}
 
 
-def test_records_are_texts_with_the_old_clock(done: Mapping[str, NotebookNode]) -> None:
+def test_pixel_records_of_the_course_are_texts_with_the_old_simulators_clock(
+    done: Mapping[str, NotebookNode],
+) -> None:
     assert stream(done["drive"]).splitlines() == [
         f"{side} image data logged..." for side in ("left", "both", "both", "right")
     ]
@@ -116,7 +118,9 @@ def test_records_are_texts_with_the_old_clock(done: Mapping[str, NotebookNode]) 
     assert value(done["processed"]) == (True, ["1", "1", "1"])
 
 
-def test_pictures_are_of_the_sensors_disc(done: Mapping[str, NotebookNode], tmp_path: Path) -> None:
+def test_pictures_made_by_the_courses_cells_show_the_sensors_disc(
+    done: Mapping[str, NotebookNode], tmp_path: Path
+) -> None:
     assert value(done["bw kind"]) == (True, "1", (14, 14), (1, 784))
     assert value(done["bw parts"]) == ((20, 20), (12, 8))
     assert value(done["pair"]) == [(True, "L", (14, 14))] * 2
@@ -138,5 +142,7 @@ def test_pictures_are_of_the_sensors_disc(done: Mapping[str, NotebookNode], tmp_
     assert np.ptp(middle) <= 8
 
 
-def test_our_own_names_stay_beside_those_of_the_course(done: Mapping[str, NotebookNode]) -> None:
+def test_names_of_tuisim_stay_usable_beside_those_of_the_course(
+    done: Mapping[str, NotebookNode],
+) -> None:
     assert value(done["ours"]) == (["side", "vals", "clock", "run"], "int", "nbev3devsim")

@@ -22,7 +22,7 @@ print(pyState(), get_clock())
 """.replace("from ev3", "import time\nfrom ev3")
 
 
-def test_a_responder_hears_what_is_meant_for_it(cell: Cell) -> None:
+def test_a_responder_gets_only_lines_printed_for_it(cell: Cell) -> None:
     cell("heard = []\nroboSim.responder = heard.append")
     text = "%%sim_magic_preloaded -RW{}\nprint('PY::hello')\nprint('other')\nprint('IMG_DATA left')"
     cell(text.format(""))
@@ -61,7 +61,7 @@ ANSWERS = [
 
 @pytest.mark.slow
 @pytest.mark.parametrize("answer, got", ANSWERS, ids=[answer for answer, _ in ANSWERS])
-def test_an_answer_is_what_json_can_hold(answer: str, got: str, cell: Cell) -> None:
+def test_a_responders_answer_reaches_the_program_as_json(answer: str, got: str, cell: Cell) -> None:
     cell(f"roboSim.responder = lambda text: {answer}")
     text = "%%sim_magic -RWL\nfrom ev3dev2_glue import pyState\nprint('PY::?')\nprint(pyState()['messages'])"
     assert cell(text).out == f"PY::?\n{got}\n"
@@ -87,7 +87,7 @@ OLD_ANSWERS = [
 @pytest.mark.parametrize(
     "answer, shown, got", OLD_ANSWERS, ids=[answer for answer, _, _ in OLD_ANSWERS]
 )
-def test_under_its_old_name_a_responder_talks_in_texts(
+def test_a_pyresponder_gets_and_returns_texts(
     answer: str, shown: str, got: list[object], cell: Cell
 ) -> None:
     cell(
@@ -98,7 +98,7 @@ def test_under_its_old_name_a_responder_talks_in_texts(
     assert cell("heard").result == ["PY::0"]
 
 
-def test_under_its_old_name_a_responder_gets_the_pixels_as_text(cell: Cell) -> None:
+def test_a_pyresponder_gets_the_pixels_as_text(cell: Cell) -> None:
     cell("heard = []\nroboSim.pyresponder = heard.append")
     text = "print('image_data both')\nprint('IMG_DATA')\nprint('IMG_DATA left')"
     cell(f"%%sim_magic_preloaded -b Grey_bands -x 1520 -RWHL\n{text}")
@@ -136,7 +136,7 @@ def test_a_responder_sees_the_pixels_that_are_sent_to_it(cell: Cell) -> None:
     assert out.splitlines()[-1] == "[305]"
 
 
-def test_the_guides_example_does_as_it_says(cell: Cell) -> None:
+def test_the_guides_example_of_a_responder_gives_the_printed_answer(cell: Cell) -> None:
     blocks = find_page("notebooks").source.split("```python notebook\n")[1:]
     responder, program = (
         text
@@ -148,7 +148,7 @@ def test_the_guides_example_does_as_it_says(cell: Cell) -> None:
 
 
 @pytest.mark.slow
-def test_a_responder_may_run_programs_itself(cell: Cell) -> None:
+def test_a_responder_may_run_another_program(cell: Cell) -> None:
     cell(
         "def measure(text):\n    get_ipython().run_cell_magic('sim_magic', '-RWH', \"print('Inner: 1')\")\n"
         "roboSim.responder = measure"
@@ -204,7 +204,7 @@ def test_setting_a_wrong_responder_is_refused_in_one_line(
 
 
 @pytest.mark.parametrize("responder, told", OLD_MISTAKES)
-def test_a_wrong_responder_of_the_old_name_is_one_line(
+def test_setting_a_wrong_pyresponder_is_refused_in_one_line(
     responder: str, told: str, cell: Cell
 ) -> None:
     cell(f"roboSim.pyresponder = {responder}")
@@ -214,7 +214,7 @@ def test_a_wrong_responder_of_the_old_name_is_one_line(
 
 
 @pytest.mark.slow
-def test_an_error_of_the_responder_is_the_users_own(cell: Cell) -> None:
+def test_an_error_in_a_responder_is_raised_in_the_cell_and_stops_the_run(cell: Cell) -> None:
     cell("roboSim.responder = lambda text: 1 / 0")
     with pytest.raises(ZeroDivisionError):
         cell("%%sim_magic -RWL\nprint('PY::?')\nwhile True:\n    pass\n")
@@ -225,7 +225,9 @@ def test_an_error_of_the_responder_is_the_users_own(cell: Cell) -> None:
 ASKS = "%%sim_magic -RW\nfrom ev3dev2_glue import get_clock\nprint('Hello', input('Name? '), get_clock())"
 
 
-def test_an_answer_takes_no_simulated_time(cell: Cell, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_answer_to_input_in_a_cell_takes_no_simulated_time(
+    cell: Cell, monkeypatch: pytest.MonkeyPatch
+) -> None:
     asked: list[str] = []
 
     def answer(prompt: str) -> str:

@@ -124,7 +124,9 @@ def offer_of(page: str) -> str:
     return page[page.index("tuisim-") :][:23]
 
 
-def test_the_first_picture_offers_the_app_and_starts_nothing(run: Run, front: Front) -> None:
+def test_the_first_picture_in_a_notebook_offers_the_app_without_starting_it(
+    run: Run, front: Front
+) -> None:
     page = run()
     assert "api/kernels/the-kernel/channels" in page
     assert '["http://localhost:8888", "http://127.0.0.1:8888"]' in page
@@ -132,7 +134,9 @@ def test_the_first_picture_offers_the_app_and_starts_nothing(run: Run, front: Fr
     assert run() == ""
 
 
-def test_a_page_gets_the_address_of_the_app_which_no_output_has(run: Run, front: Front) -> None:
+def test_the_apps_address_is_sent_to_the_page_and_never_written_into_output(
+    run: Run, front: Front
+) -> None:
     page = run("%sim_magic -b Loop")
     assert front.ask(offer_of(page)) == {"port": 5, "token": "secret-1"}
     view: Any = lab.roboSim._live.view
@@ -143,7 +147,7 @@ def test_a_page_gets_the_address_of_the_app_which_no_output_has(run: Run, front:
     assert "secret" not in page
 
 
-def test_the_app_shows_the_run_of_the_cells_above_as_long_as_nothing_has_replaced_it(
+def test_the_app_shows_the_run_of_the_cells_above_until_another_replaces_it(
     run: Run, front: Front
 ) -> None:
     page = run("%%sim_magic_preloaded -b Loop -R\nprint('Colour: 7')")
@@ -186,7 +190,9 @@ def test_the_cell_that_shows_the_app_offers_it_again_and_others_do_not(
     assert run(cell_id="c")
 
 
-def test_an_app_that_its_user_has_ended_is_not_offered_unasked(run: Run, front: Front) -> None:
+def test_an_app_that_the_user_ended_is_offered_again_only_by_sim_app(
+    run: Run, front: Front
+) -> None:
     page = run(cell_id="a")
     front.ask(offer_of(page))
     view: Any = lab.roboSim._live.view

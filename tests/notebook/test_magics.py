@@ -24,7 +24,7 @@ def program(words: str, text: str = "print('ran')") -> str:
     return f"%%sim_magic_preloaded {words}\n{text}\n"
 
 
-def test_the_log_has_the_plateaus_and_adds_up_until_it_is_cleared(cell: Cell) -> None:
+def test_sim_data_holds_the_samples_of_all_runs_until_it_is_cleared(cell: Cell) -> None:
     cell("%sim_magic -b Grey_bands")
     first = cell(LOGGER)
     assert first.out.startswith("Colour: 100.0\n")
@@ -71,7 +71,7 @@ print(tank_drive.left_motor.position)"""
         ),
     ],
 )
-def test_a_switch_hides_pictures_and_status(
+def test_switches_of_sim_magic_hide_pictures_and_status(
     words: str, pictures: int, status: bool, cell: Cell
 ) -> None:
     shown = cell(program(words))
@@ -98,7 +98,7 @@ READY = {
 
 
 @pytest.mark.parametrize("magic", READY)
-def test_a_preview_shows_what_a_program_finds_ready(magic: str, cell: Cell) -> None:
+def test_the_preview_switch_of_a_magic_shows_its_predefined_names(magic: str, cell: Cell) -> None:
     alone = cell(f"%{magic} -v")
     assert READY[magic] in alone.out
     assert not alone.bundles
@@ -108,7 +108,7 @@ def test_a_preview_shows_what_a_program_finds_ready(magic: str, cell: Cell) -> N
     assert (given.out.strip() in alone.out, given.bundles) == (True, ())
 
 
-def test_the_program_of_the_cell_before_is_run(cell: Cell) -> None:
+def test_sim_magic_with_run_runs_the_program_of_the_cell_before(cell: Cell) -> None:
     assert cell(program("")).out == ""
     assert cell("%sim_magic -RW").out == "ran\n"
 
@@ -161,7 +161,7 @@ def test_a_mistake_in_sim_magic_is_told_in_one_line_and_changes_nothing(
         "%sim_data --sim nobody",
     ],
 )
-def test_other_magics_tell_mistakes_in_one_line(line: str, cell: Cell) -> None:
+def test_magics_for_logs_tell_mistakes_in_one_line(line: str, cell: Cell) -> None:
     shown = cell(line)
     assert shown.err.startswith("tuisim: ")
     assert shown.err.count("\n") == 1
@@ -173,7 +173,7 @@ def test_magics_for_pixel_arrays_say_so_if_none_are_logged(cell: Cell) -> None:
     assert "no pixel arrays 1 (0 … 0 are logged" in cell("%sim_bw_image_data -i 1").err
 
 
-def test_a_new_mat_brings_its_own_start(cell: Cell) -> None:
+def test_choosing_a_mat_in_sim_magic_sets_its_start(cell: Cell) -> None:
     cell("%sim_magic -b Grey_bands -x 700")
     assert cell("roboSim.state").result["x_mm"] == 700
     cell("%sim_magic -W")
@@ -182,7 +182,7 @@ def test_a_new_mat_brings_its_own_start(cell: Cell) -> None:
     assert cell("roboSim.state").result["x_mm"] == 150
 
 
-def test_an_error_of_the_program_shows_its_own_line(cell: Cell) -> None:
+def test_a_programs_error_in_a_cell_shows_its_own_line(cell: Cell) -> None:
     shown = cell(program("-RW", "print('Colour: 1')\n1 / 0"))
     assert "line 3, in <module>" in shown.err
     assert "ZeroDivisionError" in shown.err
@@ -190,7 +190,7 @@ def test_an_error_of_the_program_shows_its_own_line(cell: Cell) -> None:
     assert len(cell("%sim_data").result) == 1
 
 
-def test_pixel_arrays_are_frames_and_pictures(cell: Cell) -> None:
+def test_logged_pixel_arrays_are_available_as_frame_and_pictures(cell: Cell) -> None:
     cell(program("-b Grey_bands -x 1520 -RW", "print('image_data both')\nprint('image_data left')"))
     frame = cell(
         "from tuisim.notebook import eds\nfrom tuisim.notebook.magics import roboSim\nroboSim.images()"
@@ -235,7 +235,7 @@ def test_magics_for_logged_data_print_their_help(magic: str, cell: Cell) -> None
     assert cell(f"%{magic} -h").out.startswith(f"Usage: %{magic} ")
 
 
-def test_a_program_is_shown_as_it_is_also_where_a_browser_shows_it(cell: Cell) -> None:
+def test_a_program_displayed_as_html_is_escaped_and_complete(cell: Cell) -> None:
     (code,) = cell(program("-WHD", "if 1 < 2:\n    print('<b>')")).bundles
     rows = re.findall(r"<tr><th>(\d+)</th><td[^>]*><pre>(.*?)</pre></td></tr>", code["text/html"])
     assert [(number, html.unescape(line)) for number, line in rows] == [
@@ -246,7 +246,7 @@ def test_a_program_is_shown_as_it_is_also_where_a_browser_shows_it(cell: Cell) -
     assert "<b>" not in code["text/html"]
 
 
-def test_one_sample_is_counted_in_the_singular(cell: Cell) -> None:
+def test_the_status_of_a_cell_counts_one_sample_in_the_singular(cell: Cell) -> None:
     assert cell(program("-RW", "print('Colour: 1')")).plain == "finished · 0.000 s · 1 sample"
 
 
@@ -300,7 +300,7 @@ def test_a_chosen_profile_of_the_same_library_wins(cell: Cell) -> None:
     assert cell(f"%%sim_magic -RW\n{EV3DEV2}").out == "Done: 1\n"
 
 
-def test_the_names_of_a_prelude_are_not_for_pybricks(cell: Cell) -> None:
+def test_sim_magic_refuses_predefined_names_for_a_pybricks_program(cell: Cell) -> None:
     told = cell(f"%%sim_magic_preloaded -RW\n{PYBRICKS}").err
     assert told.startswith(
         "tuisim: preload: cell uses pybricks, and its predefined names are of ev3dev2"

@@ -72,7 +72,7 @@ def test_the_frame_of_sensor_arrays_holds_pixels_and_clock_as_text() -> None:
     assert list(build_image_frame([]).columns) == ["side", "vals", "clock"]
 
 
-def test_pairs_are_what_was_logged_of_both_at_one_time() -> None:
+def test_image_pairs_are_left_and_right_records_of_one_time() -> None:
     first = [
         array("left", 0, 10),
         array("left", 5, 20),
@@ -105,7 +105,7 @@ def test_a_cut_out_part_must_lie_inside_the_picture() -> None:
         draw_bw_picture([array("left")], crop=(3, 3, 21, 17))
 
 
-def test_a_pair_is_shown_as_a_picture(cell: Cell) -> None:
+def test_an_image_pair_is_displayed_as_one_picture(cell: Cell) -> None:
     cell("%%sim_magic_preloaded -b Grey_bands -x 1520 -RWH\nprint('image_data both')")
     pair = cell("%sim_image_pair").result
     shown = Image.open(io.BytesIO(pair._repr_png_()))
@@ -162,7 +162,7 @@ def state(cell: Cell) -> dict[str, Any]:
     return found
 
 
-def test_before_a_run_a_robot_stands_at_its_start(cell: Cell) -> None:
+def test_before_a_run_the_old_state_format_has_the_robots_start(cell: Cell) -> None:
     cell("%sim_magic -b Grey_bands -x 700 -y 300 -a 90 -N 3 -M 50 -W")
     found = state(cell)
     assert found.keys() == KEYS
@@ -172,7 +172,7 @@ def test_before_a_run_a_robot_stands_at_its_start(cell: Cell) -> None:
     assert found["leftWheel"] == found["rightWheel"] == AT_REST
 
 
-def test_what_a_program_has_done_is_in_the_state(cell: Cell) -> None:
+def test_after_a_run_the_old_state_format_has_the_robots_pose_and_pen(cell: Cell) -> None:
     cell(
         "%%sim_magic_preloaded -b Grey_bands -x 700 -pRWH --profile nbev3devsim\n"
         "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 1)"
@@ -217,7 +217,7 @@ MOVES = [
 @pytest.mark.parametrize(
     "profile, move, parts", MOVES, ids=[f"{move[0]}-{at}" for at, move in enumerate(MOVES)]
 )
-def test_a_wheel_holds_what_was_written_to_it(
+def test_a_wheel_in_the_old_state_format_has_the_programs_last_command(
     profile: str, move: str, parts: dict[str, Any], cell: Cell
 ) -> None:
     cell(f"%%sim_magic_preloaded -b Empty_Map -x 1000 -RWH --profile {profile}\n{move}")
@@ -225,7 +225,7 @@ def test_a_wheel_holds_what_was_written_to_it(
     assert wheel == wheel | parts
 
 
-def test_sensors_are_means_and_texts(cell: Cell) -> None:
+def test_the_old_state_format_has_sensor_means_and_pixel_texts(cell: Cell) -> None:
     cell(
         "%%sim_magic_preloaded -b Rainbow_bands -x 500 -RWH\nprint(colorLeft.rgb, ultrasonic.distance_centimeters)"
     )
@@ -244,7 +244,7 @@ def test_sensors_are_means_and_texts(cell: Cell) -> None:
     assert [len(found["gyro"]), found["gyro"][0]] == [2, 0]
 
 
-def test_a_full_turn_takes_360_degrees_off(cell: Cell) -> None:
+def test_angles_in_the_old_state_format_are_reduced_by_full_turns(cell: Cell) -> None:
     cell(
         "%%sim_magic_preloaded -b Empty_Map -x 1000 -a 350 -RWH\n"
         "tank_turn.on_for_rotations(-100, SpeedPercent(40), 0.4)\n"
@@ -255,7 +255,7 @@ def test_a_full_turn_takes_360_degrees_off(cell: Cell) -> None:
     assert state(cell)["_angle"] == math.radians(350)
 
 
-def test_a_state_is_of_its_time_until_it_is_updated(cell: Cell) -> None:
+def test_a_robot_state_keeps_its_values_until_update_is_called(cell: Cell) -> None:
     cell("%sim_magic -b Grey_bands -x 700 -W")
     cell("robot = %sim_robot_state")
     cell("%sim_magic -x 800 -W")
@@ -263,7 +263,7 @@ def test_a_state_is_of_its_time_until_it_is_updated(cell: Cell) -> None:
     assert cell("robot.update()\nrobot.state['x']").result == 800
 
 
-def test_a_sensor_that_the_robot_has_not_got_is_nought(cell: Cell) -> None:
+def test_a_missing_sensor_is_0_in_the_old_state_format(cell: Cell) -> None:
     cell("%sim_magic -b Empty_Map -x 300 -W -r Explorer")
     found = state(cell)
     assert (found["sensor1"], found["sensor2"], found["sensor2dataArray"]) == (

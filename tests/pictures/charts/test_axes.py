@@ -23,18 +23,18 @@ from tuisim.pictures.charts.traces import reduce_points
         "millimetres": (0.0, 2550.0, (0.0, 3000.0)),
     },
 )
-def test_limits_of_values_are_round_numbers(
+def test_limits_of_a_value_axis_are_round_numbers(
     low: float, high: float, limits: tuple[float, float]
 ) -> None:
     assert axes.choose_limits(low, high) == pytest.approx(limits)
 
 
-def test_a_count_that_stays_the_same_has_an_axis_without_decimals() -> None:
+def test_the_axis_of_a_constant_whole_number_has_no_decimals() -> None:
     assert axes.label_rows(axes.choose_limits(360.0, 360.0), 5) == {4: "358", 0: "362"}
 
 
 @given(st.floats(-1e6, 1e6), st.floats(0, 1e6))
-def test_value_limits_hold_the_values(low: float, span: float) -> None:
+def test_limits_of_a_value_axis_include_the_values(low: float, span: float) -> None:
     bottom, top = axes.choose_limits(low, low + span)
 
     slack = 1e-6 * max(abs(low), span, 1)
@@ -44,7 +44,7 @@ def test_value_limits_hold_the_values(low: float, span: float) -> None:
 
 
 @pytest.mark.parametrize("value", [1e16, -1e17, 1e149, 5e-324])
-def test_one_value_of_any_size_has_limits_around_it(value: float) -> None:
+def test_limits_of_a_constant_value_lie_around_it_whatever_its_size(value: float) -> None:
     bottom, top = axes.choose_limits(value, value)
     assert bottom < value < top
 
@@ -52,19 +52,19 @@ def test_one_value_of_any_size_has_limits_around_it(value: float) -> None:
 @pytest.mark.parametrize(
     "end_s, upper_s", [(0, 5), (5, 5), (5.1, 10), (45, 60), (61, 120), (600, 600), (700, 720)]
 )
-def test_limits_of_time_grow_in_steps(end_s: float, upper_s: float) -> None:
+def test_limits_of_the_time_axis_grow_in_steps(end_s: float, upper_s: float) -> None:
     assert time_bar.time_limits(end_s) == (0, upper_s)
 
 
 @given(st.integers(4, 300), st.floats(0.1, 5000))
-def test_time_axis_has_the_width_and_a_unit(columns: int, end_s: float) -> None:
+def test_a_drawn_time_axis_is_as_wide_as_asked_for(columns: int, end_s: float) -> None:
     line, below = axes.draw_time_axis(time_bar.time_limits(end_s), columns)
 
     assert len(line) == len(below) == columns
 
 
 @pytest.mark.parametrize("columns", [2, 40, 117])
-def test_columns_and_times_agree(columns: int) -> None:
+def test_converting_a_column_of_the_chart_to_time_and_back_gives_the_column(columns: int) -> None:
     limits = (0.0, 30.0)
 
     back = [
@@ -87,7 +87,9 @@ def test_columns_and_times_agree(columns: int) -> None:
         (5e8 + 0.1, (5e8 + 0.1) - 5e8, "500000000.1"),
     ],
 )
-def test_a_label_has_the_digits_of_its_step(value: float, step: float, text: str) -> None:
+def test_an_axis_label_has_as_many_digits_as_its_step_needs(
+    value: float, step: float, text: str
+) -> None:
     assert axes.label(value, step) == text
 
 
@@ -100,7 +102,7 @@ def test_a_label_has_the_digits_of_its_step(value: float, step: float, text: str
         "fractions": ((-1.0, 1.0), 4, {0: "1.0", 3: "-1.0"}),
     },
 )
-def test_labels_of_rows_are_evenly_spaced(
+def test_labels_of_a_value_axis_stand_on_evenly_spaced_rows(
     limits: tuple[float, float], rows: int, labels: dict[int, str]
 ) -> None:
     assert axes.label_rows(limits, rows) == labels
@@ -109,7 +111,7 @@ def test_labels_of_rows_are_evenly_spaced(
 @for_each(
     limits=[(0.0, 100.0), (0.0, 60.0), (-2.0, 1.0), (85.0, 100.0), (0.0, 0.25)], rows=range(7, 60)
 )
-def test_extended_limits_have_ticks_at_equal_distances_in_the_middle_of_rows(
+def test_extended_axis_limits_put_ticks_in_the_middle_of_evenly_spaced_rows(
     limits: tuple[float, float], rows: int
 ) -> None:
     extended = axes.extend_limits(limits, rows)
@@ -126,13 +128,13 @@ def test_extended_limits_have_ticks_at_equal_distances_in_the_middle_of_rows(
     assert [*axes.label_rows(extended, rows)] == [round(one) for one in at]
 
 
-def test_limits_are_extended_as_little_as_possible() -> None:
+def test_axis_limits_are_extended_as_little_as_possible() -> None:
     assert axes.extend_limits((50.0, 100.0), 15) == (50.0, 100.0)
     assert axes.extend_limits((86.0, 91.0), 7) == (86.0, 92.0)
 
 
 @for_each(rows=range(7, 40))
-def test_extended_limits_do_not_depend_on_the_unit(rows: int) -> None:
+def test_extended_axis_limits_do_not_depend_on_the_unit(rows: int) -> None:
     for low, high in ((0.0, 60.0), (-2.0, 1.0), (85.0, 97.0)):
         extended = axes.extend_limits((low, high), rows)
         for unit in (0.001, 1000.0):
@@ -140,7 +142,7 @@ def test_extended_limits_do_not_depend_on_the_unit(rows: int) -> None:
             assert [end / unit for end in limits] == pytest.approx(extended)
 
 
-def test_reduction_keeps_extremes_and_order() -> None:
+def test_reducing_points_for_drawing_keeps_extremes_and_order() -> None:
     times = np.linspace(0, 60, 100_000)
     values = np.sin(times)
     values[54_321] = 9.0
@@ -153,7 +155,7 @@ def test_reduction_keeps_extremes_and_order() -> None:
     assert (reduced.max(), reduced.min()) == (9.0, -7.0)
 
 
-def test_reduction_leaves_few_points_alone_and_keeps_neighbours_of_the_window() -> None:
+def test_reducing_few_points_keeps_those_in_the_window_and_their_neighbours() -> None:
     times = np.arange(10.0)
 
     when, _ = reduce_points(times, times, (3.5, 6.5), 50)
@@ -161,7 +163,7 @@ def test_reduction_leaves_few_points_alone_and_keeps_neighbours_of_the_window() 
     assert when.tolist() == [3.0, 4.0, 5.0, 6.0, 7.0]
 
 
-def test_no_points_are_reduced_to_no_points() -> None:
+def test_reducing_no_points_gives_no_points() -> None:
     when, values = reduce_points(np.empty(0), np.empty(0), (0.0, 1.0), 10)
 
     assert len(when) == len(values) == 0

@@ -52,14 +52,14 @@ def test_names_are_all_long_or_all_short_and_never_touch() -> None:
     assert narrow == [(3, 0, "86.27"), (2, 2, "82.75")]
 
 
-def test_names_with_room_between_them_are_in_the_lowest_row() -> None:
+def test_band_names_with_room_between_them_are_in_the_lowest_row() -> None:
     spans = find_spans(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
     places = [range(20), range(20, 40), range(40, 60)]
     assert [row for row, _, _ in place_names(spans, places, 4, 60, lambda *_: True)] == [3, 3, 3]
 
 
 @pytest.mark.parametrize("values", [LEVELS, LEVELS[::-1]], ids=["white first", "white last"])
-def test_a_name_stands_beside_a_cursor_and_within_the_chart(values: list[float]) -> None:
+def test_a_bands_name_stands_beside_a_cursor_and_within_the_chart(values: list[float]) -> None:
     spans = find_spans(next(iter(chart(values)[0])), PLAIN_LIGHT)
     places = [range(5), range(5, 10), range(10, 15)]
 
@@ -73,7 +73,7 @@ def test_a_name_stands_beside_a_cursor_and_within_the_chart(values: list[float])
 
 
 @for_each(columns=range(16, 40))
-def test_a_name_at_the_edge_stands_within_the_chart(columns: int) -> None:
+def test_a_bands_name_at_the_edge_stands_within_the_chart(columns: int) -> None:
     spans = find_spans(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
     places = [range(4), range(4, columns - 4), range(columns - 4, columns)]
     names = place_names(spans, places, 4, columns, lambda *_: True)
@@ -92,7 +92,7 @@ def test_a_name_that_would_stand_beside_a_higher_part_of_the_curve_is_left_out()
     assert [(row, text) for row, _, text in names] == [(8, "100 white"), (8, "60")]
 
 
-def test_too_many_samples_are_left_to_the_analyser() -> None:
+def test_no_bands_are_drawn_in_a_chart_of_too_many_samples() -> None:
     assert not chart([1.0] * (MAX_SAMPLES + 1))[1].spans
 
 

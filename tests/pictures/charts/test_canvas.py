@@ -24,35 +24,35 @@ def test_a_drawn_curve_has_its_points_at_their_times_and_heights() -> None:
     assert rows == ["        o", "    o    ", "o        "]
 
 
-def test_the_topmost_curve_is_the_last() -> None:
+def test_the_last_curve_is_drawn_on_top() -> None:
     level = [5.0] * 4
     (row,) = draw_canvas([curve(level), curve(level, BLUE)], 4, 1, (0.0, 3.0), (0.0, 10.0))
     assert {rgb for part, rgb in row if part.strip()} == {BLUE}
 
 
-def test_without_points_the_canvas_is_empty() -> None:
+def test_a_chart_canvas_without_points_is_empty() -> None:
     assert text(draw_canvas([curve([])], 5, 2, (0.0, 1.0), (0.0, 1.0))) == [" " * 5] * 2
 
 
-def test_braille_joins_its_dots() -> None:
+def test_a_braille_curve_is_drawn_without_gaps_between_its_points() -> None:
     rows = text(draw_canvas([curve([0.0, 10.0], marker="braille")], 10, 4, (0.0, 1.0), (0.0, 10.0)))
     assert all(any(char not in " ⠀" for char in row) for row in rows)
 
 
-def test_of_neighbours_at_one_dot_the_first_is_kept() -> None:
+def test_of_points_at_the_same_dot_only_the_first_is_drawn() -> None:
     xs = np.array([0.0, 0.001, 10.0, 10.0])
     ys = np.array([0.0, 0.001, 10.0, 10.0])
     found = drop_hidden_points(xs, ys, ((0.0, 10.0), (0.0, 10.0)), 10, 5)
     assert [one.tolist() for one in found] == [[0.0, 10.0], [0.0, 10.0]]
 
 
-def test_a_dot_is_as_high_as_a_quarter_of_a_row() -> None:
+def test_points_are_dropped_as_hidden_only_within_a_quarter_of_a_row() -> None:
     ys = np.linspace(0.0, 10.0, 1001)
     _, found = drop_hidden_points(np.zeros(1001), ys, ((0.0, 10.0), (0.0, 10.0)), 10, 5)
     assert len(found) == 20
 
 
-def test_which_points_are_seen_depends_on_neither_unit_nor_origin() -> None:
+def test_which_points_are_dropped_as_hidden_does_not_depend_on_unit_or_origin() -> None:
     turns = np.linspace(0.0, 9.0, 2000)
     x, y = np.sin(turns), np.cos(3 * turns)
     first, _ = drop_hidden_points(x, y, ((-1.0, 1.0), (-1.0, 1.0)), 20, 10)
@@ -62,7 +62,7 @@ def test_which_points_are_seen_depends_on_neither_unit_nor_origin() -> None:
         assert found == pytest.approx(off + scale * first)
 
 
-def test_a_path_to_and_fro_gives_each_dot_once() -> None:
+def test_a_path_that_goes_back_and_forth_keeps_each_visible_point_once() -> None:
     xs = np.tile([0.0, 10.0], 50)
     found, _ = drop_hidden_points(xs, np.zeros(100), ((0.0, 10.0), (-1.0, 1.0)), 4, 4)
     assert sorted(found.tolist()) == [0.0, 10.0]
@@ -92,7 +92,7 @@ def test_an_xy_chart_without_common_samples_says_so(ys: np.ndarray) -> None:
 
 
 @pytest.mark.parametrize("value", [0.0, 1.0, 10.0, 50.0, 50.3, 99.0, 100.0])
-def test_a_line_over_time_is_two_dots_thick(value: float) -> None:
+def test_a_braille_line_over_time_is_two_dots_thick(value: float) -> None:
     curve = Curve(np.array([0.0, 10.0]), np.full(2, value), (255, 255, 0))
     rows = draw_canvas([curve], 20, 10, (0.0, 10.0), (0.0, 100.0))
     middle = ["".join(text for text, _ in row)[8] for row in rows]

@@ -25,7 +25,7 @@ def text(picture: ChartPicture) -> list[str]:
     return ["".join(part for part, _ in line) for line in picture.lines]
 
 
-def test_a_second_scale_stands_at_the_right() -> None:
+def test_a_charts_second_scale_stands_at_the_right() -> None:
     made = traces({"Colour": [0.0, 100.0], "Ultrasonic": [2000.0, 0.0]})
 
     rows = text(ChartPainter().paint(made, ChartState(), 80, 16))
@@ -43,7 +43,7 @@ def test_a_narrow_chart_has_both_scales_before_the_last_values(width: int, has_e
     assert any("886mm" in row for row in rows) is has_ends
 
 
-def test_percent_millimetres_and_degrees_have_a_scale_each() -> None:
+def test_a_chart_has_one_scale_for_percent_millimetres_and_degrees_each() -> None:
     made = traces(
         {
             "Colour": [0.0, 100.0],
@@ -71,7 +71,7 @@ def test_percent_millimetres_and_degrees_have_a_scale_each() -> None:
 @pytest.mark.parametrize(
     "names, own", [("Left", ""), ("Left Right", ""), ("Left way_mm", "Left way_mm")]
 )
-def test_a_scale_of_one_variable_beside_others_has_its_colour(names: str, own: str) -> None:
+def test_a_scale_of_a_single_variable_has_that_variables_colour(names: str, own: str) -> None:
     made = traces({name: [0.0, 100.0] for name in names.split()})
     styles = CellScales.build([*made], 80, 12, (0.0, 1.0), zoomed=False).styles
     colors = {trace.name: build_style(trace.rgb) for trace in made}
@@ -88,7 +88,7 @@ def test_a_scale_of_one_variable_beside_others_has_its_colour(names: str, own: s
         "beside each other": ({"Left": [9.0, 1.0], "Right": [9.0, 1.1]}, ["1", "1.1"]),
     },
 )
-def test_the_last_value_stands_at_the_end_of_each_line(
+def test_each_lines_last_value_stands_at_its_end(
     values: dict[str, list[float]], last: list[str]
 ) -> None:
     made = traces(values)

@@ -72,7 +72,7 @@ def test_a_failed_report_leaves_the_old_file(
     "file, name",
     [("a/greys.csv", "greys-report.html"), ("-", "log-report.html"), (".csv", "csv-report.html")],
 )
-def test_a_report_is_called_after_its_log(file: str, name: str) -> None:
+def test_a_reports_default_file_name_is_that_of_its_log(file: str, name: str) -> None:
     assert build_default_name(OpenedLog(LogRequest(file=file), long_log())) == name
 
 

@@ -97,7 +97,7 @@ def test_a_chart_in_svg_png_and_text_stays_within_its_size(
 
 
 @cases("columns", COLUMNS)
-def test_a_screen_and_a_file_have_the_same_scales(columns: dict[str, object]) -> None:
+def test_a_chart_has_the_same_scales_on_screen_and_in_a_file(columns: dict[str, object]) -> None:
     model = log_of(columns)
     drawing = lay_out_chart(build_chart(model, View(), 960, 420), 960, 420)
     for trace in model.traces.list_ticked():
@@ -137,7 +137,7 @@ def test_lines_of_held_values_are_drawn_as_steps() -> None:
 
 
 @pytest.mark.parametrize("rows", [10, 1_000_000])
-def test_points_that_nobody_could_see_are_left_out(rows: int) -> None:
+def test_points_too_close_to_be_seen_are_left_out_of_a_chart_file(rows: int) -> None:
     time_s = np.arange(rows) / 1000.0
     model = log_of({"time": time_s, "a": np.sin(time_s) + 9.0 * (np.arange(rows) == rows // 3)})
     (line,) = build_chart(model, View(), 800, 400).lines
@@ -145,7 +145,7 @@ def test_points_that_nobody_could_see_are_left_out(rows: int) -> None:
     assert line.ys.max() > 8.0
 
 
-def test_aligned_runs_say_what_they_lie_along() -> None:
+def test_the_axis_of_aligned_runs_names_what_they_are_aligned_by() -> None:
     model = model_of(long_log(runs=2))
     assert build_chart(model, View(), 800, 400).x_label == "time (s)"
     model.align("distance")
@@ -154,7 +154,7 @@ def test_aligned_runs_say_what_they_lie_along() -> None:
     assert [line.name for line in chart.lines] == ["Colour #1", "Left #1", "Colour #2", "Left #2"]
 
 
-def test_facets_stand_below_each_other() -> None:
+def test_charts_drawn_as_facets_stand_below_each_other() -> None:
     drawing = lay_out_chart(
         build_chart(model_of(long_log()), View(facets=True), 800, 400), 800, 400
     )
@@ -177,7 +177,7 @@ def test_a_printed_chart_colours_only_its_data(view: View) -> None:
     assert styles <= {"none", "bold", *(f"#{bytes(rgb).hex()}" for rgb in COLORS)}
 
 
-def test_a_path_on_the_field_has_equal_scales() -> None:
+def test_a_chart_of_a_path_on_the_field_has_equal_scales() -> None:
     path = Line("y_mm", np.array([200.0, 1200.0]), np.array([100.0, 400.0]), 0)
     chart = ChartData("", (path,), (200.0, 1200.0), "x_mm (mm)", path=True)
     for width, height in ((960, 420), (400, 900), (2000, 300)):
@@ -191,7 +191,7 @@ def test_a_path_on_the_field_has_equal_scales() -> None:
 @pytest.mark.parametrize(
     "greatest, is_flat", [(0.0, False), (12.4, True), (12.5, False), (800.0, False), (801.0, True)]
 )
-def test_a_variable_that_would_be_flat_has_a_scale_of_its_own(
+def test_a_variable_that_would_look_flat_gets_a_scale_of_its_own(
     greatest: float, is_flat: bool
 ) -> None:
     variables = [
@@ -205,7 +205,7 @@ def test_a_variable_that_would_be_flat_has_a_scale_of_its_own(
 
 
 @for_each(width=range(250, 700, 15))
-def test_names_of_lines_stand_within_a_chart(width: int) -> None:
+def test_names_of_lines_stand_within_the_chart(width: int) -> None:
     names = ["short", "a name that is longer", *("x" * size for size in range(20, 40, 3))]
     lines = tuple(Line(name, RAMP, RAMP, at) for at, name in enumerate(names))
     drawing = lay_out_chart(ChartData("", lines, (0.0, 49.0), "time (s)"), width, 400)

@@ -15,7 +15,9 @@ from tuisim.pictures.charts.sample_chart import build_sample_chart
     "times_s, limits",
     [([], (0.0, 1.0)), ([2.0], (1.5, 2.5)), ([1.0, 4.0], (1.0, 4.0)), ([3.0, 3.0], (2.5, 3.5))],
 )
-def test_samples_are_seen_from_the_first_to_the_last(times_s: list[float], limits: Limits) -> None:
+def test_a_sample_chart_reaches_from_the_first_sample_to_the_last(
+    times_s: list[float], limits: Limits
+) -> None:
     samples = [Sample("a", 5.0, time_s, 0, 0, 1) for time_s in times_s]
     chart = build_sample_chart(samples, 100)
     assert chart.x_limits == limits
@@ -25,7 +27,7 @@ def test_samples_are_seen_from_the_first_to_the_last(times_s: list[float], limit
 
 @pytest.mark.parametrize("limits", [(2.5, 7.5), (3.2, 3.4), (-2.0, 0.5), (9.5, 12.0), (20.0, 30.0)])
 @pytest.mark.parametrize("samples", [1, 10, 1000])
-def test_the_line_stays_between_its_axes(limits: Limits, samples: int) -> None:
+def test_the_line_of_a_sample_chart_stays_between_its_axes(limits: Limits, samples: int) -> None:
     times_s = np.linspace(0.0, 10.0, samples)
     chart = build_sample_chart(
         [Sample("a", 5.0 * time_s, time_s, 0, 0, 1) for time_s in times_s.tolist()], 100, limits

@@ -111,7 +111,7 @@ def test_a_chart_without_a_ticked_trace_says_so() -> None:
         "below zero",
     ],
 )
-def test_readings_with_a_known_range_begin_at_zero(
+def test_the_axis_of_readings_with_a_known_range_begins_at_zero(
     name: str, values: list[float], state: ChartState, lowest: str
 ) -> None:
     made = Traces()
@@ -172,7 +172,7 @@ def test_a_name_that_does_not_fit_ends_in_an_ellipsis() -> None:
     assert rows[0].rstrip() == "[x] a_name_that_is_…"
 
 
-def test_a_variable_with_the_name_of_a_column_is_the_programs() -> None:
+def test_a_printed_variable_named_like_a_telemetry_column_shows_the_printed_values() -> None:
     made = Traces()
     for logged, value in ((False, 1.0), (True, 2.0), (False, 3.0)):
         made.append("gyro_deg", [value], [value], logged)
@@ -195,7 +195,7 @@ def test_the_selected_tick_box_is_in_sight() -> None:
 
 
 @pytest.mark.parametrize("ticked", [("a_long_name_0", "a_long_name_3"), ("a_long_name_3",)])
-def test_each_drawn_trace_has_its_name(ticked: tuple[str, ...]) -> None:
+def test_the_chart_names_each_drawn_trace(ticked: tuple[str, ...]) -> None:
     made = traces(*(f"a_long_name_{number}" for number in range(9)))
     for trace in made:
         trace.on = trace.name in ticked
@@ -230,14 +230,16 @@ def test_values_at_the_cursor_that_do_not_fit_are_counted() -> None:
     assert format_values(drawn, 1.0, "s", 24) == "1.00 s  Colour 100 +2"
 
 
-def test_a_chart_of_twelve_rows_has_ten_for_its_lines() -> None:
+def test_a_text_chart_of_12_rows_uses_10_for_its_lines() -> None:
     assert (
         ChartPainter().paint(traces("Colour"), ChartState(cursor_s=1.0, grid=True), 78, 12).rows
         == 10
     )
 
 
-def test_the_canvas_is_kept_while_only_the_cursor_moves(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_moving_the_charts_cursor_does_not_draw_the_lines_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     calls: list[object] = []
 
     def counted(*words: Any) -> list[list[TextRun]]:
@@ -279,7 +281,7 @@ def test_a_trace_sorts_its_points_and_drops_values_that_are_not_finite() -> None
     assert [trace.find_value(time_s) for time_s in (0.5, 1.0, 2.9)] == [None, 10.0, 20.0]
 
 
-def test_a_faint_grid_stands_at_the_labels_and_gives_way_to_curves_and_cursors() -> None:
+def test_the_charts_faint_grid_lies_at_labels_below_curves_and_cursors() -> None:
     traces = Traces()
     traces.append("Colour", [0.0, 10.0], [0.0, 100.0])
     state = ChartState(grid=True, cursor_s=2.5)

@@ -27,7 +27,7 @@ def test_points_thinned_for_drawing_keep_the_extremes(limits: tuple[float, float
 
 
 @pytest.mark.parametrize("sign", [1, -1])
-def test_a_ramp_of_many_points_is_drawn_as_a_ramp(sign: int) -> None:
+def test_thinned_points_of_a_ramp_keep_rising_or_falling(sign: int) -> None:
     _, drawn = Pyramid(TIMES, sign * TIMES).select_points((0.0, 200.0), 100)
     assert (sign * np.diff(drawn) >= 0).all()
 
@@ -48,7 +48,9 @@ def test_a_pyramid_of_samples_drops_missing_values_and_sorts_by_time() -> None:
 @pytest.mark.parametrize(
     "span", [(0.0, 200.0), (3.0011, 171.9), (5.008, 5.02), (90.0, 80.0)], ids=str
 )
-def test_figures_of_a_span_are_those_of_its_points(span: tuple[float, float]) -> None:
+def test_statistics_of_a_span_of_a_trace_equal_those_of_its_points(
+    span: tuple[float, float],
+) -> None:
     values = 1e6 + np.sin(TIMES) * np.random.default_rng(1).random(len(TIMES))
     inside = values[(span[0] <= TIMES) & (span[1] >= TIMES)]
     found = Pyramid(TIMES, values).compute_summary(*span)
@@ -61,7 +63,7 @@ def test_the_spread_of_equal_values_in_a_trace_is_zero() -> None:
     assert (found.mean, found.std) == (0.1, 0.0)
 
 
-def test_traces_end_where_the_longest_ends() -> None:
+def test_the_end_of_several_traces_is_that_of_the_longest() -> None:
     traces = Traces()
     assert traces.end_s() == 0
     traces.append("a", [0.0, 1.0, 2.0], [5.0, 5.0, 5.0])
@@ -73,7 +75,7 @@ def test_a_pyramid_without_valid_points_selects_none() -> None:
     assert not len(Pyramid(np.array([np.nan]), np.array([1.0])).select_points((0.0, 1.0), 10)[0])
 
 
-def test_the_place_that_is_looked_at_is_marked() -> None:
+def test_an_xy_chart_marks_the_point_at_the_cursor() -> None:
     xs = np.array([0.0, 5.0, 10.0])
     ys = np.array([0.0, 5.0, 10.0])
     lines = draw_xy_chart(xs, ys, 2, ("x", "y"), (255, 0, 0), "braille", 40, 12)
@@ -130,7 +132,7 @@ def test_each_trace_keeps_its_colour() -> None:
     assert colors == {"b": second, "c": TRACE_COLORS[3], "z": TRACE_COLORS[-2]}
 
 
-def test_a_path_is_seen_between_its_limits() -> None:
+def test_points_of_a_path_at_its_limits_are_kept() -> None:
     xs = np.array([10.0, 10.1, 12.0, 14.0])
     ys = np.array([100.0, 100.1, 108.0, 100.0])
     seen = drop_hidden_points(xs, ys, [(10.0, 14.0), (100.0, 108.0)], 2, 2)

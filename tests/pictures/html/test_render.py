@@ -29,7 +29,7 @@ VALUES: dict[str, Any] = {
 }
 
 
-def test_each_text_is_escaped_and_shown_whole() -> None:
+def test_each_text_in_an_html_report_is_escaped_and_shown_whole() -> None:
     page = Page(render_page("report.html", **VALUES))
     assert "script" not in page.tags
     assert page.section["Facts"] == [SHOWN] * 3
@@ -39,11 +39,11 @@ def test_each_text_is_escaped_and_shown_whole() -> None:
     assert page.section[f"Program {SHOWN}"] == ["1", SHOWN, "2"]
 
 
-def test_a_section_without_content_is_left_out() -> None:
+def test_an_html_reports_section_without_content_is_left_out() -> None:
     assert not {"World", "Statistics"} & {*Page(render_page("report.html", **VALUES)).section}
 
 
-def test_a_value_that_is_missing_is_an_error() -> None:
+def test_rendering_an_html_report_without_one_of_its_values_raises() -> None:
     without = {name: value for name, value in VALUES.items() if name != "facts"}
     with pytest.raises(UndefinedError, match="facts"):
         render_page("report.html", **without)

@@ -57,7 +57,7 @@ def test_a_movie_of_too_many_frames_is_refused(
     assert path.read_bytes() == b"before"
 
 
-def test_the_view_of_a_clip_lies_on_the_world_in_its_frames(
+def test_positions_computed_for_a_movies_view_match_its_frames(
     recorded: ClipRun, tmp_path: Path
 ) -> None:
     clip = Clip(recorded, (ClipPanel.WORLD,), recorded.clip_span_s(None, None), size=(400, 500))

@@ -27,7 +27,7 @@ def overlap(one: PictureBox, other: PictureBox) -> bool:
 
 
 @for_each(size=[(320, 400), (600, 500), (1920, 1080)], panels=SETS)
-def test_panels_lie_inside_the_picture_without_overlap(
+def test_panels_of_a_movie_lie_inside_the_picture_without_overlap(
     panels: tuple[ClipPanel, ...], size: tuple[int, int]
 ) -> None:
     boxes = _place_boxes(panels, size, 2)
@@ -43,7 +43,7 @@ def test_a_size_without_room_for_a_panel_is_refused() -> None:
         _place_boxes(ALL, (160, 120), 2)
 
 
-def test_a_chosen_size_is_that_of_the_image_and_else_it_fits_the_panels(recorded: ClipRun) -> None:
+def test_a_movies_frame_has_the_chosen_size_or_one_that_fits_its_panels(recorded: ClipRun) -> None:
     moment = recorded.read_moment(0.1)
     assert FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5), (320, 240)).image(moment).size == (
         320,
@@ -55,7 +55,7 @@ def test_a_chosen_size_is_that_of_the_image_and_else_it_fits_the_panels(recorded
     assert world.size[1] < both.size[1]
 
 
-def test_the_caption_has_as_many_values_as_fit(recorded: ClipRun) -> None:
+def test_the_caption_of_a_movies_frame_has_as_many_values_as_fit(recorded: ClipRun) -> None:
     def words(size: tuple[int, int]) -> list[str]:
         painter = FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5), size)
         return [
@@ -68,7 +68,7 @@ def test_the_caption_has_as_many_values_as_fit(recorded: ClipRun) -> None:
     assert words((90, 240)) == ["0.30 s"]
 
 
-def test_the_world_moves_between_two_frames(recorded: ClipRun) -> None:
+def test_the_world_in_a_movie_differs_between_two_frames(recorded: ClipRun) -> None:
     painter = FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5), (320, 240))
     first, last = (np.asarray(painter.image(recorded.read_moment(time_s))) for time_s in (0.0, 0.5))
     # Below the caption.

@@ -47,7 +47,7 @@ def test_a_disc_is_whole_and_round_at_every_size(
 
 
 @pytest.mark.parametrize("diameter", [10, 20, 40])
-def test_the_rim_of_a_disc_reaches_the_edges(diameter: int) -> None:
+def test_the_rim_of_a_drawn_sensor_disc_reaches_the_pictures_edges(diameter: int) -> None:
     picture = draw_disc(bytes([128]) * 3 * diameter**2, 200, 200, GROUND, RIM_RGB)
     is_seen = (picture != GROUND).any(axis=2)
     assert all(1 <= edge.sum() < 60 for edge in (is_seen[1], is_seen[-2], *is_seen.T[[1, -2]]))
@@ -71,7 +71,7 @@ def test_the_outline_of_a_disc_is_seen_whatever_its_colour(
     assert abs(disc - ground).max() > 40 or max(apart) > 25
 
 
-def test_a_disc_made_smaller_keeps_its_halves() -> None:
+def test_a_sensor_disc_drawn_smaller_keeps_its_two_halves() -> None:
     pixels = np.zeros((20, 20, 3), np.uint8)
     pixels[:, 10:] = 250
 

@@ -28,7 +28,7 @@ def test_a_plain_mat_stays_plain_and_what_is_off_it_is_outside() -> None:
 
 
 @pytest.mark.parametrize("size", [(51, 12), (75, 20), (76, 27), (120, 33)], ids=str)
-def test_a_mat_of_dots_or_signs_ends_where_a_cell_ends(size: tuple[int, int]) -> None:
+def test_a_mat_drawn_in_dots_or_signs_ends_at_a_cells_border(size: tuple[int, int]) -> None:
     cols, rows = size
     picture = shrink(
         mat(), fit_field(2 * cols, 4 * rows, CellPoints(2, 4)), OUTSIDE, whole_cells=True
@@ -43,7 +43,7 @@ def test_a_mat_of_dots_or_signs_ends_where_a_cell_ends(size: tuple[int, int]) ->
     )
 
 
-def test_light_lines_on_dark_are_as_clear_as_dark_lines_on_light() -> None:
+def test_light_lines_on_a_dark_mat_are_drawn_as_clearly_as_the_reverse() -> None:
     pixels = mat()
     for row, col, thick in ((100, 90, 6), (400, 700, 14), (801, 1501, 40)):
         pixels[row : row + thick] = 30
@@ -56,7 +56,7 @@ def test_light_lines_on_dark_are_as_clear_as_dark_lines_on_light() -> None:
 
 @pytest.mark.slow
 @for_each(cells=list(CellSet), size=[(74, 20)], across_per_down=[0.0, 0.37, 1.0, 3.1])
-def test_a_thin_line_has_no_gaps(
+def test_a_thin_line_of_a_mat_is_drawn_without_gaps(
     cells: CellSet, size: tuple[int, int], across_per_down: float
 ) -> None:
     """Each point of the line is seen in the picture at its place or beside it."""
@@ -115,7 +115,7 @@ def test_a_view_finer_than_the_mat_repeats_pixels() -> None:
     assert (picture[..., 0] == 0).sum() == 4
 
 
-def test_a_view_of_the_mat_is_reduced_once() -> None:
+def test_the_mats_picture_for_a_view_is_computed_once() -> None:
     pictures = MatPictures(mat(), OUTSIDE)
     view = fit_field(40, 20)
 

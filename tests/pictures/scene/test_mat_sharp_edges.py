@@ -28,7 +28,9 @@ def colors_of(picture: Pixels) -> set[tuple[int, ...]]:
 
 @pytest.mark.parametrize("size", SIZES, ids=str)
 @pytest.mark.parametrize("by_mm", [0, 3, 7, 11])
-def test_a_band_has_no_notches_and_no_mixed_edges(size: tuple[int, int], by_mm: int) -> None:
+def test_a_drawn_band_of_a_mat_has_no_notches_and_no_mixed_edges(
+    size: tuple[int, int], by_mm: int
+) -> None:
     mat = field()
     mat[201 + by_mm : 901, 501 + by_mm : 607 + 2 * by_mm] = 128
     picture = drawn(mat, size)
@@ -48,7 +50,7 @@ def test_bands_beside_each_other_have_no_spikes_where_three_colours_meet(
     assert colors_of(drawn(mat, size)) == {*colors, (255, 255, 255)}
 
 
-def test_an_edge_is_sharp_up_to_an_area_that_begins_beside_it() -> None:
+def test_a_mats_edge_is_drawn_sharp_up_to_an_adjoining_area() -> None:
     mat = field()
     mat[204:601, 503:701] = 0
     mat[303:701, 703:901] = 128
@@ -57,7 +59,7 @@ def test_an_edge_is_sharp_up_to_an_area_that_begins_beside_it() -> None:
     assert (drawn(mat, SIZES[1])[18:21, 45] == 255).all()
 
 
-def test_a_line_reaches_the_area_that_it_ends_at() -> None:
+def test_a_mats_line_is_drawn_up_to_the_area_that_it_ends_at() -> None:
     mat = field()
     mat[203:907, 803:1205] = 0
     mat[550:562, 300:803] = 0

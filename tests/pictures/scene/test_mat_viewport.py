@@ -44,21 +44,21 @@ def test_to_mm_inverts_to_px(x_mm: float, y_mm: float, width: int, rows: int) ->
 
 
 @given(st.floats(0, FIELD_WIDTH_MM), st.floats(0, FIELD_HEIGHT_MM), st.sampled_from([2, 4]))
-def test_following_shows_the_robot(x_mm: float, y_mm: float, zoom: int) -> None:
+def test_a_view_that_follows_the_robot_contains_it(x_mm: float, y_mm: float, zoom: int) -> None:
     col, row = follow_robot(80, 50, zoom, Pose(x_mm, y_mm, 0), None).to_px(x_mm, y_mm)
 
     assert -1 <= col <= 81
     assert -1 <= row <= 51
 
 
-def test_following_stands_still_until_the_robot_nears_an_edge() -> None:
+def test_a_view_that_follows_the_robot_moves_only_when_it_nears_an_edge() -> None:
     start = follow_robot(80, 50, 4, Pose(1000, 500, 0), None)
 
     assert follow_robot(80, 50, 4, Pose(1050, 520, 0), start) is start
     assert follow_robot(80, 50, 4, Pose(1250, 500, 0), start) != start
 
 
-def test_following_at_the_end_of_the_field_stands_still() -> None:
+def test_a_view_that_follows_the_robot_stops_at_the_fields_end() -> None:
     start = follow_robot(80, 50, 4, Pose(0, 0, 0), None)
 
     assert follow_robot(80, 50, 4, Pose(-40, -30, 0), start) is start

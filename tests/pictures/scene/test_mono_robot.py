@@ -36,7 +36,9 @@ def test_the_robot_in_signs_has_a_sign_of_its_own(heading: int) -> None:
 @pytest.mark.parametrize(
     "ground", [(255, 0, 0), (255, 255, 255), (0, 0, 0), (128, 128, 128), (200, 30, 30)], ids=str
 )
-def test_a_line_shows_on_any_ground(ground: tuple[int, int, int], grey: bool) -> None:
+def test_the_pens_colour_is_drawn_so_that_it_shows_on_any_ground(
+    ground: tuple[int, int, int], grey: bool
+) -> None:
     below = np.array([ground], np.uint8)
 
     shown = choose_pen_rgb(below, (255, 0, 0), grey).astype(float)
@@ -58,7 +60,9 @@ def test_a_line_shows_on_any_ground(ground: tuple[int, int, int], grey: bool) ->
         "back and up": (135, ["\\\\", " \\\\\\", "   \\O"]),
     },
 )
-def test_a_pointer_of_signs_shows_the_heading(heading: float, shown: list[str]) -> None:
+def test_the_robots_pointer_drawn_in_signs_shows_its_heading(
+    heading: float, shown: list[str]
+) -> None:
     view = fit_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
 
     signs = draw_pointer(view, Pose(1181.0, 571.0, heading), 3.2 * 2 * view.mm_per_px, "O")

@@ -37,7 +37,7 @@ def test_the_side_is_told_in_a_narrow_panel_too(pose: Pose, width: int, words: s
 @pytest.mark.parametrize(
     "pose", [Pose(-2000.0, 500.0, 0.0), Pose(500.0, 9000.0, 0.0), Pose(9000.0, -9000.0, 0.0)]
 )
-def test_the_arrow_is_at_the_edge_towards_the_robot(pose: Pose) -> None:
+def test_the_arrow_to_a_robot_out_of_view_is_at_the_edge_towards_it(pose: Pose) -> None:
     view = fit_field(80, 40)
     picture = np.zeros((40, 80, 3), np.uint8)
     draw_arrow(picture, view, pose, 5.0, (255, 255, 255))
@@ -47,7 +47,7 @@ def test_the_arrow_is_at_the_edge_towards_the_robot(pose: Pose) -> None:
     assert touched == (pose.x_mm < 0, pose.x_mm > 2362, pose.y_mm > 1143, pose.y_mm < 0)
 
 
-def test_a_robot_that_is_seen_has_no_arrow() -> None:
+def test_no_arrow_points_to_a_robot_in_view() -> None:
     picture = np.zeros((40, 80, 3), np.uint8)
     draw_arrow(picture, fit_field(80, 40), Pose(-60.0, 500.0, 0.0), 5.0, (255, 255, 255))
     assert not picture.any()

@@ -35,7 +35,7 @@ def test_a_floor_has_the_colour_of_the_mat_under_a_faint_grid(floor_rgb: Rgb) ->
 
 
 @pytest.mark.parametrize("mm_per_px", [0.5, 2.0, 10.0, 30.0])
-def test_lines_of_a_grid_are_some_cells_apart(mm_per_px: float) -> None:
+def test_the_floors_grid_lines_are_some_cells_apart_at_any_zoom(mm_per_px: float) -> None:
     view = Viewport(400, 300, mm_per_px, 3000.0, -1000.0)
     picture: Pixels = np.zeros((300, 400, 3), np.uint8)
     draw_grid(picture, view, (9, 9, 9))

@@ -14,7 +14,7 @@ from tuisim.pictures.scene.pen import Piece, build_pen_trace, parse_pen_color, p
 from tuisim.pictures.scene.view import fit_field
 
 
-def test_the_trace_is_drawn_and_goes_on() -> None:
+def test_the_pens_trace_is_drawn_and_extended() -> None:
     made = painter()
     scene = SceneState(ROBOT, Pose(2000, 1000, 0))
     made.trace.add(Piece.from_points(np.array([200.0, 300.0]), np.array([300.0, 300.0]), ROBOT.pen))
@@ -39,7 +39,7 @@ def test_a_lifted_pen_leaves_a_gap() -> None:
     assert at(picture, 450, 300) == parse_pen_color("red")
 
 
-def test_each_stretch_keeps_its_pen_and_a_wiped_trace_is_gone() -> None:
+def test_each_stretch_of_a_pen_trace_keeps_its_colour_and_a_wiped_trace_vanishes() -> None:
     made = painter()
     scene = SceneState(ROBOT, Pose(2000, 1000, 0))
     made.trace.add(Piece.from_points(np.array([200.0, 300.0]), np.array([300.0, 300.0]), ROBOT.pen))
@@ -74,7 +74,7 @@ def test_names_of_pen_colours_have_their_colour(name: str, rgb: tuple[int, int, 
     assert parse_pen_color(name) == rgb
 
 
-def test_a_trace_is_as_long_as_the_pen_is_down(run: Run) -> None:
+def test_a_pen_trace_covers_only_the_way_driven_with_the_pen_down(run: Run) -> None:
     program = "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 1)"
     for down, parts in ((False, 0), (True, 1)):
         done = run(program, pen=PenSpec(down=down), background="Empty_Map")
@@ -87,7 +87,7 @@ def test_a_trace_is_as_long_as_the_pen_is_down(run: Run) -> None:
     assert np.count_nonzero(drawn) < done.run.telemetry.count
 
 
-def test_the_pen_is_where_the_simulation_has_it() -> None:
+def test_a_pen_traces_points_are_the_pens_positions_in_the_simulation() -> None:
     robot = RobotSpec(pen=PenSpec(x_mm=15.0, y_mm=-70.0))
     poses = [(100.0, 200.0, 0.0), (900.5, 300.25, -400.0)]
     records = np.array(poses, dtype=[("x_mm", float), ("y_mm", float), ("heading_deg", float)])

@@ -60,7 +60,7 @@ TRACE = Piece.from_points(np.array([700.0, 900.0]), np.array([900.0, 700.0]), SP
 
 
 @pytest.mark.slow
-def test_a_picture_for_a_file_is_what_the_screen_shows() -> None:
+def test_a_picture_file_of_the_world_equals_what_the_screen_shows() -> None:
     view = build_world_view(SPEC.robot)
     trace = PenTrace()
     trace.add(TRACE)
@@ -77,7 +77,7 @@ def test_a_picture_for_a_file_is_what_the_screen_shows() -> None:
 @pytest.mark.parametrize(
     "pose, rays, is_seen", [(HERE, True, True), (HERE, False, False), (None, True, False)]
 )
-def test_rays_are_those_of_a_robot_that_is_there(
+def test_sensor_rays_are_drawn_only_for_a_robot_with_a_pose(
     pose: Pose | None, rays: bool, is_seen: bool
 ) -> None:
     assert bool(build_scene(SPEC, pose, rays=rays).rays) == is_seen
@@ -110,7 +110,7 @@ def test_a_white_mat_has_a_frame(corner: tuple[float, float]) -> None:
     assert pixel(picture, spec.robot, (x_mm + 6 * outward, y_mm)) not in ((255, 255, 255), edge)
 
 
-def test_a_picture_says_where_its_edges_are() -> None:
+def test_a_picture_file_of_the_world_stores_the_positions_of_its_edges() -> None:
     picture = draw_world(spec_of(), WHITE, MIDDLE)
     left_mm, right_mm, lower_mm, upper_mm = picture.info["extent_mm"]
     width_px, height_px = picture.size
@@ -122,7 +122,7 @@ def test_a_picture_says_where_its_edges_are() -> None:
 
 
 @pytest.mark.parametrize("size_px", [(300, 150), (300, 400), (900, 500), (1200, 401)])
-def test_a_world_fills_a_size_that_it_fits_into(size_px: tuple[int, int]) -> None:
+def test_a_picture_of_the_world_fills_the_given_size(size_px: tuple[int, int]) -> None:
     view = fit_view(SPEC.robot, *size_px)
     room_px = size_px[0] - view.width_px, size_px[1] - view.height_px
     assert 0 <= min(room_px) <= 3
@@ -137,7 +137,7 @@ def test_a_robot_on_the_edge_is_not_cut_off() -> None:
         assert len(np.unique(border, axis=0)) == 1
 
 
-def test_the_way_of_a_run_is_drawn_small(run: Run) -> None:
+def test_a_small_picture_shows_the_path_of_a_run(run: Run) -> None:
     done = run(
         "tank_drive.on_for_seconds(50, 50, 2)\n", background="Empty_Map", pose=(500.0, 500.0, 0.0)
     )

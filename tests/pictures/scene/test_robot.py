@@ -23,7 +23,7 @@ def near(x_mm: float, y_mm: float, places: Sequence[tuple[float, float]]) -> boo
     return any(hypot(x_mm - x, y_mm - y) < 20 for x, y in places)
 
 
-def test_a_robot_off_the_picture_is_left_out() -> None:
+def test_drawing_a_robot_outside_the_picture_draws_nothing() -> None:
     picture = np.zeros((20, 40, 3), np.uint8)
 
     draw_robot(picture, fit_field(40, 20), Pose(9000, -9000, 0), build_outline(ROBOT), COLORED)

@@ -31,7 +31,7 @@ def is_seen(view: Viewport, x_mm: float, y_mm: float) -> bool:
     return 0 <= col <= view.width_px and 0 <= row <= view.height_px
 
 
-def test_on_a_floor_the_whole_field_is_in_view_while_the_robot_is_well_inside() -> None:
+def test_the_whole_field_is_in_view_while_the_robot_is_well_inside_it() -> None:
     assert follow((1181, 571), (700, 400), (1700, 750)) == WHOLE
 
 
@@ -44,7 +44,7 @@ def test_the_view_follows_a_robot_off_the_field(place: tuple[float, float], zoom
     assert not is_seen(follow_robot(*SIZE, zoom, Pose(*place, 0.0), None), *place)
 
 
-def test_a_square_from_the_middle_stays_in_view() -> None:
+def test_a_robot_that_drives_a_square_stays_in_view() -> None:
     corners = [(1181, 571), (1781, 571), (1781, 1171), (1181, 1171), (1181, 571)]
     ways = pairwise(corners)
     steps = [
@@ -81,7 +81,7 @@ def test_a_damaged_pose_leaves_the_view_as_it_is() -> None:
     assert follow((1181, 571), (math.nan, math.inf)) == WHOLE
 
 
-def test_a_larger_area_is_shown_smaller() -> None:
+def test_the_view_of_a_larger_area_has_a_smaller_scale() -> None:
     view = fit_field(*SIZE, area=Area(0.0, 0.0, 5000.0, 1143.0))
     assert view.mm_per_px == 5000 / SIZE[0]
     assert is_seen(view, 0.0, 571.0)
