@@ -33,7 +33,7 @@ def go():
 """
 
 
-def test_constants_are_set_and_lines_keep_their_numbers() -> None:
+def test_set_constants_replaces_values_and_keeps_line_numbers() -> None:
     source = parse_program(PROGRAM, "program")
     values = {"GAIN": 0.5, "SPEEDS": [1], "ä": "ü"}
     assert set_constants(source, values).program.text == CHANGED

@@ -60,7 +60,7 @@ def use_module() -> None:
     print(pytest.__version__)
 
 
-def test_a_function_takes_along_what_it_uses_and_points_into_its_file() -> None:
+def test_a_function_runs_with_what_it_uses_and_errors_point_into_its_file() -> None:
     run = tuisim.simulate(drive)
     line = drive.__code__.co_firstlineno + 3
     assert (run.state, run.samples["value"].tolist()) == ("raised", [pytest.approx(math.pi)])
@@ -69,16 +69,16 @@ def test_a_function_takes_along_what_it_uses_and_points_into_its_file() -> None:
     assert run.pose.y_mm > run.stored.spec.world.start.y_mm or run.pose.x_mm > 100
 
 
-def test_names_that_are_nowhere_are_the_predefined_ones() -> None:
+def test_undefined_names_in_a_function_are_the_predefined_ones() -> None:
     run = tuisim.simulate(use_course_names)
     assert (run.state, run.samples["variable"].tolist()) == ("finished", ["Colour"])
 
 
-def test_a_function_knows_the_values_around_it() -> None:
+def test_a_nested_function_is_run_with_the_values_of_its_closure() -> None:
     assert tuisim.simulate(build_inner(7)).output == "Number: 7\n"
 
 
-def test_functions_go_by_their_own_names_in_an_experiment() -> None:
+def test_an_experiment_names_functions_by_their_own_names() -> None:
     programs = [build_inner(1), use_course_names, build_inner(2)]
     frame = tuisim.experiment(programs, seeds=[0], jobs=1)
     assert frame["Number_last"].tolist()[::2] == [1, 2]
@@ -124,7 +124,7 @@ def test_a_class_imported_under_two_names_stays_one_class(load: Import) -> None:
     assert run.output == "True\n", run.error
 
 
-def test_constants_of_one_name_in_two_files_are_not_mixed(load: Import) -> None:
+def test_a_function_using_constants_of_one_name_from_two_files_is_refused(load: Import) -> None:
     main = load(
         own_helpers="SPEED = 20\ndef get_speed(): return SPEED\n",
         own_main="from own_helpers import get_speed\nSPEED = 50\ndef go(): print(SPEED, get_speed())\n",
@@ -158,7 +158,7 @@ def test_a_constant_that_another_one_has_been_measured_with_does_not_change(load
         tuisim.experiment(main.go, constants={"KP": [1, 4]})
 
 
-def test_a_constant_has_the_value_that_it_has_now(load: Import) -> None:
+def test_a_function_is_run_with_the_present_values_of_its_constants(load: Import) -> None:
     main = load(own_main="KP = 2\nKD = KP * 2\ndef go(): print(KP, KD)\n")
     vars(main)["KP"] = 3
     assert tuisim.simulate(main.go).output == "3 4\n"
@@ -235,7 +235,7 @@ def test_instances_of_plain_values_go_along_with_their_class(load: Import) -> No
     assert frame["end"].tolist() == ["finished"] * 2
 
 
-def test_a_member_of_an_enum_of_python_imports_it(load: Import) -> None:
+def test_a_function_that_uses_a_standard_enum_member_imports_that_enum(load: Import) -> None:
     text = "from http import HTTPStatus\nGONE = HTTPStatus.GONE\n"
     shown = "def go(): print(GONE.value, GONE is HTTPStatus.GONE)\n"
     assert tuisim.simulate(load(states=text + shown).go).output == "410 True\n"
@@ -273,7 +273,7 @@ deque([1, 2], maxlen=2) defaultdict(<class 'int'>, {'a': 1}) frozenset({3}) a/b
 """
 
 
-def test_objects_of_any_depth_go_along_with_their_state(load: Import) -> None:
+def test_objects_that_a_function_uses_go_along_with_their_nested_state(load: Import) -> None:
     run = tuisim.simulate(load(values=VALUES, objects=OBJECTS).go)
     assert run.output == OBJECTS_SHOWN, run.error
 
@@ -293,7 +293,9 @@ def test_what_is_used_of_a_module_of_ones_own_goes_along(load: Import) -> None:
     assert frame["A_last"].tolist() == [6, 9]
 
 
-def test_constants_have_values_of_classes_of_the_program(load: Import) -> None:
+def test_an_experiment_can_vary_constants_whose_values_are_the_programs_classes(
+    load: Import,
+) -> None:
     text = "def go(): print('P:', GAINS.p + START.value.count('t'))\n"
     module = load(own=VALUES + text)
     constants = {"GAINS": [module.Gains(1), module.Gains(2)], "START": [*module.Side]}
@@ -325,7 +327,7 @@ class Mission(Generic[T]):
 """
 
 
-def test_the_method_of_an_object_is_a_program_and_locks_are_made_again(load: Import) -> None:
+def test_an_objects_method_can_be_run_as_a_program_with_new_locks(load: Import) -> None:
     mission = load(made=MADE_AGAIN).Mission(2)
     run = tuisim.simulate(mission.go)
     assert run.output == "two 1\n", run.error

@@ -63,7 +63,7 @@ def shown(text: str, state: Inspected) -> dict[int, list[str]]:
     ],
     ids=["loop", "constant of before", "not yet", "at the end"],
 )
-def test_globals_stand_beside_the_lines_that_use_them(
+def test_values_of_globals_stand_beside_the_lines_that_use_them(
     line: int, variables: dict[str, str], beside: dict[int, list[str]]
 ) -> None:
     assert shown(TEXT, inspected([(MODULE, line)], variables)) == beside
@@ -78,7 +78,7 @@ def test_locals_and_globals_stand_beside_the_lines_of_a_paused_function() -> Non
     assert shown(TEXT, state) == {2: ["a=1", "b=1"], 3: ["c=2"], 5: ["n=1"], 6: ["total=1"]}
 
 
-def test_only_globals_while_a_module_beside_the_program_runs() -> None:
+def test_while_another_module_runs_only_globals_are_shown_beside_lines() -> None:
     state = inspected([("add", 4), (MODULE, 7)], {"c": "2"}, {"n": "1"}, file="other.py")
     assert shown(TEXT, state) == {5: ["n=1"]}
 

@@ -58,7 +58,7 @@ def found(text: str) -> list[tuple[int, int, int, str]] | None:
         "unfinished head",
     ],
 )
-def test_names_that_nobody_defined_are_found(
+def test_names_used_without_a_definition_are_found_in_a_program(
     text: str, unknown: list[tuple[int, int, int, str]]
 ) -> None:
     assert found(text) == unknown

@@ -44,7 +44,7 @@ from tuisim.programs.names import AttributeCheck
         "unfinished line",
     ],
 )
-def test_attributes_that_an_object_lacks_are_found(
+def test_attributes_that_an_object_lacks_are_found_in_a_program(
     home: Path, text: str, messages: list[str]
 ) -> None:
     found = AttributeCheck(find_members).find_unknown_attributes(text, "prog.py")

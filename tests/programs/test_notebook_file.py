@@ -55,7 +55,7 @@ def test_a_cell_runs_in_the_world_that_cells_before_it_set(here: Command, tmp_pa
     assert (done.returncode, done.stdout) == (0, "Colour: 86.27450980392157\n")
 
 
-def test_all_cells_make_one_table(here: Command, tmp_path: Path) -> None:
+def test_running_all_cells_of_a_notebook_prints_one_table(here: Command, tmp_path: Path) -> None:
     done = here("run", write(tmp_path / "lesson.ipynb", LESSON), "--all")
     assert done.returncode == 1
     table = done.stdout.splitlines()[-3:]

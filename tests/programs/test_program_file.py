@@ -78,7 +78,7 @@ def test_a_new_file_names_similar_files_and_examples(
     assert describe_new_file(tmp_path / name) == notice
 
 
-def test_a_program_may_be_in_a_file_of_text(tmp_path: Path) -> None:
+def test_a_program_may_be_in_a_txt_file(tmp_path: Path) -> None:
     path = tmp_path / "prog.txt"
     path.write_text("x = 1\n")
     assert read_program(path).program.text == "x = 1\n"
@@ -103,7 +103,9 @@ def test_a_program_may_be_in_a_file_of_text(tmp_path: Path) -> None:
         "unfinished import",
     ],
 )
-def test_a_program_that_is_edited_has_the_names_that_it_may_use(text: str, prelude: str) -> None:
+def test_an_unfinished_programs_predefined_names_are_known_while_editing(
+    text: str, prelude: str
+) -> None:
     program = parse_unfinished(text, "p.py")
     assert (program.text, program.prelude) == (text, prelude)
 
@@ -187,7 +189,7 @@ def test_a_line_that_is_no_magic_is_not_taken_for_one(text: str) -> None:
 
 
 @pytest.mark.parametrize("end", ["\n", ""], ids=["newline", "end of file"])
-def test_raw_magic_line_becomes_a_comment_so_that_it_is_seen_and_lines_keep_their_numbers(
+def test_a_raw_magic_line_becomes_a_comment_and_lines_keep_their_numbers(
     end: str,
 ) -> None:
     program = parse_program(f"\n%%sim_magic_preloaded -b Grey_bands -OHR{end}", "a.py")

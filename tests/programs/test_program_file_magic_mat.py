@@ -20,7 +20,7 @@ def test_a_wrong_mat_is_named_with_file_line_and_what_may_be_meant() -> None:
 @pytest.mark.parametrize(
     "words", ["", "# %%sim_magic -b Grey_bands", "# %%sim_magic -b mine.png", "# %%sim_magic -y ?"]
 )
-def test_other_magic_lines_have_no_wrong_mat(words: str) -> None:
+def test_a_magic_line_without_a_wrong_mat_is_not_reported(words: str) -> None:
     assert find_wrong_mat(f"{words}\n", "mine.py", None) is None
 
 

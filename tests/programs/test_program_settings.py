@@ -283,7 +283,7 @@ def test_a_program_for_a_hub_runs_on_a_robot_with_it(text: str) -> None:
     )
 
 
-def test_a_program_for_more_than_one_hub_is_one_for_the_brick() -> None:
+def test_a_pybricks_program_importing_several_hubs_gets_the_ev3s_profile() -> None:
     both = (
         f"{PYBRICKS}try:\n    from pybricks.hubs import PrimeHub\nexcept ImportError:\n    pass\n"
     )
@@ -331,12 +331,12 @@ def test_a_profile_is_required_to_be_for_the_library_of_the_program(
         require_library(program, PROFILES[other])
 
 
-def test_a_program_without_a_library_runs_by_any_rules() -> None:
+def test_a_program_without_a_library_is_allowed_under_every_profile() -> None:
     for profile in PROFILES.values():
         require_library(parse_program("print(1)\n", "p.py").program, profile)
 
 
-def test_a_course_program_has_the_settings_that_it_had() -> None:
+def test_a_program_of_predefined_names_gets_no_settings_of_its_own() -> None:
     text = "tank_drive.on(5, 5)\nprint('A: 1')\n"
     assert build_program_settings(parse_program(text, "p.py")).settings == Settings()
 
@@ -354,7 +354,9 @@ def test_an_imported_module_may_bring_the_library_and_predefined_names(
     assert "robot" in found.decided.layer
 
 
-def test_a_course_program_may_have_a_module_that_imports_the_library(tmp_path: Path) -> None:
+def test_a_course_program_with_a_module_that_imports_ev3dev2_stays_a_course_program(
+    tmp_path: Path,
+) -> None:
     (tmp_path / "hardware.py").write_text(f"{BRICK}arm = MediumMotor(OUTPUT_A)\n")
     source = parse_program(
         "from hardware import *\ntank_drive.on(5, 5)\n", "p.py", str(tmp_path / "p.py")
@@ -417,7 +419,7 @@ MoveDifferential(OUTPUT_C, OUTPUT_B, EV3Tire, 120)
         "start": ("", {"start.x_mm": 300.0}, True),
     },
 )
-def test_sizes_and_sides_count_where_the_program_brings_its_rules(
+def test_a_robot_is_built_from_sizes_in_the_text_only_if_the_program_sets_the_profile(
     magic: str, above: Mapping[str, Any], is_built: bool
 ) -> None:
     source = parse_program(magic + ON_USUAL_PORTS, "program.py")
@@ -451,7 +453,7 @@ FORMATTED = "from pybricks.tools import wait\nprint(f'{1}')\n"
         (f"{USUAL}print(f'')\n", {}, ""),
     ],
 )
-def test_lines_that_the_brick_refuses_are_told_of_its_programs(
+def test_lines_that_the_bricks_python_refuses_are_told_for_brick_programs_only(
     text: str, above: Mapping[str, Any], refusal: str
 ) -> None:
     assert build_program_settings(parse_program(text, "p.py"), above).decided.refusal == refusal
@@ -488,7 +490,7 @@ GROUNDS: Mapping[str, tuple[str, dict[str, Any], tuple[bool, bool]]] = {
 
 
 @cases("text, chosen, ground", GROUNDS)
-def test_a_program_for_a_brick_drives_on_a_floor_without_walls_that_it_cannot_tell(
+def test_a_brick_program_drives_on_an_open_floor_unless_walls_are_chosen(
     text: str, chosen: dict[str, Any], ground: tuple[bool, bool]
 ) -> None:
     settings = build_program_settings(parse_program(text, "p.py"), chosen).settings

@@ -225,7 +225,7 @@ def test_command_app_notebook_and_api_give_a_program_the_same_run(
 @pytest.mark.parametrize(
     "program, option", [pair for pair in TABLE if pair[0] in ("tyre", "reversed", "arm")]
 )
-def test_a_cell_is_a_file_that_begins_with_its_magic_line(
+def test_a_cell_and_a_file_with_the_same_magic_line_give_the_same_run(
     program: str, option: str, folder: Path
 ) -> None:
     (folder / "p.py").write_text(f"# %%sim_magic {option}\n{PROGRAMS[program]}")
@@ -254,7 +254,9 @@ def values_of(spec: RunSpec) -> dict[str, object]:
 @pytest.mark.parametrize(
     "program, option", [(program, option) for program, option in TABLE if program[:2] != "of"]
 )
-def test_an_option_changes_only_itself(program: str, option: str, folder: Path) -> None:
+def test_an_option_of_run_changes_only_its_own_setting(
+    program: str, option: str, folder: Path
+) -> None:
     (folder / "p.py").write_text(PROGRAMS[program])
     first, second = (
         values_of(outside.of_command(("run", "p.py", *words)).specs[0])

@@ -84,7 +84,7 @@ def test_reading_the_robot_from_a_mutated_program_never_fails(
     assert [(facts.unread, text) for text, facts in read if "failed" in facts.unread] == []
 
 
-def test_a_failure_of_the_reader_gives_the_default_robot_and_a_sentence(
+def test_a_failure_while_reading_the_robot_gives_the_default_one_and_a_note(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def fail(*_given: object) -> None:
@@ -101,7 +101,7 @@ def test_a_failure_of_the_reader_gives_the_default_robot_and_a_sentence(
         choose_robot(source, "it")
 
 
-def test_an_impossible_size_gives_the_default_robot_and_a_sentence() -> None:
+def test_an_impossible_wheel_size_gives_the_default_robot_and_a_note() -> None:
     text = (
         "from ev3dev2.motor import MoveDifferential\nfrom ev3dev2.wheel import EV3Tire\n"
         "from ev3dev2.sensor.lego import TouchSensor\nbumper = TouchSensor()\n"
@@ -121,7 +121,7 @@ def test_an_impossible_size_gives_the_default_robot_and_a_sentence() -> None:
         choose_robot(source, "it")
 
 
-def test_an_impossible_robot_of_a_hub_has_the_hub_and_a_sentence() -> None:
+def test_an_impossible_robot_of_a_hub_keeps_the_hub_and_gets_a_note() -> None:
     text = (
         "from pybricks.hubs import PrimeHub\nfrom pybricks.parameters import Port\n"
         "from pybricks.pupdevices import ColorSensor, Motor\n"

@@ -69,7 +69,7 @@ def ask(text: str) -> Question:
 
 
 @cases("text", WAITS)
-def test_a_reading_that_decides_something_is_waited_for(text: str) -> None:
+def test_a_reading_that_a_condition_depends_on_counts_as_waited_for(text: str) -> None:
     assert ask(text).decides
 
 
@@ -124,7 +124,7 @@ def test_a_press_that_only_ends_the_program_is_recognized(text: str, is_last: bo
         ("btn.on_right = go\nwhile True:\n    btn.process()  # reads", ("right",), False),
     ],
 )
-def test_the_buttons_that_are_asked_for_are_known(
+def test_buttons_that_a_program_waits_for_are_found_in_its_text(
     text: str, buttons: tuple[str, ...], needs_all: bool
 ) -> None:
     question = ask(text)
@@ -142,7 +142,7 @@ def test_the_buttons_that_are_asked_for_are_known(
         ("while text == '': x.buttons.pressed()  # reads", "xbox", ()),
     ],
 )
-def test_keys_of_controllers_that_are_asked_for_are_known(
+def test_controller_keys_that_a_program_waits_for_are_found_in_its_text(
     text: str, port: str, buttons: tuple[str, ...]
 ) -> None:
     assert ask(text).find_buttons(port) == buttons
@@ -158,7 +158,9 @@ def test_keys_of_controllers_that_are_asked_for_are_known(
         ("if ir.beacon():  # reads\n    go()", "remote.beacon"),
     ],
 )
-def test_the_buttons_of_the_remote_are_known(text: str, button: str) -> None:
+def test_remote_buttons_that_a_program_waits_for_are_found_in_its_text(
+    text: str, button: str
+) -> None:
     assert ask(text).remote_buttons == (button,)
 
 
@@ -173,7 +175,9 @@ def test_the_buttons_of_the_remote_are_known(text: str, button: str) -> None:
         ("while cs.color == before:  # reads\n    pass", ()),
     ],
 )
-def test_the_colours_that_are_asked_for_are_known(text: str, colors: tuple[str, ...]) -> None:
+def test_colours_that_a_program_waits_for_are_found_in_its_text(
+    text: str, colors: tuple[str, ...]
+) -> None:
     assert ask(text).colors == colors
 
 

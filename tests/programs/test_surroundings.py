@@ -35,7 +35,7 @@ def test_the_classes_and_constants_of_other_cells_of_a_notebook_go_along() -> No
     assert tuisim.simulate(go).output == "2.0\n"
 
 
-def test_an_instance_of_another_cell_leaves_the_lines_of_the_function() -> None:
+def test_using_an_instance_of_another_cell_keeps_a_functions_line_numbers() -> None:
     go = run_cells(
         "from typing import NamedTuple\n\nclass Step(NamedTuple):\n    turns: float",
         "\n\nSTEP = Step(2)",
@@ -65,5 +65,7 @@ VALUES["array"] = np.arange(3)
         "a comprehension of constants": ("sum([KP * n for n in [1, 2]])", "12.0"),
     },
 )
-def test_only_constants_and_mathematics_are_computed_again(text: str, value: str | None) -> None:
+def test_only_expressions_of_constants_and_mathematics_are_evaluated_again(
+    text: str, value: str | None
+) -> None:
     assert compute(parse_expression(text).body, VALUES) == value

@@ -62,7 +62,7 @@ def read(text: str) -> ProgramFacts:
 
 
 @cases("text, operator, limit, attribute, line", WAITED_FOR)
-def test_a_comparison_with_a_constant_is_waited_for(
+def test_a_loop_that_compares_a_reading_with_a_constant_is_found_as_a_wait(
     text: str, operator: str, limit: str | int, attribute: str, line: int
 ) -> None:
     (end,) = read(text).loop_ends
@@ -98,12 +98,12 @@ def test_no_end_is_named_for_loops_whose_condition_is_not_a_simple_comparison(te
     assert read(text).loop_ends == ()
 
 
-def test_a_value_that_nothing_changes_is_named_with_the_line_that_set_it() -> None:
+def test_a_loop_on_a_value_read_only_before_names_the_line_that_read_it() -> None:
     (end,) = read("v = cs.color\nv = cs.color\nwhile v != 5:\n    sleep(1)\n").loop_ends
     assert (end.name, end.set_line, end.is_silent) == ("v", 2, False)
 
 
-def test_a_loop_that_only_computes_is_silent_and_inner_loops_come_first() -> None:
+def test_loops_are_listed_from_the_inside_and_marked_if_they_only_compute() -> None:
     text = "x = 0\nwhile gyro.angle < 90:\n    while x != 1:\n        x += 0.1\n"
     inner, outer = read(text).loop_ends
     assert (inner.name, inner.is_silent, inner.set_line) == ("x", True, 0)

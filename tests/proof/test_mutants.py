@@ -30,7 +30,7 @@ def test_each_comparison_and_operator_is_flipped(text: str, flips: list[str]) ->
     assert [mutant.new for mutant in find_mutants("a.py", text)] == flips
 
 
-def test_a_flip_leaves_the_rest_and_the_numbers_of_the_lines() -> None:
+def test_a_mutant_changes_only_its_operator_and_keeps_line_numbers() -> None:
     text = "x = 'ä', (1 +\n  2) * 3\ny = 4\n"
     (product, _) = find_mutants("a.py", text)
     assert (product.line, product.old, product.new) == (1, "(1 + 2) * 3", "(1 + 2) / 3")
@@ -51,20 +51,20 @@ def test_a_seed_draws_the_same_mutants() -> None:
     assert drawn[0].operator in operators
 
 
-def test_a_module_has_the_tests_at_its_path() -> None:
+def test_the_tests_of_a_mutated_module_are_those_at_its_path() -> None:
     tests = ["tests/engine/core/test_spec.py", "tests/engine/core/test_spec_fields.py"]
     assert find_tests("engine/core/spec.py") == tests
 
 
 @pytest.mark.proof
-def test_what_takes_too_much_cpu_is_found(tmp_path: Path) -> None:
+def test_a_mutants_test_that_takes_too_much_cpu_counts_as_failed(tmp_path: Path) -> None:
     test = tmp_path / "test_endless.py"
     test.write_text("def test_endless():\n    while True:\n        pass\n")
     assert find_failure([str(test)], ROOT, 10) == "CPU limit"
 
 
 @pytest.mark.proof
-def test_a_mutant_is_found_in_a_copy(capsys: pytest.CaptureFixture[str]) -> None:
+def test_tests_find_a_mutant_planted_in_a_copy(capsys: pytest.CaptureFixture[str]) -> None:
     rows = (ROOT / "tuisim/engine/core/geometry.py").read_text().splitlines()
     line = next(number for number, row in enumerate(rows, 1) if "return pose.x_mm" in row)
     assert main(["mutants", f"engine/core/geometry.py:{line}", "--count", "1", "--seed", "1"]) == 0

@@ -10,7 +10,7 @@ from tests.proof.planted import PLANTED, Planted, faults, missed
 
 
 @pytest.mark.parametrize("fault", PLANTED, ids=lambda fault: fault.about)
-def test_a_fault_can_be_planted(fault: Planted) -> None:
+def test_the_code_that_each_planted_fault_replaces_occurs_once(fault: Planted) -> None:
     text = (ROOT / "tuisim" / fault.file).read_text()
     assert (text.count(fault.old), fault.new != fault.old, bool(fault.shows)) == (1, True, True)
 
@@ -23,13 +23,13 @@ def test_a_fault_can_be_planted(fault: Planted) -> None:
         for fault in PLANTED
     ],
 )
-def test_a_planted_fault_is_found(fault: Planted) -> None:
+def test_each_planted_fault_is_found_by_its_cases(fault: Planted) -> None:
     assert missed(fault) == []
 
 
 @pytest.mark.proof
 @pytest.mark.parametrize("kind", sorted({fault.kind for fault in PLANTED}))
-def test_nothing_is_found_without_a_planted_fault(kind: str) -> None:
+def test_cases_of_planted_faults_find_nothing_in_the_unchanged_code(kind: str) -> None:
     here = [
         fault for fault in PLANTED if fault.kind == kind and not (fault.is_isolated and refusal())
     ]

@@ -28,14 +28,14 @@ FEWER = {"clients": 3}
 
 
 @pytest.mark.parametrize(("name", "case"), FOUND, ids=lambda word: word)
-def test_a_fault_that_was_found_is_mended(name: str, case: str) -> None:
+def test_each_case_that_once_found_a_fault_finds_none_now(name: str, case: str) -> None:
     assert kind.fault_of(KINDS[name], case) == ""
 
 
 @pytest.mark.proof
 @pytest.mark.usefixtures("real_mats")
 @pytest.mark.parametrize("name", KINDS)
-def test_a_little_of_each_kind_shows_no_fault(name: str) -> None:
+def test_a_few_random_cases_of_each_kind_of_proof_find_no_fault(name: str) -> None:
     seed = int(os.environ.get("PROOF_SEED") or int.from_bytes(os.urandom(4)))
     cases = KINDS[name].names(Random(f"{seed} {name}"))
     for _, case in zip(range(FEWER.get(name, CASES)), cases, strict=False):
@@ -46,7 +46,7 @@ def test_a_little_of_each_kind_shows_no_fault(name: str) -> None:
 
 @pytest.mark.proof
 @pytest.mark.usefixtures("real_mats")
-def test_a_command_is_killed_before_its_call(tmp_path: Path) -> None:
+def test_the_proof_kills_a_command_right_before_the_chosen_system_call(tmp_path: Path) -> None:
     ended = killed_at(("-c", "import os; os.mkdir('a'); os.mkdir('b')"), tmp_path, "mkdir", 2)
     assert (ended.code, [path.name for path in tmp_path.iterdir()]) == (-9, ["a"])
 
@@ -96,7 +96,9 @@ def test_faults_are_counted_and_printed_with_their_names(
     assert [words for words in wanted if words not in printed] == []
 
 
-def test_a_case_that_grows_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_case_of_the_proof_that_uses_too_much_memory_is_ended(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     # It grows once what was free is used up: how long that takes depends on the tests before.
     monkeypatch.setattr(kind, "MOST_GROWTH_MB", 4)
     monkeypatch.setattr(kind, "LOOK_S", 0.05)
@@ -104,7 +106,7 @@ def test_a_case_that_grows_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "TooLargeError: has grown by more than 4 MB" in fault
 
 
-def test_a_process_of_the_proof_searches_for_garbage() -> None:
+def test_processes_of_the_proof_run_with_garbage_collection_enabled() -> None:
     words = "import gc, tests.proof.clients; print(gc.isenabled())"
     done = subprocess.run(
         [sys.executable, "-c", words], cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE_S
@@ -120,7 +122,9 @@ def test_a_rerun_that_has_not_ended_in_time_is_compared_as_far_as_it_came(
     RunModel.check_replay(done.run.stored())
 
 
-def test_the_cases_of_fixed_seeds_are_the_same_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_fixed_seeds_of_the_proof_draw_the_same_cases_each_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     def names(random: Random) -> Iterator[str]:
         while True:
             yield str(random.random())
@@ -133,14 +137,16 @@ def test_the_cases_of_fixed_seeds_are_the_same_each_time(monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize("name", ["good", "bad"])
-def test_a_fault_of_a_fixed_seed_fails(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fault_found_with_a_fixed_seed_makes_the_proof_fail(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     results = [attempts.Result("stand-in", 3, 1.0, ("bad",) * (name == "bad"))]
     monkeypatch.setattr(__main__, "attempts", lambda *_: results)
     assert __main__.main(["--fixed"]) == (name == "bad")
 
 
 @pytest.mark.parametrize(("case", "code"), [("good", 0), ("bad", 1)])
-def test_a_case_is_repeated_by_its_name(
+def test_a_case_of_the_proof_can_be_repeated_by_its_name(
     monkeypatch: pytest.MonkeyPatch, case: str, code: int
 ) -> None:
     monkeypatch.setitem(KINDS, "stand-in", STAND_IN)

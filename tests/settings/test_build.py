@@ -20,7 +20,7 @@ SHIPPED = {name: mat for name, mat in catalogue().items() if mat.shipped}
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_the_robot_starts_where_solid_walls_let_it_turn(name: str) -> None:
+def test_on_each_mat_the_robot_starts_where_it_can_turn_between_solid_walls(name: str) -> None:
     spec = build_run_spec(Settings({"background": name, "profile": "ev3"}))
     reach = build_outline(spec.robot).reach_mm
     start = spec.world.start
@@ -79,7 +79,7 @@ def test_what_a_profile_does_not_use_of_a_robot_is_named(
     ],
     ids=["none", "post", "posts", "wall"],
 )
-def test_each_set_of_obstacles_has_its_boxes(name: str, boxes: set[Obstacle]) -> None:
+def test_each_built_in_set_of_obstacles_has_its_boxes(name: str, boxes: set[Obstacle]) -> None:
     assert set(OBSTACLES[name]) == boxes
 
 
@@ -100,7 +100,7 @@ def test_start_pose_is_the_mats_unless_given(words: str, start: Pose) -> None:
     assert build_run_spec(merge_settings(parse_words(words.split()))).world.start == start
 
 
-def test_sensors_are_moved_on_the_mat_that_wants_it_and_nowhere_else() -> None:
+def test_only_the_mat_radial_grey_moves_the_colour_sensors() -> None:
     moved = build_run_spec(Settings({"background": "Radial_grey"})).robot
     assert [sensor.x_mm for sensor in moved.color_sensors] == [-60, 60]
     assert (

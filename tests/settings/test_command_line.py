@@ -90,7 +90,7 @@ def test_completion_prints_a_script_for_each_shell(shell: str, here: Command) ->
 
 
 @pytest.mark.slow
-def test_bash_completes_with_the_script(tmp_path: Path) -> None:
+def test_bash_completes_a_subcommand_with_the_printed_script(tmp_path: Path) -> None:
     (tmp_path / "tuisim").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m tuisim "$@"\n')
     (tmp_path / "tuisim").chmod(0o755)
     script = (
@@ -142,11 +142,11 @@ def _squeeze(text: str | None) -> str:
     return " ".join((text or "").split())
 
 
-def test_every_command_is_found_under_its_own_name() -> None:
+def test_each_command_in_the_table_has_its_own_name() -> None:
     assert [name for name, entry in COMMANDS.items() if entry.load().name != name] == []
 
 
-def test_a_command_that_is_left_out_is_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+def test_log_without_a_subcommand_names_the_subcommands(capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command(["log"]) == 2
     assert capsys.readouterr().err.startswith(
         "tuisim: log: no command given (one of summary, bands, "

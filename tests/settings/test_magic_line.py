@@ -26,7 +26,7 @@ CELLS: dict[str, tuple[list[str], dict[str, Any]]] = {
 
 
 @cases("lines, settings", CELLS)
-def test_settings_persist_but_for_those_of_the_mat_before(
+def test_settings_of_magic_lines_persist_except_those_of_the_former_mat(
     lines: list[str], settings: dict[str, Any]
 ) -> None:
     persistent: dict[str, Any] = {}

@@ -60,7 +60,7 @@ from tuisim.settings.shared_options import parse_words
     ],
     ids=lambda value: value or "nothing" if isinstance(value, str) else "",
 )
-def test_words_of_options_give_their_values(words: str, fields: dict[str, Any]) -> None:
+def test_words_of_options_are_parsed_to_their_values(words: str, fields: dict[str, Any]) -> None:
     assert parse_words(words.split()) == fields
 
 
@@ -91,7 +91,7 @@ def test_words_of_options_give_their_values(words: str, fields: dict[str, Any]) 
     ],
     ids=lambda value: value if value.startswith("-") else "",
 )
-def test_wrong_options_say_what_is_allowed(words: str, said: str) -> None:
+def test_wrong_values_of_options_are_refused_with_what_is_allowed(words: str, said: str) -> None:
     with pytest.raises(ConfigError, match=said):
         parse_words(words.split())
 
@@ -103,7 +103,7 @@ def test_every_value_of_the_world_has_an_option_and_no_flag_is_used_twice() -> N
     assert len(flags) == len(set(flags))
 
 
-def test_later_layers_win_and_panels_add_up() -> None:
+def test_later_layers_of_settings_win_and_panels_add_up() -> None:
     settings = merge_settings(
         parse_words(["-b", "Loop", "-x", "5", "-O"]), parse_words(["-b", "Square", "-cO"])
     )
@@ -116,5 +116,5 @@ def test_later_layers_win_and_panels_add_up() -> None:
     "name, metavar",
     [("solid", ""), ("walls", "on|off"), ("seed", "N"), ("output", ""), ("background", "MAT")],
 )
-def test_the_help_says_what_stands_for_a_value(name: str, metavar: str) -> None:
+def test_the_help_of_an_option_names_its_kind_of_value(name: str, metavar: str) -> None:
     assert next(option.metavar for option in OPTIONS if option.name == name) == metavar

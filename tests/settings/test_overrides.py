@@ -49,7 +49,9 @@ def spec_with(values: dict[str, Any], **chosen: Any) -> RunSpec:
         "walls": ({"walls": False}, lambda spec: spec.world.walls, False),
     },
 )
-def test_a_key_changes_its_setting(values: dict[str, Any], read: Any, expected: object) -> None:
+def test_a_batchs_key_changes_its_setting(
+    values: dict[str, Any], read: Any, expected: object
+) -> None:
     assert read(spec_with(values)) == expected
 
 
@@ -73,7 +75,7 @@ def test_a_key_of_the_profile_leaves_the_rest_of_the_chosen_profile() -> None:
     assert (profile.tick_hz, profile.color_read_ns) == (30, 60_000_000)
 
 
-def test_sensors_stay_where_the_mat_puts_them() -> None:
+def test_changing_a_robots_key_leaves_sensors_where_the_mat_puts_them() -> None:
     mat = "Radial_grey"
     usual = spec_with({}, background=mat).robot
     changed = spec_with({"robot.weight": 3}, background=mat).robot
@@ -83,7 +85,9 @@ def test_sensors_stay_where_the_mat_puts_them() -> None:
 
 
 @pytest.mark.parametrize("value, expected", [(5, ("5",)), ("5 'two words'", ("5", "two words"))])
-def test_arguments_are_split_as_in_a_shell(value: object, expected: tuple[str, ...]) -> None:
+def test_arguments_given_as_one_text_are_split_as_in_a_shell(
+    value: object, expected: tuple[str, ...]
+) -> None:
     assert resolve_keys({"arguments": value}, Settings(), HERE)["arguments"] == expected
 
 
@@ -111,6 +115,6 @@ def test_arguments_are_split_as_in_a_shell(value: object, expected: tuple[str, .
         "an open quote": ({"arguments": "'a"}, r"^set: arguments: cannot be split"),
     },
 )
-def test_wrong_keys_are_explained(values: dict[str, Any], words: str) -> None:
+def test_wrong_keys_of_varied_settings_are_explained(values: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         resolve_keys(values, Settings(), HERE)

@@ -21,7 +21,7 @@ HELD = {
 
 
 @cases("texts, changes", HELD)
-def test_presses_become_changes_at_ticks(
+def test_planned_presses_become_button_changes_at_their_ticks(
     texts: tuple[str, ...], changes: tuple[tuple[int, tuple[str, ...]], ...]
 ) -> None:
     found = press_actions(texts, 100)

@@ -78,7 +78,7 @@ def test_a_wrong_setting_in_the_config_file_is_named_and_ignored(text: str, prob
     [b"[app", b"\xff", b"[app]\nfps = 1\nfps = 2\n"],
     ids=["cut off", "no UTF-8", "twice"],
 )
-def test_a_damaged_file_is_told_and_never_overwritten(content: bytes) -> None:
+def test_a_damaged_config_file_is_told_and_never_overwritten(content: bytes) -> None:
     find_config_file().parent.mkdir(parents=True, exist_ok=True)
     find_config_file().write_bytes(content)
 
@@ -98,7 +98,7 @@ def test_the_template_has_every_setting_and_sets_nothing() -> None:
     assert dict(found.written) == usual
 
 
-def test_a_file_that_exists_is_never_replaced() -> None:
+def test_writing_the_config_template_never_replaces_an_existing_file() -> None:
     find_config_file().parent.mkdir(parents=True, exist_ok=True)
     find_config_file().write_text("# mine\n")
 
@@ -148,7 +148,7 @@ def test_a_wrong_value_is_not_written_into_the_config_file() -> None:
     assert not find_config_file().exists()
 
 
-def test_a_path_is_relative_to_the_folder_of_the_file() -> None:
+def test_a_path_in_the_config_file_is_relative_to_its_folder() -> None:
     find_config_file().parent.mkdir(parents=True, exist_ok=True)
     (find_config_file().parent / "mats").mkdir()
     find_config_file().write_text("[simulation]\nmats = 'mats'\n")
@@ -156,7 +156,7 @@ def test_a_path_is_relative_to_the_folder_of_the_file() -> None:
     assert load_config().values["simulation.mats"] == str(find_config_file().parent / "mats")
 
 
-def test_the_example_of_the_guide_is_right() -> None:
+def test_the_guides_example_of_a_config_file_is_valid() -> None:
     page = (ROOT / "tuisim" / "guide" / "pages" / "settings.md").read_text(encoding="utf-8")
     (example,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
 
@@ -164,6 +164,6 @@ def test_the_example_of_the_guide_is_right() -> None:
     assert found.keys == {"run": ("x", "f5")}
 
 
-def test_settings_come_section_by_section() -> None:
+def test_user_settings_are_listed_section_by_section() -> None:
     sections = [setting.section for setting in SETTINGS.values()]
     assert sections == sorted(sections, key=list(Section).index)

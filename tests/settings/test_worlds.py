@@ -7,7 +7,7 @@ from pathlib import Path
 from tuisim.settings.worlds import load_world
 
 
-def test_a_world_takes_program_and_lines_of_the_world_below_it(tmp_path: Path) -> None:
+def test_a_world_inherits_program_and_inputs_from_the_world_that_it_names(tmp_path: Path) -> None:
     base, lab, own = (tmp_path / f"{name}.toml" for name in ("base", "lab", "own"))
     base.write_text("program = 'a.py'\ninputs = ['Ada']\n")
     lab.write_text("world = 'base.toml'\nbackground = 'Loop'\n")

@@ -43,7 +43,7 @@ def test_a_doubtful_choice_of_the_wheels_motors_is_told(text: str, doubt: str) -
     ],
     ids=["syntax", "brackets", "signs", "attributes", "null"],
 )
-def test_a_program_that_cannot_be_read_has_no_robot(text: str) -> None:
+def test_no_robot_is_built_for_a_program_that_cannot_be_read(text: str) -> None:
     assert built(text) is None
 
 

@@ -26,7 +26,7 @@ ORDERS = {
 
 
 @cases("text, order", ORDERS)
-def test_lines_are_in_the_order_of_the_calls(text: str, order: str) -> None:
+def test_lines_of_a_program_are_ordered_as_its_functions_are_called(text: str, order: str) -> None:
     program = Program("p.py", "from ev3dev2.motor import *\n" + text)
     mentions = read_mentions(read_modules(program))
     assert mentions.evaluation is not None
@@ -40,7 +40,7 @@ def test_lines_are_in_the_order_of_the_calls(text: str, order: str) -> None:
     assert "".join(sorted(orders, key=orders.__getitem__)) == order
 
 
-def test_many_calls_of_calls_take_no_time() -> None:
+def test_ordering_deeply_nested_calls_is_quick() -> None:
     lines = "".join(f"def f{n}():\n    f{n + 1}()\n    f{n + 1}()\n" for n in range(60))
     program = Program("p.py", f"from ev3dev2.motor import *\n{lines}def f60():\n    a()\nf0()\n")
     mentions = read_mentions(read_modules(program))

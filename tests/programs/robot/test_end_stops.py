@@ -60,7 +60,7 @@ RANGES: Mapping[str, tuple[str, tuple[float, float]]] = {
 
 
 @pytest.mark.parametrize("case", RANGES)
-def test_a_stop_lies_beyond_every_target(case: str) -> None:
+def test_an_arms_end_stop_lies_beyond_every_target_of_the_program(case: str) -> None:
     text, expected = RANGES[case]
     found = built(f"arm = Motor(Port.A)\n{text}", PYBRICKS_HEAD)
     assert found is not None
@@ -73,7 +73,9 @@ def test_a_stop_lies_beyond_every_target(case: str) -> None:
     [("Direction.COUNTERCLOCKWISE", (-135.0, 225.0)), ("gears=[16, 8]", (-225.0, 90.0))],
     ids=["the other way round", "behind gears"],
 )
-def test_targets_turn_with_the_motor(mounted: str, expected: tuple[float, float]) -> None:
+def test_end_stops_follow_the_direction_and_gears_of_the_motor(
+    mounted: str, expected: tuple[float, float]
+) -> None:
     text = f"arm = Motor(Port.A, {mounted})\narm.run_target(500, 90)\n{_HOME}"
     found = built(text, PYBRICKS_HEAD)
     assert found is not None
@@ -81,5 +83,5 @@ def test_targets_turn_with_the_motor(mounted: str, expected: tuple[float, float]
     assert (motor.low_deg, motor.high_deg) == expected
 
 
-def test_a_position_that_is_not_known_is_no_error() -> None:
+def test_an_unknown_position_in_the_program_raises_no_error_when_placing_stops() -> None:
     assert built("arm = MediumMotor(OUTPUT_A)\narm.position = x\narm.on_to_position(20, 90)")

@@ -46,5 +46,5 @@ def test_the_kind_of_a_device_is_found_by_its_driver_or_mode() -> None:
     assert [find_mode_kind(text) for text in ("GYRO", "", 3)] == [None] * 3
 
 
-def test_a_class_that_takes_the_class_of_its_motors_drives_a_pair() -> None:
+def test_every_library_class_with_a_motor_class_argument_is_a_pair_of_wheels() -> None:
     assert MOTOR_CLASS_INDEX.keys() <= PAIRS.keys() <= CLASSES

@@ -34,5 +34,5 @@ def test_the_robot_has_motors_on_the_ports_in_the_text(case: str) -> None:
     assert changed(FILES + text, head="") == ports
 
 
-def test_texts_count_only_in_a_program_without_a_library() -> None:
+def test_ports_named_in_texts_are_ignored_if_the_program_uses_a_library() -> None:
     assert changed("print('outA')\nMoveTank(OUTPUT_B, OUTPUT_C)") == ""

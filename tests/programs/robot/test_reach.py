@@ -15,12 +15,12 @@ class Lift:
 """
 
 
-def test_the_body_of_a_class_runs_without_an_object_of_it() -> None:
+def test_parts_created_in_a_class_body_are_on_the_robot() -> None:
     assert changed(_LIFT) == "A large motor"
     assert changed(f"{_LIFT}Lift().up()") == "A large motor, D medium motor"
 
 
-def test_methods_of_a_class_that_nobody_names_do_not_run() -> None:
+def test_parts_created_in_methods_of_an_unused_class_are_not_on_the_robot() -> None:
     unused = "class Arm:\n    def __init__(self):\n        self.motor = MediumMotor(OUTPUT_A)\n"
     assert changed(unused) == ""
     assert changed(f"{unused}Arm()") == "A medium motor"

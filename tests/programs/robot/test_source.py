@@ -10,7 +10,7 @@ from tuisim.programs.program_settings import read_source_facts
 from tuisim.programs.robot.source import read_modules
 
 
-def test_modules_of_its_own_are_read_wherever_they_lie(tmp_path: Path) -> None:
+def test_a_programs_own_modules_are_read_from_packages_and_subfolders(tmp_path: Path) -> None:
     (tmp_path / "parts" / "deep").mkdir(parents=True)
     (tmp_path / "parts" / "__init__.py").write_text("from .deep import arm\n")
     (tmp_path / "parts" / "deep" / "arm.py").write_text(
@@ -27,6 +27,6 @@ def test_modules_of_its_own_are_read_wherever_they_lie(tmp_path: Path) -> None:
     assert str(facts.robot.parts[-1].where) == "parts/deep/arm.py, line 4"
 
 
-def test_a_module_whose_path_is_too_long_for_the_disk_is_none_of_the_program() -> None:
+def test_importing_a_module_with_too_long_a_path_is_ignored_when_reading_a_program() -> None:
     for name in ("a" * 300, ".".join(["a" * 200] * 20), ".".join("a" * 3000)):
         assert [*read_modules(Program("main.py", f"import {name}\n"))] == [""], name

@@ -102,7 +102,7 @@ def test_wheel_sizes_given_to_a_differential_drive_are_those_of_the_robot(case: 
     assert (robot.wheel_diameter_mm, robot.wheel_width_mm, robot.wheel_spacing_mm) == expected
 
 
-def test_motors_of_an_arm_are_no_wheels() -> None:
+def test_motors_of_an_arm_are_not_taken_for_wheels() -> None:
     arm = (
         "class Joint:\n    def __init__(self, motor):\n        self.motor = motor\n"
         "elbow, base = Joint(LargeMotor(OUTPUT_B)), Joint(LargeMotor(OUTPUT_C))\ngrip = MediumMotor(OUTPUT_A)\n"

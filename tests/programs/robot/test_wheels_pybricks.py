@@ -162,11 +162,11 @@ def test_different_gears_of_the_two_wheels_are_told() -> None:
     assert found.doubts == ("the gears of the two wheels differ: none are built",)
 
 
-def test_a_pair_without_its_second_motor_is_no_pair() -> None:
+def test_move_tank_with_only_one_motor_gives_no_wheels() -> None:
     assert built("MoveTank(OUTPUT_A)") is None
 
 
-def test_motors_that_run_until_they_stall_drive_no_wheels() -> None:
+def test_motors_that_run_until_they_stall_are_not_taken_for_wheels() -> None:
     found = built(
         "feed, belt = Motor(Port.A), Motor(Port.D)\nfeed.run_until_stalled(120)\nbelt.run(50)\n",
         PYBRICKS_HEAD,
@@ -177,7 +177,7 @@ def test_motors_that_run_until_they_stall_drive_no_wheels() -> None:
     assert [motor.port for motor in robot.extra_motors] == ["outA", "outD"]
 
 
-def test_the_port_of_a_sensor_is_none_of_a_wheel_on_a_hub() -> None:
+def test_on_a_hub_a_port_used_by_a_sensor_is_not_taken_for_a_wheel() -> None:
     text = (
         "from pybricks.hubs import EssentialHub\nfrom pybricks.pupdevices import ColorSensor, Motor\n"
         "from pybricks.parameters import Port\narm, eye = Motor(Port.A), ColorSensor(Port.B)"

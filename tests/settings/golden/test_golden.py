@@ -185,7 +185,9 @@ def lay_out(case: Mapping[str, Any], folder: Path) -> None:
 
 
 @pytest.mark.parametrize("name", SETTINGS)
-def test_settings_build_the_recorded_run(name: str, folder: Path, home: Path) -> None:
+def test_each_golden_set_of_settings_builds_the_recorded_run(
+    name: str, folder: Path, home: Path
+) -> None:
     case = CASES[name]
     lay_out(case, folder)
     home.mkdir()
