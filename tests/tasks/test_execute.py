@@ -35,7 +35,7 @@ ENDS = {
 }
 
 
-def test_a_task_gives_what_a_single_run_gives(tmp_path: Path) -> None:
+def test_a_batch_task_records_the_same_bytes_as_a_single_run(tmp_path: Path) -> None:
     one = task(LOGS, 5, keep=Keep.ALL)
     result = execute(one, tmp_path)
     handle = start_run(one.program, one.spec, one.options)
@@ -59,7 +59,9 @@ def test_a_prepared_mat_that_was_deleted_is_prepared_again(
 
 @pytest.mark.slow_cases("output_limit", "stalled")
 @pytest.mark.parametrize("end", ENDS)
-def test_each_end_is_a_result(end: str, tmp_path: Path) -> None:
+def test_each_end_of_a_program_gives_a_batch_result_with_its_exit_code(
+    end: str, tmp_path: Path
+) -> None:
     text, code, error = ENDS[end]
     options = RunOptions(stall_limit_s=0.2 if end == "stalled" else 60.0)
     result = execute(task(text, prelude="none", options=options), tmp_path)
@@ -69,14 +71,14 @@ def test_each_end_is_a_result(end: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text, kept", [("x = 1", False), ("1 / 0", True)], ids=["met", "missed"])
-def test_failed_runs_are_kept(text: str, kept: bool, tmp_path: Path) -> None:
+def test_keep_failed_stores_only_runs_that_failed(text: str, kept: bool, tmp_path: Path) -> None:
     goals = (Goal(name="end", condition=FinishCondition()),)
     result = execute(task(text, goals=goals, keep=Keep.FAILED), tmp_path)
     assert bool(result.run_id) is kept
     assert (result.judgements[0].state is GoalState.MET) is not kept
 
 
-def test_a_failed_run_that_printed_much_is_not_kept(
+def test_keep_failed_does_not_store_a_run_with_too_much_output(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert execute_module.MAX_OUTPUT_BYTES == 16 << 20
@@ -105,7 +107,7 @@ HARM = {
 
 
 @cases("harm, end, judged", HARM)
-def test_a_program_that_damages_its_recording_gets_a_result(
+def test_a_program_that_damages_its_recording_still_gets_a_batch_result(
     tmp_path: Path, harm: str, end: str, judged: int
 ) -> None:
     text = OWN_FILES.replace("tmp_path", tmp_path.name) + harm
@@ -137,7 +139,7 @@ def test_a_run_without_a_folder_is_told(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("error", [ZeroDivisionError("ours"), OSError(5, "broken")])
-def test_a_fault_of_tuisim_is_a_result_with_a_report(
+def test_a_fault_of_tuisim_in_a_batch_becomes_a_result_and_a_report_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception
 ) -> None:
     monkeypatch.setattr(execute_module, "_judge", MagicMock(side_effect=error))
@@ -152,7 +154,7 @@ def test_a_fault_of_tuisim_is_a_result_with_a_report(
 
 
 @pytest.mark.parametrize("step", ["write_end", "add_folder"])
-def test_a_run_that_cannot_be_stored_counts(
+def test_a_run_that_cannot_be_stored_is_judged_all_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
 ) -> None:
     """Its program could have seen to that."""
@@ -172,14 +174,14 @@ def test_a_run_that_a_full_disk_refuses_is_not_judged(
     assert (result.end, result.exit_code) == ("", 2)
 
 
-def test_a_result_that_cannot_be_sent_is_told() -> None:
+def test_a_batch_result_that_cannot_be_sent_between_processes_is_reported() -> None:
     future: Future[list[Result]] = Future()
     future.set_exception(MemoryError())
     (result,) = _take_results(future, [task("print(1)")])
     assert (result.end, result.summary) == ("", "could not be judged: MemoryError: ")
 
 
-def test_a_run_whose_folder_is_gone_is_not_started(
+def test_a_batch_run_whose_folder_is_gone_is_not_started(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(temporary, "RUN_FILE", "missing/run.json")
@@ -215,9 +217,7 @@ time.sleep(0.5)
 
 
 @pytest.mark.parametrize("is_replayed", [False, True])
-def test_a_run_that_is_worked_out_again_earns_what_the_program_did(
-    tmp_path: Path, is_replayed: bool
-) -> None:
+def test_a_replayed_run_earns_only_what_its_commands_did(tmp_path: Path, is_replayed: bool) -> None:
     goals = (
         Goal("far", ReachCondition(x_mm=1000, y_mm=100)),
         Goal("end", FinishCondition()),

@@ -90,7 +90,7 @@ def test_a_run_whose_storing_is_interrupted_is_not_listed(
     assert [run.id for run in RunStore().runs()] == [kept.run_id]
 
 
-def test_a_result_that_cannot_be_sent_costs_no_other_one(
+def test_one_batch_result_that_cannot_be_sent_does_not_lose_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def submit(running: pool._Pool, chunk: list[Task]) -> None:
@@ -138,7 +138,7 @@ def test_workers_end_with_the_process_that_was_killed(tmp_path: Path, root: Path
 
 
 @pytest.mark.slow
-def test_a_script_needs_no_guard(tmp_path: Path, root: Path) -> None:
+def test_a_script_can_run_a_batch_without_a_main_guard(tmp_path: Path, root: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(
         "from tests.tasks.test_pool import task\nfrom tuisim.tasks.pool import run_many\n"

@@ -402,11 +402,13 @@ LINES = {
 
 
 @cases("text, key, line", LINES)
-def test_an_error_names_the_line_of_its_key(text: str, key: str, line: int) -> None:
+def test_the_line_of_a_key_in_a_goal_file_is_found(text: str, key: str, line: int) -> None:
     assert find_key_line(text, key) == line
 
 
-def test_a_long_list_is_not_parsed_for_each_of_its_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_finding_a_keys_line_does_not_parse_a_long_list_again_and_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     parsed: list[str] = []
     read = tomllib.loads
 
@@ -420,7 +422,7 @@ def test_a_long_list_is_not_parsed_for_each_of_its_lines(monkeypatch: pytest.Mon
     assert len(parsed) < 10
 
 
-def test_world_of_another_file_is_overridden(tmp_path: Path) -> None:
+def test_a_goal_file_overrides_settings_of_the_world_it_names(tmp_path: Path) -> None:
     (tmp_path / "base.toml").write_text(
         "program = 'follow.py'\nbackground = 'Loop'\nseed = 3\n[start]\nx_mm = 5\n"
     )
@@ -459,7 +461,7 @@ def test_goals_of_another_file_are_added_to_and_replaced(tmp_path: Path) -> None
     ]
 
 
-def test_short_forms_of_conditions_are_read(tmp_path: Path) -> None:
+def test_short_forms_of_goal_conditions_are_read(tmp_path: Path) -> None:
     (tmp_path / "goals.toml").write_text(
         goal("print = 'x'", "all = 'a'", "dialogue = [{ answer = '5' }]")
     )

@@ -151,7 +151,7 @@ def test_combined_goals_are_met_as_their_parts_are(
     assert found.changes[-1].time_s == pytest.approx(time_s, abs=0.006)
 
 
-def test_what_begins_after_the_last_tick_is_judged(home: Path, tmp_path: Path) -> None:
+def test_a_goal_that_begins_after_the_last_tick_is_judged(home: Path, tmp_path: Path) -> None:
     goals = "[[goal]]\nname = 'end'\nfinish = true\n[[goal]]\nname = 'it'\nafter = 'end'\n"
     goals += "follow = { sensors = 'middle', darker_than = 50 }\n"
     result = judged(finished(home), tmp_path, goals)["it"]
@@ -161,7 +161,7 @@ def test_what_begins_after_the_last_tick_is_judged(home: Path, tmp_path: Path) -
     assert result.at(278) == "missed"
 
 
-def test_points_are_those_of_met_goals(home: Path, tmp_path: Path) -> None:
+def test_points_of_a_run_are_the_sum_of_its_met_goals(home: Path, tmp_path: Path) -> None:
     assert compute_points(judged(finished(home), tmp_path, GOALS).values()) == 7.5
 
 
@@ -183,7 +183,7 @@ def test_a_goals_state_at_an_earlier_tick_is_that_of_then(home: Path, tmp_path: 
     assert [found["never"].at(tick) for tick in (0, 277, 278)] == ["open", "open", "missed"]
 
 
-def test_every_kind_of_condition_has_a_function() -> None:
+def test_every_kind_of_goal_condition_has_a_judging_function() -> None:
     needed = {kind for kind in CONDITIONS.values() if kind.KIND is not ConditionKind.COMBINED}
     assert set(FINDERS) == needed
 
@@ -243,7 +243,7 @@ def test_states_looked_up_for_a_past_instant_equal_those_shown_live(
     assert {state for states in shown.values() for state in states} == {"open", "met", "missed"}
 
 
-def test_judgements_pass_between_processes(home: Path, tmp_path: Path) -> None:
+def test_judgements_of_goals_can_be_pickled(home: Path, tmp_path: Path) -> None:
     run = finished(home)
     text = f"{GOALS}[[goal]]\nname = 'it'\nall = ['a', 'b', 'one']\n"
     judgements = judge(goals_of(tmp_path, text), run.end())
@@ -264,13 +264,15 @@ def test_only_the_end_finished_meets_a_goal_to_finish(end: End, home: Path, tmp_
     assert "what happened" in found.reason
 
 
-def test_nothing_that_is_recorded_of_a_falsified_run_counts(home: Path, tmp_path: Path) -> None:
+def test_a_falsified_run_meets_no_goal(home: Path, tmp_path: Path) -> None:
     goals = goals_of(tmp_path, "[[goal]]\nname = 'it'\nreach = { x_mm = 800 }\n")
     (found,) = judge(goals, finished(home).end(End.FALSIFIED, "what happened"))
     assert (found.state, found.reason[:18]) == ("missed", "It does not count:")
 
 
-def test_a_run_is_judged_as_it_was_when_it_ran(run: RunProgram, tmp_path: Path) -> None:
+def test_a_stored_run_is_judged_with_its_own_inputs_and_answers(
+    run: RunProgram, tmp_path: Path
+) -> None:
     text = (
         "print('n', input('n? '))\ntank_drive.on_for_rotations(50, 50, 1)\nprint(input('m? 1'))\n"
     )

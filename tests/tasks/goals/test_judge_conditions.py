@@ -710,7 +710,7 @@ CASES = PLACES | OUTPUT | READINGS
 
 
 @cases("case", CASES)
-def test_each_condition_is_met_missed_or_open_with_its_reason(
+def test_each_goal_condition_is_met_missed_or_open_with_its_reason(
     case: Case, home: Path, tmp_path: Path
 ) -> None:
     goals = goals_of(tmp_path, f"[[goal]]\nname = 'it'\n{case.condition}\n{case.more}")
@@ -726,7 +726,7 @@ def test_each_condition_is_met_missed_or_open_with_its_reason(
         assert found.line == case.line, found
 
 
-def test_numbers_of_every_size_are_judged(tmp_path: Path) -> None:
+def test_goals_about_numbers_of_extreme_size_are_judged(tmp_path: Path) -> None:
     run = Run(RunStore(), EMPTY, "")
     run.do([says(f"A: {value}") for value in ("1.7e308", "-1.7e308", "5e-324", "1e155", "1e999")])
     goals = goals_of(

@@ -23,7 +23,7 @@ def _print_samples(count: int) -> StoredRun:
     return run.end()
 
 
-def test_twice_as_many_samples_take_at_most_three_times_the_work(
+def test_judging_twice_as_many_samples_takes_at_most_three_times_the_work(
     home: Path, tmp_path: Path
 ) -> None:
     goals = goals_of(tmp_path, UNREAD)
@@ -32,7 +32,7 @@ def test_twice_as_many_samples_take_at_most_three_times_the_work(
     assert many < 3 * few
 
 
-def test_a_tick_with_many_readings_is_one_tick(home: Path) -> None:
+def test_several_readings_in_one_tick_count_as_one_tick(home: Path) -> None:
     run = Run(RunStore(), world(), "")
     run.do([reads(), *[lambda recorder: recorder.read("in2", "COL-REFLECT", 1)] * 5])
     ticks = read_ticks(Reading.COLOR, Evidence(run.end()))

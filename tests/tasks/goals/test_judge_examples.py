@@ -188,7 +188,9 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
 
 
 @pytest.mark.slow
-def test_a_stop_at_the_end_of_the_black_band_is_on_it(here: Command, tmp_path: Path) -> None:
+def test_stopping_at_the_end_of_the_black_band_meets_the_goal_to_stop_on_it(
+    here: Command, tmp_path: Path
+) -> None:
     text = (PROGRAMS / "log_greys.py").read_text(encoding="utf-8")
     on = "tank_drive.on_for_rotations(30, 30, 0.8)"
     (tmp_path / "mine.py").write_text(text.replace("tank_drive.off()", on), encoding="utf-8")
@@ -204,7 +206,7 @@ def test_a_stop_at_the_end_of_the_black_band_is_on_it(here: Command, tmp_path: P
     "square, wrong corners",
 )
 @cases("name, changes, missed", WRONG)
-def test_wrong_program_misses_goals(
+def test_each_wrong_program_of_an_example_misses_its_goals(
     name: str, changes: dict[str, str], missed: dict[str, str], here: Command, tmp_path: Path
 ) -> None:
     text = (PROGRAMS / f"{name}.py").read_text(encoding="utf-8")

@@ -49,7 +49,7 @@ STRUCTURE = {
 
 
 @cases("comparison, reason", STRUCTURE)
-def test_a_structure_is_met_or_missed_with_its_reason(
+def test_a_goal_on_the_programs_structure_is_met_or_missed_with_its_reason(
     comparison: str, reason: str, tmp_path: Path, home: Path
 ) -> None:
     goals = goals_of(tmp_path, f"[[goal]]\nname = 'a'\nstructure = '{comparison}'\n")

@@ -29,7 +29,7 @@ heading_deg = 0
 """
 
 
-def test_the_commands_of_a_run_lead_to_its_points() -> None:
+def test_a_labs_live_goals_give_the_points_of_a_run_with_the_same_commands() -> None:
     goals = load_goals("square_goals.toml").goals
     run = tuisim.simulate("square", world="square_goals.toml").stored
     stepped = SteppedRun(run.first_spec, run.open_mat(), is_recorded=True)
@@ -63,7 +63,7 @@ def test_points_come_and_go_until_a_goal_is_missed_for_good(tmp_path: Path) -> N
         "calls": 'use = "time.sleep"',
     },
 )
-def test_goals_about_a_program_are_refused(condition: str, tmp_path: Path) -> None:
+def test_a_lab_refuses_goals_about_a_program(condition: str, tmp_path: Path) -> None:
     file = tmp_path / "goals.toml"
     file.write_text(f'[[goal]]\nname = "first"\n{condition}\n')
     with pytest.raises(ConfigError, match="'first' is about a program"):

@@ -70,7 +70,9 @@ for _ in range(5):
 """
 
 
-def test_readings_of_an_own_module_count(tmp_path: Path, here: Command) -> None:
+def test_readings_made_in_a_programs_own_module_count_for_goals(
+    tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "reads.py").write_text(MAIN)
     (tmp_path / "helper.py").write_text(HELPER)
     (tmp_path / "goals.toml").write_text(GOALS)
@@ -92,7 +94,9 @@ IDIOMS = {
 
 
 @pytest.mark.parametrize("idiom", IDIOMS)
-def test_honest_idioms_cost_no_points(tmp_path: Path, here: Command, idiom: str) -> None:
+def test_usual_ways_of_printing_a_reading_are_accepted_by_goals(
+    tmp_path: Path, here: Command, idiom: str
+) -> None:
     text = f"sleep(0.05)\nlight = colorLeft.reflected_light_intensity_pc\n{IDIOMS[idiom]}\n"
     loop = f"from time import sleep\nfor _ in range(5):\n{indent(text, '    ')}"
     (tmp_path / "reads.py").write_text(loop)

@@ -139,7 +139,7 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
 
 
 @cases("check, events, passes", CASES)
-def test_a_step_passes_by_what_it_checks_only(
+def test_a_lessons_step_passes_only_by_what_it_checks(
     check: Check, events: Sequence[Event], passes: bool
 ) -> None:
     assert is_met(check, events) is passes
@@ -171,7 +171,7 @@ UNREADY = {
 
 
 @cases("question, typed, words", UNREADY)
-def test_a_question_says_what_to_look_at_first(
+def test_a_lessons_question_says_what_to_look_at_first(
     question: QuestionCheck, typed: Typed, words: str
 ) -> None:
     found = explain_unready(question, typed)
@@ -212,5 +212,5 @@ def test_number_in_another_unit_is_asked_for_again(text: str, words: str) -> Non
     assert describe_form(QuestionCheck("At which x, in mm?", 502, within=4), text) == words
 
 
-def test_any_unit_will_do_where_none_is_asked_for() -> None:
+def test_an_answer_may_have_any_unit_if_the_question_asks_for_none() -> None:
     assert describe_form(QuestionCheck("How far?", 502, within=4), "50.2 cm") == ""

@@ -295,7 +295,7 @@ def test_wrong_ways_that_a_lessons_step_lacks_are_listed(
     assert list(load_lesson(path).steps[0].find_missing_ways()) == missing
 
 
-def test_wrong_program_that_goes_a_way_covers_it(tmp_path: Path) -> None:
+def test_a_lessons_wrong_program_covers_the_wrong_way_that_it_names(tmp_path: Path) -> None:
     path = tmp_path / "it.md"
     body = "## A\n```python answer\n```\n```python wrong: no sensor\npass\n```\n"
     path.write_text(lesson(HEAD + GOAL + RUN, body))

@@ -19,7 +19,7 @@ def _texts(width: int) -> list[str]:
     return ["".join(part for part, _ in line).rstrip() for line in render_markdown(TABLE, width)]
 
 
-def test_a_cell_breaks_between_words() -> None:
+def test_a_guides_table_cell_breaks_between_words() -> None:
     texts = _texts(66)
     assert max(map(len, texts)) <= 66
     words = " ".join(texts).split()
@@ -29,7 +29,7 @@ def test_a_cell_breaks_between_words() -> None:
     )
 
 
-def test_rows_are_lists_where_the_longest_words_have_no_room_beside_each_other() -> None:
+def test_a_table_too_narrow_for_its_words_is_drawn_as_lists() -> None:
     assert [text for text in _texts(46) if text] == [
         "ask the gyro",
         "  ev3dev2: gyro = GyroSensor(INPUT_4);",
@@ -39,7 +39,7 @@ def test_rows_are_lists_where_the_longest_words_have_no_room_beside_each_other()
 
 
 @pytest.mark.parametrize("width", [36, 76, 118])
-def test_nothing_of_a_page_is_cut(width: int) -> None:
+def test_no_text_of_a_guides_page_is_cut(width: int) -> None:
     page = load_pages()["ev3dev2-and-pybricks"]
     texts = ["".join(part for part, _ in line) for line in draw_page(page, width)]
     assert not [text for text in texts if "…" in text and "…" not in page.source]

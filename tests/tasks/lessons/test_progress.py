@@ -47,13 +47,13 @@ def test_progress_counts_done_and_skipped_steps(lesson: Lesson) -> None:
     assert after(lesson, skipped, *[done] * (count - 1)).words(lesson) == "done, 1 step skipped"
 
 
-def test_the_first_open_step_is_the_current_one(lesson: Lesson) -> None:
+def test_the_first_open_step_of_a_lesson_is_the_current_one(lesson: Lesson) -> None:
     assert NEW.current(lesson) == 0
     assert after(lesson, StepState.DONE, StepState.OPEN).current(lesson) == 1
     assert after(lesson, *[StepState.SKIPPED] * len(lesson.steps)).current(lesson) is None
 
 
-def test_progress_on_each_lesson_is_kept(home: Path) -> None:
+def test_progress_on_each_lesson_is_stored(home: Path) -> None:
     assert load_progress() == {}
     one = NEW.update_step("a", tries=2, hints=1)
     save_progress("one", one)
@@ -75,7 +75,7 @@ def test_damaged_progress_is_told_and_stays(text: str, home: Path) -> None:
     assert file.read_text() == text
 
 
-def test_the_program_of_the_student_is_begun_once_and_kept_when_begun_anew(
+def test_a_students_program_of_a_lesson_is_not_overwritten_when_begun_again(
     lesson: Lesson, home: Path
 ) -> None:
     path = prepare_program(lesson)

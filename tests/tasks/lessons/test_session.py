@@ -57,7 +57,7 @@ def _sight(run: Any, state: GoalState = GoalState.MET) -> Sight:
     return Sight(frozenset(), is_over=True, judged=run, judgements=_judged(state))
 
 
-def test_a_good_run_ends_the_step_and_the_next_one_begins_without_it(home: Path) -> None:
+def test_a_good_run_ends_a_lessons_step_and_does_not_count_for_the_next(home: Path) -> None:
     session = _session(RunCheck(("far",)), RunCheck(("far",)))
     sight = _sight(_run("a"))
     assert session.look(sight) is Change.GO_ON
@@ -75,14 +75,14 @@ def test_a_good_run_ends_the_step_and_the_next_one_begins_without_it(home: Path)
     )
 
 
-def test_a_run_that_misses_a_goal_is_one_try(home: Path) -> None:
+def test_a_run_that_misses_a_lessons_goal_counts_as_one_try(home: Path) -> None:
     session = _session(RunCheck(("far",)))
     for _ in range(2):
         assert session.look(_sight(_run("a"), GoalState.MISSED)) is Change.SHOW
     assert session.progress.of("step 1").tries == 1
 
 
-def test_a_run_from_elsewhere_says_what_to_do(home: Path) -> None:
+def test_after_a_run_from_another_start_a_lesson_says_what_to_do(home: Path) -> None:
     session = _session(RunCheck(("far",)))
     assert session.look(_sight(_run("a", **{"start.x_mm": 520.0}))) is Change.SHOW
     there = Pose(520.0, 500.0, 0.0)
@@ -96,7 +96,7 @@ def test_a_run_from_elsewhere_says_what_to_do(home: Path) -> None:
     assert "different noise or drift" in session.describe_elsewhere(there, in_run=False)
 
 
-def test_runs_count_in_any_order_of_their_trials_and_the_newest_is_told_of(home: Path) -> None:
+def test_runs_of_a_lessons_step_count_in_any_order_of_its_worlds(home: Path) -> None:
     session = _session(RunCheck(("far",), times=2, also=(BACK,)))
     trials = []
     for run_id in "ab":
@@ -114,7 +114,9 @@ def test_runs_count_in_any_order_of_their_trials_and_the_newest_is_told_of(home:
     assert session.take_trial(second, []) is Change.NONE
 
 
-def test_a_note_that_does_not_pass_is_told_why(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lesson_says_why_a_note_does_not_pass(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     session = _session(NoteCheck("dark", 86.0))
     levels = [50.0]
     monkeypatch.setattr(sessions, "NOTES_PERIOD_S", 0.0)
@@ -130,7 +132,7 @@ def test_a_note_that_does_not_pass_is_told_why(home: Path, monkeypatch: pytest.M
 PLACED = QuestionCheck("What?", 5, at_x_mm=((600.0, 700.0),), where="the right: → moves it")
 
 
-def test_only_an_answer_that_is_about_the_question_counts_as_a_try(home: Path) -> None:
+def test_only_a_number_given_at_the_right_place_counts_as_a_try(home: Path) -> None:
     session = _session(PLACED, hints=("Look.",))
     sight = Sight(frozenset())
     for text, x_mm, words in (
@@ -164,7 +166,7 @@ def test_a_likely_wrong_answer_is_told_its_reason(home: Path) -> None:
         assert str(error.value) == words
 
 
-def test_what_was_on_the_screen_since_the_step_began_is_seen(home: Path) -> None:
+def test_a_panel_shown_since_a_lessons_step_began_counts_as_seen(home: Path) -> None:
     session = _session(replace(PLACED, at_x_mm=(), where="", seen=("chart",)))
     with pytest.raises(TuisimError, match="Look first: Chart shows it"):
         session.answer("5", 0.0, Sight(frozenset({"output"})))

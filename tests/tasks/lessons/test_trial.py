@@ -23,12 +23,12 @@ LESSONS = {name: load_lesson(path) for name, path in find_shipped_paths().items(
 
 @pytest.mark.quick_cases("first-run", "exact-moves", "band-values", "stop-and-look", "log-period")
 @pytest.mark.parametrize("name", LESSONS)
-def test_model_answers_pass_and_wrong_answers_do_not(name: str) -> None:
+def test_a_lessons_model_answers_pass_and_its_wrong_answers_do_not(name: str) -> None:
     assert find_faults(LESSONS[name]) == []
 
 
 @pytest.mark.parametrize("name", LESSONS)
-def test_each_lesson_has_texts_hints_and_wrong_ways(name: str) -> None:
+def test_each_built_in_lesson_has_texts_hints_and_wrong_programs(name: str) -> None:
     lesson = LESSONS[name]
     assert lesson.path.name.isascii()
     assert 20 < len(lesson.why) <= 300
@@ -42,7 +42,7 @@ def test_each_lesson_has_texts_hints_and_wrong_ways(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", LESSONS)
-def test_names_that_a_goal_needs_are_in_the_task(name: str) -> None:
+def test_the_text_of_a_lessons_step_mentions_the_names_that_its_goals_need(name: str) -> None:
     lesson = LESSONS[name]
     needed = {goal.name: goal.condition for goal in LESSONS[name].goals}
     for step in lesson.steps:
@@ -98,7 +98,7 @@ def _rows(lesson: Lesson) -> float:
 
 
 @pytest.mark.parametrize("name", MEASURED)
-def test_the_answer_of_a_step_is_what_a_student_measures(name: str) -> None:
+def test_the_answer_of_a_lessons_step_is_what_a_student_measures(name: str) -> None:
     lesson, _, step_name = name.partition(" ")
     (step,) = [step for step in LESSONS[lesson].steps if step.name == step_name]
     assert isinstance(step.check, QuestionCheck)
@@ -108,7 +108,7 @@ def test_the_answer_of_a_step_is_what_a_student_measures(name: str) -> None:
     )
 
 
-def test_question_about_the_end_of_a_run_leads_back_to_its_start() -> None:
+def test_a_question_about_a_runs_end_tells_how_to_get_the_robot_there() -> None:
     checks = [step.check for lesson in LESSONS.values() for step in lesson.steps]
     words = [
         check.where
@@ -126,7 +126,7 @@ def test_a_hand_presses_in_a_trial_as_the_first_line_says() -> None:
     assert [action.tick for action in task.options.actions] == [hz, 2 * hz]
 
 
-def test_names_are_not_those_of_commands_or_examples() -> None:
+def test_no_lesson_has_the_name_of_a_command_or_an_example() -> None:
     taken = {*COMMANDS, *learn.listing, *(file.path.stem for file in list_programs())}
     assert set(LESSONS) & taken == set()
 

@@ -52,7 +52,7 @@ def _similar(programs: Mapping[str, str], given: Collection[str] = ()) -> Simila
     return find_similar({name: [text] for name, text in programs.items()}, given)
 
 
-def test_a_copy_in_a_module_is_a_pair() -> None:
+def test_a_copy_in_an_imported_module_is_reported_as_a_similar_pair() -> None:
     found = find_similar(
         {"ada": [LINE], "ben": ["import sol\nsol.drive()\n", RENAMED], "cleo": [OTHER]}
     )
@@ -60,7 +60,9 @@ def test_a_copy_in_a_module_is_a_pair() -> None:
     assert pair.names == ("ada", "ben") and pair.share > 0.9
 
 
-def test_only_so_many_tokens_of_a_program_are_compared(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_similarity_compares_only_the_first_tokens_of_a_long_program(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(copies, "MAX_TOKENS", 100)
 
     def write() -> Iterator[str]:
@@ -71,14 +73,14 @@ def test_only_so_many_tokens_of_a_program_are_compared(monkeypatch: pytest.Monke
     assert find_similar({"ada": write(), "ben": write()}).compared == 2
 
 
-def test_other_names_numbers_and_comments_are_the_same_program() -> None:
+def test_programs_that_differ_in_names_numbers_or_comments_count_as_similar() -> None:
     found = _similar({"ada": LINE, "ben": RENAMED, "cleo": OTHER, "dora": LINE + "\n# end\n"})
     (group,) = found.groups
     assert (group.names, group.same) == (("ada", "ben", "dora"), (("ada", "dora"),))
     assert found.pairs == () and found.compared == 3 + 1
 
 
-def test_a_copy_with_a_new_beginning_is_a_pair() -> None:
+def test_a_copy_with_a_new_beginning_is_reported_as_a_similar_pair() -> None:
     found = _similar(
         {
             "ada": LINE,
@@ -90,7 +92,7 @@ def test_a_copy_with_a_new_beginning_is_a_pair() -> None:
     assert pair.names == ("ada", "ben") and pair.share > 0.9 and pair.lines >= 8
 
 
-def test_what_everybody_was_given_or_has_is_left_out() -> None:
+def test_similarity_ignores_code_that_was_given_or_that_everybody_has() -> None:
     programs = {"ada": LINE + OTHER, "ben": LINE + "print(1)\n" * 12}
     assert _similar(programs).pairs
     assert not _similar(programs, given=[LINE]).pairs
@@ -98,19 +100,19 @@ def test_what_everybody_was_given_or_has_is_left_out() -> None:
     assert not _similar(many).pairs
 
 
-def test_short_and_broken_programs_are_not_compared() -> None:
+def test_short_programs_are_not_compared_and_broken_ones_up_to_the_error() -> None:
     short = "tank_drive.on_for_rotations(50, 50, 3)\n"
     assert _similar({"ada": short, "ben": short}).compared == 0
     broken = _similar({"ada": LINE + "\n)\x00 '''", "ben": LINE})
     assert broken.compared == 2 and MIN_TOKENS > 20
 
 
-def test_a_text_without_an_end_is_read_to_its_beginning() -> None:
+def test_tokens_of_a_program_end_before_an_unclosed_string() -> None:
     tokens = list_tokens("x = 1\n'" + r"\'" * 100)
     assert [token.text for token in tokens] == ["x", "=", "1", "\n"]
 
 
-def test_the_result_does_not_depend_on_the_order() -> None:
+def test_similar_programs_do_not_depend_on_the_order_of_students() -> None:
     texts = {one.row: text for one in CLASS for text in one.files.values() if isinstance(text, str)}
     backwards = _similar(dict(reversed(texts.items())))
     assert {one.names for one in _similar(texts).pairs} == {

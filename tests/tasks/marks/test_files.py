@@ -16,7 +16,7 @@ from tuisim.tasks.marks import files
 from tuisim.tasks.marks.files import copy_tree, unpack_zip
 
 
-def test_copies_are_writable_and_have_only_files(tmp_path: Path) -> None:
+def test_copies_of_hand_ins_are_writable_and_contain_only_files(tmp_path: Path) -> None:
     source = tmp_path / "class"
     (source / "data").mkdir(parents=True)
     for name in ("main.py", "data/log.txt", "data/empty"):
@@ -79,7 +79,7 @@ def test_a_zip_with_a_path_or_link_out_of_its_folder_is_refused(
     assert [path.name for path in tmp_path.iterdir()] == ["a.zip"]
 
 
-def test_a_zip_that_grows_beyond_measure_is_refused(
+def test_a_zip_that_unpacks_to_far_more_bytes_than_it_has_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(files, "_LOOSE_BYTES", 1 << 20)

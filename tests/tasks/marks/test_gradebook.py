@@ -114,7 +114,7 @@ def test_a_class_list_tells_who_handed_in_nothing_and_who_is_not_listed(tmp_path
         ("submission\nb\xe9n\n".encode("latin-1"), "is not a CSV file in UTF-8"),
     ],
 )
-def test_a_wrong_class_list_says_what_is_wrong(
+def test_a_faulty_class_list_is_refused_with_the_reason(
     tmp_path: Path, text: str | bytes, what: str
 ) -> None:
     path = tmp_path / "roster.csv"

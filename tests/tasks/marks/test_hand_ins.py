@@ -92,7 +92,7 @@ def test_students_of_one_name_have_rows_of_their_own(tmp_path: Path) -> None:
     assert [(one.name, one.ids[MOODLE]) for one in found] == [("Ben 1", "1"), ("Ben 2", "2")]
 
 
-def test_what_nobody_hands_in_is_named_once(tmp_path: Path) -> None:
+def test_system_and_cache_folders_among_hand_ins_are_ignored_and_named_once(tmp_path: Path) -> None:
     names = ("__MACOSX/ada/._main.py", ".git/x", "node_modules/x.py", "__pycache__/x.pyc")
     inside = ("ada/main.py", "ada/venv/bin/x.py", "ben/main.py", "ben/venv/x.py", "ben/._main.py")
     for name in ("ada", "ben"):
@@ -115,14 +115,14 @@ def test_what_nobody_hands_in_is_named_once(tmp_path: Path) -> None:
         "of Canvas": ("ada_4_5_lab-2.zip", ("lab/main.py", "lab/data/a.py"), "main.py"),
     },
 )
-def test_a_zip_is_the_folder_that_it_is(
+def test_a_students_zip_is_read_like_a_folder(
     tmp_path: Path, name: str, inside: tuple[str, ...], main: str
 ) -> None:
     (found,) = _find(tmp_path, {name: zipped(tmp_path / "x", *inside)}).students
     assert (found.name, found.main, found.problem) == ("ada", main, "")
 
 
-def test_a_zip_of_a_class_is_its_folder(tmp_path: Path) -> None:
+def test_a_zip_of_a_whole_class_is_read_like_its_folder(tmp_path: Path) -> None:
     names = ("Ben_1_assignsubmission_file_/main.py", "Eva_2_assignsubmission_file_/main.py")
     (tmp_path / "class.zip").write_bytes(zipped(tmp_path / "x", *names))
     (tmp_path / "unpacked").mkdir()
@@ -133,12 +133,12 @@ def test_a_zip_of_a_class_is_its_folder(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "data", [b"", b"PK\x03\x04 no zip", b"PK\x05\x06" + bytes(18)], ids=["empty", "odd", "nothing"]
 )
-def test_a_damaged_zip_is_its_students_own_row(tmp_path: Path, data: bytes) -> None:
+def test_a_damaged_zip_affects_only_its_students_row(tmp_path: Path, data: bytes) -> None:
     ada, ben = _find(tmp_path, {"ada.zip": data, "ben.py": ""}).students
     assert ada.problem and not ada.is_unread and ben.source is not None
 
 
-def test_nobody_hands_in_for_another_one(tmp_path: Path) -> None:
+def test_a_forged_file_name_does_not_hand_in_for_another_student(tmp_path: Path) -> None:
     """A file has the name that its student gave it: it says no more than whose number comes first."""
     forged = "Eve_7_assignsubmission_file_Ada_9_assignsubmission_file_main.py"
     found = _find(tmp_path, {"Ada_9_assignsubmission_file_main.py": "1\n", forged: "2\n"})
@@ -157,7 +157,7 @@ def test_a_zip_whose_name_leads_elsewhere_is_unpacked_in_a_folder_of_its_own(
         assert (student.path / "main.py").read_text() == "print('main.py')\n"
 
 
-def test_a_name_with_a_number_is_nobody_elses(tmp_path: Path) -> None:
+def test_students_whose_names_differ_by_a_number_stay_separate(tmp_path: Path) -> None:
     files = ["ada_1_5_a.py", "ada_2_6_b.py", "ada 1.py", "ada 1 (2).py"]
     found = _find(tmp_path, {name: f"{name!r}\n" for name in files})
     names = {student.name: student.text for student in found.students}

@@ -65,7 +65,7 @@ def test_each_end_of_a_marked_run_has_its_words_for_the_failure(
     assert build_outcome(result, 3, FOLDER).failure == failure
 
 
-def test_a_traceback_has_no_path_and_a_limited_length() -> None:
+def test_a_marked_runs_traceback_is_cut_and_has_no_path() -> None:
     error = f'Traceback\n  File "{FOLDER}/main.py", line 3\n' + "ValueError: " + "y" * 100_000
     found = build_outcome(replace(DONE, end="raised", error=error, error_line=3), 3, FOLDER)
     assert (
@@ -74,7 +74,7 @@ def test_a_traceback_has_no_path_and_a_limited_length() -> None:
     )
 
 
-def test_a_traceback_has_no_path_of_this_machine() -> None:
+def test_a_marked_runs_traceback_has_no_path_of_this_machine() -> None:
     library = f"cannot import name 'MoveTanks' from 'ev3dev2.motor' ({motor.__file__})"
     found = build_outcome(
         replace(DONE, end="raised", error="Traceback", summary=f"ImportError: {library}"), 0, FOLDER
@@ -85,14 +85,14 @@ def test_a_traceback_has_no_path_of_this_machine() -> None:
     )
 
 
-def test_a_path_of_the_students_own_stays() -> None:
+def test_a_path_written_by_the_student_stays_in_an_error() -> None:
     found = build_outcome(
         replace(DONE, end="raised", summary="FileNotFoundError: '/data/of/ada/x.csv'"), 0, FOLDER
     )
     assert found.failure == "FileNotFoundError: '/data/of/ada/x.csv'"
 
 
-def test_a_goal_made_of_others_is_missed_for_the_reason_of_the_first_that_is() -> None:
+def test_a_combined_goal_is_missed_with_the_reason_of_its_first_missed_part() -> None:
     near = Goal("near", ReachCondition(x_mm=5))
     finish = Goal("finish", FinishCondition())
     both = Goal("both", AllOf(("near", "finish")))

@@ -18,7 +18,7 @@ def test_goal_statistics_count_who_met_them_and_why_others_missed() -> None:
     assert place.reasons[0] == ("it stopped 40 mm away", 3)
 
 
-def test_every_student_is_in_the_distribution_of_points() -> None:
+def test_the_distribution_of_points_counts_every_student() -> None:
     parts = compute_distribution(SHEET)
     assert sum(count for *_, count in parts) == len(SHEET.rows)
     assert parts[0][2] == 2 and parts[8] == (8.0, 9.0, 1) and parts[9] == (9.0, 10.0, 1)
@@ -35,7 +35,7 @@ def test_the_page_of_marks_shows_goal_statistics_and_similar_programs() -> None:
     )
 
 
-def test_a_class_of_one_has_no_statistics_of_points_and_resemblance() -> None:
+def test_the_page_of_a_class_of_one_has_no_statistics_and_no_similar_programs() -> None:
     page = build_page(
         build_sheet("", SHEET.columns, range(4), STUDENTS[:1], OUTCOMES),
         similar=find_similar({"ada": [LINE]}),

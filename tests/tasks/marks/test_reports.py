@@ -60,7 +60,9 @@ def report(tmp_path: Path, here: Command) -> str:
     return (tmp_path / "marks-runs" / "ada-seed-0.html").read_text()
 
 
-def test_goals_are_told_with_result_place_reason_and_points(report: str, tmp_path: Path) -> None:
+def test_a_marked_runs_report_lists_goals_with_result_reason_and_points(
+    report: str, tmp_path: Path
+) -> None:
     (section,) = re.findall("<h2>Goals</h2>.*?</section>", report, re.DOTALL)
     rows = [re.findall("<td[^>]*>(.*?)</td>", row) for row in section.split("</tr>")[1:-1]]
     words = [
@@ -90,7 +92,7 @@ def test_goals_are_told_with_result_place_reason_and_points(report: str, tmp_pat
 
 
 @pytest.mark.slow
-def test_a_movie_of_a_run_that_missed_a_goal_has_the_goals_on_it(
+def test_the_movie_of_a_run_that_missed_a_goal_shows_the_goals_places(
     report: str, tmp_path: Path, here: Command
 ) -> None:
     (tmp_path / "class" / "right.py").write_text("tank_drive.on_for_rotations(50, 50, 1)\n")

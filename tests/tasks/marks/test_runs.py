@@ -102,7 +102,9 @@ def _mark(folder: Path, here: Command, *names: str) -> tuple[pd.DataFrame, dict[
 
 
 @pytest.mark.slow
-def test_what_fits_one_world_only_is_found_by_the_others(tmp_path: Path, here: Command) -> None:
+def test_a_program_that_fits_only_one_world_loses_points_in_the_others(
+    tmp_path: Path, here: Command
+) -> None:
     marks, told = _mark(tmp_path, here, "right", "learnt", "tells")
     points = marks[["points", "robustness", "goal_black", "goal_said", "goal_quick"]]
     assert points.loc["right"].tolist() == [6, 1, 3, 1, 2]
@@ -129,7 +131,7 @@ def test_what_fits_one_world_only_is_found_by_the_others(tmp_path: Path, here: C
 
 
 @pytest.mark.slow
-def test_a_program_that_does_not_end_in_another_world_loses_what_counts_there(
+def test_a_program_that_does_not_end_in_a_world_loses_that_worlds_points(
     tmp_path: Path, here: Command
 ) -> None:
     marks, told = _mark(tmp_path, here, "hangs")
@@ -141,7 +143,9 @@ def test_a_program_that_does_not_end_in_another_world_loses_what_counts_there(
 
 
 @pytest.mark.slow
-def test_a_program_that_hangs_at_its_end_leaves_no_run_out(tmp_path: Path, here: Command) -> None:
+def test_a_program_that_hangs_at_its_end_is_still_run_in_every_world(
+    tmp_path: Path, here: Command
+) -> None:
     """What fits the known world only would not be seen otherwise."""
     marks, _ = _mark(tmp_path, here, "dies")
     assert (marks["points"]["dies"], marks["robustness"]["dies"]) == (1, 0)
@@ -180,7 +184,7 @@ print("Far:", 95 + far_mm)
 """
 
 
-def test_without_a_world_of_the_task_a_hand_presses_as_the_program_says(
+def test_in_a_task_without_a_world_presses_planned_by_the_program_happen(
     tmp_path: Path, here: Command
 ) -> None:
     (tmp_path / "class").mkdir()

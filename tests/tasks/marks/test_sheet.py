@@ -68,7 +68,7 @@ OUTCOMES = {
 SHEET = build_sheet("Grey bands", COLUMNS, range(4), STUDENTS, OUTCOMES)
 
 
-def test_a_row_has_mean_points_robustness_and_the_first_failure() -> None:
+def test_a_students_row_has_mean_points_robustness_and_the_first_failure() -> None:
     found = {
         row.name: (row.points, row.robustness, row.reason, row.line, row.seed, row.runs)
         for row in SHEET.rows
@@ -101,7 +101,7 @@ def test_in_a_task_without_points_a_run_is_complete_if_it_meets_every_goal() -> 
 @pytest.mark.parametrize(
     "place, hit, points", [(True, False, 7), (True, True, 5), (False, True, 0)]
 )
-def test_points_that_are_taken_off_never_leave_less_than_none(
+def test_deducted_points_never_make_the_total_negative(
     place: bool, hit: bool, points: float
 ) -> None:
     columns = (COLUMNS[0], Goal("hit", FinishCondition(), "Hit the wall.", -2.0))
@@ -138,7 +138,7 @@ def _unjudged_sheet() -> Sheet:
     return build_sheet("", COLUMNS, range(1), STUDENTS[:3], outcomes, ("", "a", "b"))
 
 
-def test_what_could_not_be_judged_has_no_points() -> None:
+def test_a_student_who_could_not_be_judged_has_no_points_but_a_question_mark() -> None:
     sheet = _unjudged_sheet()
     table = [row[1:5] for row in sheet.tabulate()[1]]
     assert table == [["?", "0%", "?", "3"], ["3", "0%", "0", "3"], ["?", "0%", "?", "3"]]
@@ -158,7 +158,7 @@ def test_a_gradebook_has_no_number_for_what_could_not_be_judged(tmp_path: Path) 
     assert ends == [["", "", "3"], ["3", "0", "3"], ["", "", "3"]]
 
 
-def test_a_table_has_a_column_a_goal_and_names_the_line() -> None:
+def test_the_table_of_marks_has_a_column_for_each_goal_and_names_the_failing_line() -> None:
     heads, rows = SHEET.tabulate()
     assert heads == ["student", "points", "robustness", "place", "wall", "reason"]
     assert rows[:3] == [
@@ -256,7 +256,7 @@ class _Elements(HTMLParser):
         self.found.append((tag, dict(attrs)))
 
 
-def test_nothing_of_a_student_becomes_html() -> None:
+def test_text_of_a_student_is_escaped_in_the_page_of_marks() -> None:
     links = {(EVIL, "", 0): 'class-runs/"><script>.html'}
     page = build_page(SHEET, links, ignored=("<script>alert(3)</script>.doc",))
     elements = _Elements(page).found
@@ -270,14 +270,14 @@ def test_nothing_of_a_student_becomes_html() -> None:
     assert "&lt;script&gt;alert(1)" in page and not re.search(r"[\x00-\x08\x0b-\x1f\x7f]", page)
 
 
-def test_the_page_shows_each_student_and_the_line() -> None:
+def test_the_page_of_marks_shows_each_student_and_the_failing_line() -> None:
     page = build_page(SHEET)
     assert all(f'scope="row">{name}<' in page for name in ("ada", "ben", "cleo", "empty"))
     assert "line 2: <code>stop()  # &lt;b&gt;too late&lt;/b&gt;</code>" in page
     assert page.count("not run with further seeds") == 1
 
 
-def test_seeds_with_equal_recordings_share_a_link() -> None:
+def test_seeds_with_equal_recordings_share_a_link_in_the_page_of_marks() -> None:
     links = {
         ("ben", "", seed): f"runs/{'first' if seed in (0, 1, 3) else 'other'}.html"
         for seed in range(4)
@@ -286,7 +286,7 @@ def test_seeds_with_equal_recordings_share_a_link() -> None:
     assert '<a href="runs/first.html">0–1, 3</a>, <a href="runs/other.html">2</a>' in page
 
 
-def test_feedback_says_what_was_met_missed_and_why() -> None:
+def test_a_students_feedback_says_which_goals_were_met_or_missed_and_why() -> None:
     text = build_feedback(SHEET, SHEET.rows[1], TEXT)
     assert text.splitlines() == [
         "ben: 8.25 of 10 points",
@@ -344,7 +344,7 @@ def test_files_of_the_longest_name_can_be_written(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
-def test_exports_of_equal_sheets_are_equal(tmp_path: Path, suffix: str) -> None:
+def test_exported_marks_do_not_depend_on_the_order_of_runs(tmp_path: Path, suffix: str) -> None:
     backwards = {name: list(reversed(found)) for name, found in OUTCOMES.items()}
     again = build_sheet("Grey bands", COLUMNS, range(4), STUDENTS, backwards)
     for name, sheet in (("first", SHEET), ("second", again)):
@@ -353,7 +353,7 @@ def test_exports_of_equal_sheets_are_equal(tmp_path: Path, suffix: str) -> None:
     assert first == second and len(first) > 100
 
 
-def test_a_frame_has_a_row_a_student_and_a_column_a_goal() -> None:
+def test_the_frame_of_marks_has_a_row_for_each_student_and_a_column_for_each_goal() -> None:
     frame = SHEET.build_frame()
     assert list(frame.columns) == [
         "student",
@@ -373,7 +373,7 @@ def test_a_frame_has_a_row_a_student_and_a_column_a_goal() -> None:
     assert frame.loc[1, ["student", "points", "goal_place"]].tolist() == ["ben", 8.25, 5.25]
 
 
-def test_a_class_that_was_interrupted_has_rows_without_runs() -> None:
+def test_an_interrupted_marking_lists_students_without_runs_as_not_run() -> None:
     sheet: Sheet = build_sheet("", COLUMNS, range(4), STUDENTS[:2], {"ada": OUTCOMES["ada"][:2]})
     assert [(row.points, row.runs, row.reason) for row in sheet.rows] == [
         (10.0, 2, ""),
@@ -381,7 +381,7 @@ def test_a_class_that_was_interrupted_has_rows_without_runs() -> None:
     ]
 
 
-def test_a_run_that_this_machine_could_not_make_says_nothing_about_the_student() -> None:
+def test_a_run_that_this_machine_could_not_start_does_not_lower_a_students_mark() -> None:
     outcomes = {
         "ada": [*OUTCOMES["ada"], Outcome(4, "", "too many open files")],
         "ben": [Outcome(0, "", "no space")],
@@ -400,7 +400,9 @@ def test_a_run_that_this_machine_could_not_make_says_nothing_about_the_student()
         Outcome(4, "", "could not be judged: OverflowError: inf"),
     ],
 )
-def test_who_could_choose_which_runs_count_has_no_points(missing: Outcome) -> None:
+def test_a_student_whose_program_could_choose_which_runs_count_gets_no_points(
+    missing: Outcome,
+) -> None:
     earlier = [*OUTCOMES["ada"], Outcome(5, "", "too many open files")]
     sheet = build_sheet("", COLUMNS, range(6), STUDENTS[:1], {"ada": [*earlier, missing]})
     (row,) = sheet.rows
@@ -408,7 +410,7 @@ def test_who_could_choose_which_runs_count_has_no_points(missing: Outcome) -> No
     assert (format_points(row.points), row.reason) == ("?", f"could not be judged: {why}")
 
 
-def test_a_run_of_which_nothing_is_recorded_has_no_points_and_says_why() -> None:
+def test_a_run_without_any_recording_gets_no_points_and_a_reason() -> None:
     sheet: Sheet = build_sheet(
         "", COLUMNS, range(1), STUDENTS[:1], {"ada": [Outcome(0, "crashed", "it is damaged")]}
     )

@@ -74,14 +74,14 @@ CASES = {
 
 
 @cases("files, program, main, problem", CASES)
-def test_main_program_of_a_folder(
+def test_the_main_program_of_a_students_folder_is_found(
     tmp_path: Path, files: tuple[str, ...], program: str, main: str, problem: str
 ) -> None:
     (found,) = find_students([str(_folder(tmp_path, *files))], program).students
     assert (found.name, found.main, found.problem) == ("ada", main, problem)
 
 
-def test_archives_and_texts_among_the_files_are_students_without_points(tmp_path: Path) -> None:
+def test_archives_and_text_files_are_listed_as_students_with_a_problem(tmp_path: Path) -> None:
     found = find_students(
         [str(_folder(tmp_path, "ada.zip", "ben.py.txt", "cleo.tar.gz", "dora.py", "list.txt"))]
     )
@@ -118,7 +118,7 @@ def test_a_notebook_is_a_program(tmp_path: Path) -> None:
     assert (program.path, program.module_folder) == ("", str(folder))
 
 
-def test_a_folder_with_a_main_program_and_a_file_are_students_themselves(tmp_path: Path) -> None:
+def test_a_folder_or_file_named_directly_is_a_student(tmp_path: Path) -> None:
     folder = _folder(tmp_path, "ada/main.py", "ada/helper.py", "ben.py")
     found = find_students([str(folder / "ada"), str(folder / "ben.py")])
     assert [one.name for one in found.students] == ["ada", "ben"]
@@ -147,7 +147,7 @@ def test_a_file_keeps_its_ending_where_a_neighbour_has_its_name(tmp_path: Path) 
     ]
 
 
-def test_hidden_files_and_results_are_no_students(tmp_path: Path) -> None:
+def test_hidden_files_and_results_of_marking_are_not_taken_for_students(tmp_path: Path) -> None:
     folder = _folder(
         tmp_path, "ada.py", ".hidden.py", "__pycache__/x.py", "feedback/ada.txt", "slides.odp"
     )
@@ -155,7 +155,7 @@ def test_hidden_files_and_results_are_no_students(tmp_path: Path) -> None:
     assert ([one.name for one in found.students], found.ignored) == (["ada"], ("slides.odp",))
 
 
-def test_what_is_no_file_or_has_an_odd_name_affects_its_own_row_only(tmp_path: Path) -> None:
+def test_pipes_devices_and_odd_names_affect_only_their_own_row(tmp_path: Path) -> None:
     folder = _folder(tmp_path, "ada.py")
     os.mkfifo(folder / "pipe.py")
     (folder / "loop.py").symlink_to("loop.py")
@@ -190,7 +190,7 @@ def test_a_program_sees_a_copy_of_its_own_files_only(tmp_path: Path) -> None:
     assert [path.name for path in copy_files(ben, tmp_path / "1").iterdir()] == ["ben.py"]
 
 
-def test_a_digest_changes_with_every_file(tmp_path: Path) -> None:
+def test_a_students_digest_changes_with_each_of_the_files(tmp_path: Path) -> None:
     folder = _folder(tmp_path, "ada/main.py", "ada/data/hops.csv")
     (ada,) = find_students([str(folder)]).students
     before = compute_digest(ada)
@@ -247,7 +247,7 @@ LINKS = {
 
 @cases("link, target, problem", LINKS)
 @pytest.mark.parametrize("by_name", [False, True], ids=["in a class", "by name"])
-def test_a_link_out_of_the_folder_is_refused_by_name(
+def test_a_link_out_of_a_students_folder_is_refused_by_name(
     tmp_path: Path, link: str, target: str, problem: str, by_name: bool
 ) -> None:
     folder = _folder(tmp_path, "ada.py", "eve/main.py" if link.startswith("eve/") else "ben.py")
@@ -299,7 +299,7 @@ def test_a_folder_that_cannot_be_copied_is_refused(
     assert (student.problem, student.source) == (problem, None)
 
 
-def test_a_link_inside_the_folder_is_the_students_own(tmp_path: Path) -> None:
+def test_a_link_inside_a_students_folder_is_followed(tmp_path: Path) -> None:
     folder = _folder(tmp_path, "ada/code/robot.py")
     (folder / "ada" / "main.py").symlink_to("code/robot.py")
     (found,) = find_students([str(folder)]).students
@@ -334,7 +334,7 @@ def test_a_magic_line_of_a_file_may_not_name_what_is_another_students(
     assert bool(find_outside_option(ada)) == is_refused
 
 
-def test_a_program_that_is_a_file_gets_nothing_from_the_programs_beside_it(tmp_path: Path) -> None:
+def test_a_students_single_file_cannot_import_other_students_programs(tmp_path: Path) -> None:
     folder = _folder(tmp_path, "ada.py", "ben.py")
     (folder / "ada.py").write_text(
         "try:\n    from ben import *\nexcept ImportError:\n    pass\nprint(1)\n"

@@ -30,7 +30,7 @@ def _until(is_true: Callable[[], bool]) -> None:
         time.sleep(0.01)
 
 
-def test_stopped_processes_go_on_at_the_second_look() -> None:
+def test_the_supervisor_resumes_processes_found_stopped_twice() -> None:
     command = [sys.executable, "-c", STOPPED_CHILD]
     with subprocess.Popen(command, stdout=subprocess.PIPE, start_new_session=True) as parent:
         try:
@@ -66,7 +66,7 @@ with keep_running():
 """
 
 
-def test_a_command_that_was_stopped_goes_on_and_leaves_no_supervisor() -> None:
+def test_a_marking_stopped_by_a_program_is_resumed_and_leaves_no_supervisor() -> None:
     done = subprocess.run(
         [sys.executable, "-c", SUPERVISED], capture_output=True, text=True, timeout=PATIENCE_S
     )
@@ -83,7 +83,7 @@ with keep_running():
 """
 
 
-def test_a_command_that_the_user_suspends_stays_so() -> None:
+def test_a_marking_that_the_user_suspends_stays_suspended() -> None:
     with subprocess.Popen(
         [sys.executable, "-c", SUSPENDED], stdout=subprocess.PIPE, start_new_session=True
     ) as process:
@@ -100,7 +100,7 @@ def test_a_command_that_the_user_suspends_stays_so() -> None:
             os.killpg(process.pid, signal.SIGKILL)
 
 
-def test_a_machine_that_can_start_no_more_processes_is_told(
+def test_marking_says_so_if_the_supervisor_cannot_be_started(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def refuse(*words: object, **more: object) -> None:

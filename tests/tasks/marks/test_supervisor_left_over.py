@@ -84,7 +84,9 @@ def program(text: str, file: Path, then: str) -> str:
 @pytest.mark.quick_cases("command-False")
 @pytest.mark.parametrize("live", [False, True])
 @pytest.mark.parametrize("name", LEFT)
-def test_nothing_is_left_after_the_end(start: Start, file: Path, name: str, live: bool) -> None:
+def test_no_process_of_a_program_is_left_after_its_end(
+    start: Start, file: Path, name: str, live: bool
+) -> None:
     done = over(start(program(LEFT[name], file, ""), prelude="none", live=live, time_limit_s=0.0))
     assert (done.ended.end, done.lines) == ("finished", ["A: 1"])
     assert gone(left(file))
@@ -93,7 +95,9 @@ def test_nothing_is_left_after_the_end(start: Start, file: Path, name: str, live
 @pytest.mark.quick_cases("session-kill")
 @pytest.mark.parametrize("how", ["stop", "kill"])
 @pytest.mark.parametrize("name", LEFT)
-def test_nothing_is_left_after_a_stop(start: Start, file: Path, name: str, how: str) -> None:
+def test_no_process_of_a_program_is_left_after_a_stop(
+    start: Start, file: Path, name: str, how: str
+) -> None:
     seen: list[Ended] = []
     handle = start(
         program(LEFT[name], file, "while True: time.sleep(1)"), prelude="none", live=True
@@ -108,7 +112,7 @@ def test_nothing_is_left_after_a_stop(start: Start, file: Path, name: str, how: 
     assert gone(left(file))
 
 
-def test_what_shares_the_session_ends_with_the_host(file: Path, tmp_path: Path) -> None:
+def test_processes_that_a_program_forked_end_with_the_host(file: Path, tmp_path: Path) -> None:
     (tmp_path / "p.py").write_text(program(LEFT["fork"], file, "while True: time.sleep(1)"))
     words = [sys.executable, "-m", "tuisim", "run", "p.py", "--speed", "1"]
     host = subprocess.Popen(

@@ -27,7 +27,7 @@ def lost_in(run: StoredRun) -> list[Reason]:
 
 @pytest.mark.quick_cases("log_greys", "until_black")
 @pytest.mark.parametrize("path", EXAMPLES, ids=[path.stem for path in EXAMPLES])
-def test_no_example_has_a_reason(
+def test_no_example_program_is_said_to_have_gone_wrong(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # One of them writes a file.
@@ -37,7 +37,7 @@ def test_no_example_has_a_reason(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", find_lesson_paths())
-def test_no_model_answer_of_a_lesson_has_lost_or_blocked_anything(name: str) -> None:
+def test_no_model_answer_of_a_lesson_is_said_to_have_lost_the_line(name: str) -> None:
     lesson = load_lesson(find_lesson_paths()[name])
     for trial in list_trials(lesson):
         if trial.passes:
@@ -126,7 +126,7 @@ WRONG = {
 
 @pytest.mark.quick_cases("edge", "stays inside")
 @pytest.mark.parametrize("name", GOOD)
-def test_who_follows_a_line_or_none_has_lost_none(name: str) -> None:
+def test_a_robot_that_follows_its_line_is_not_said_to_have_lost_it(name: str) -> None:
     assert lost_in(run_text(GOOD[name])) == []
 
 
@@ -139,7 +139,7 @@ def test_a_wrong_program_is_told_where_it_lost_the_line(name: str) -> None:
     assert first.words.startswith(time_s)
 
 
-def test_what_was_lost_and_seen_again_is_told_with_the_time() -> None:
+def test_a_line_lost_and_seen_again_is_told_with_the_time() -> None:
     text = EDGE.format(seconds=18, left=20, right=5)
     reason = lost_in(run_text(text))[0]
     assert "saw it again after" in reason.text
@@ -150,7 +150,7 @@ def test_what_was_lost_and_seen_again_is_told_with_the_time() -> None:
     "gaps_s, losses",
     [((1.4,), 0), ((1.6,), 1), ((0.6, 1.7), 0), ((0.5, 1.7), 1), ((1.6, 1.7), 1), ((1.6, 5.0), 2)],
 )
-def test_a_loss_is_three_times_longer_than_any_before(
+def test_a_line_counts_as_lost_after_a_gap_three_times_longer_than_before(
     gaps_s: tuple[float, ...], losses: int
 ) -> None:
     # A robot that moves all the time, over the dark for a second before each gap.

@@ -180,7 +180,7 @@ def test_a_reason_says_when_at_which_line_and_why(name: str) -> None:
         "a whole rotation": "tank_drive.on_for_rotations(30, -30, 1)\n",
     },
 )
-def test_a_turn_that_is_meant_is_no_reason(text: str) -> None:
+def test_a_turn_that_is_meant_is_not_called_wrong(text: str) -> None:
     assert find_reasons(run_text(text)) == ()
 
 
@@ -219,7 +219,7 @@ def test_a_wrong_turn_comes_before_the_wall_to_which_it_led() -> None:
     assert [reason.kind for reason in reasons] == [ReasonKind.MISTAKEN, ReasonKind.BLOCKED]
 
 
-def test_a_line_that_was_seen_again_led_to_nothing_later() -> None:
+def test_a_lost_line_that_was_seen_again_is_no_cause_of_later_errors() -> None:
     wall = Reason(ReasonKind.BLOCKED, 6.0, 0, "the robot stood at the wall")
     error = Reason(ReasonKind.RAISED, 8.0, 0, "NameError")
     later = Reason(ReasonKind.MISTAKEN, 7.0, 0, "this line turned the robot by 28°")
@@ -277,13 +277,13 @@ def test_a_run_that_met_its_goals_has_lost_nothing_and_a_missed_goal_follows_its
     ]
 
 
-def test_without_a_line_only_the_time_is_told() -> None:
+def test_a_reason_without_a_program_line_names_only_the_time() -> None:
     assert (
         Reason(ReasonKind.MISSED, 3.0, 0, "a goal was missed").words == "3.00 s: a goal was missed"
     )
 
 
-def test_readings_that_came_while_a_run_was_looked_at_are_no_fault(
+def test_searching_reasons_of_a_growing_run_ignores_newer_readings(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     run = run_text(WRONG_SIGN)

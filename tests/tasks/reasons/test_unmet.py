@@ -91,13 +91,13 @@ RIGHT = {
 
 
 @cases("text", RIGHT)
-def test_a_program_that_does_what_it_should_waits_for_nothing(text: str) -> None:
+def test_no_wait_in_vain_is_found_in_a_program_that_works(text: str) -> None:
     run = load(text)
     assert find_unmet(run) is None
     assert find_near_miss(run) is None
 
 
-def test_a_level_that_is_a_little_too_low_just_misses_a_band() -> None:
+def test_a_reading_that_just_misses_the_level_waited_for_is_named() -> None:
     text = f"{DRIVES}while {LIGHT} > 50:\n    pass\ntank_drive.off()\n"
     miss = find_near_miss(load(text))
     assert miss is not None
@@ -110,7 +110,7 @@ SELDOM = f"{FAST}while {LIGHT} > {{limit}}:\n    print({LIGHT})\n    time.sleep(
 SKIP = "at 3.61 s, but the program read it only at 3.07 s and 4.09 s: line 6 takes too long"
 
 
-def test_a_band_between_two_reads_is_told() -> None:
+def test_a_band_crossed_between_two_readings_is_told() -> None:
     miss = find_near_miss(load(SELDOM.format(limit=10, pause=1)))
     assert miss is not None
     assert (
@@ -144,7 +144,7 @@ for side in range(3):
 """
 
 
-def test_a_turn_to_a_constant_that_the_text_does_not_show_has_no_reason_and_no_error() -> None:
+def test_a_turn_to_a_class_constant_gives_no_reason_and_no_error() -> None:
     text = "class Turn:\n    ANGLE = 90\n" + SQUARE.replace("< 90", "< Turn.ANGLE")
     assert find_stale_angle(load(text)) is None
 
@@ -244,7 +244,7 @@ while left.angle() > -9999:
         ),
     },
 )
-def test_waits_of_other_libraries_are_found(text: str, words: str) -> None:
+def test_waits_in_vain_of_programs_in_other_libraries_are_found(text: str, words: str) -> None:
     wait = find_unmet(load(text))
     assert wait is not None
     assert wait.text.startswith(words)
@@ -275,7 +275,7 @@ EARLY = {
 
 
 @cases("text, words", EARLY)
-def test_a_program_that_is_over_at_once_says_why(text: str, words: str) -> None:
+def test_the_reason_why_a_program_ended_at_once_is_told(text: str, words: str) -> None:
     early = find_early_end(load(text))
     assert early is not None
     assert words in early.text
@@ -291,15 +291,15 @@ def test_a_program_that_is_over_at_once_says_why(text: str, words: str) -> None:
         "from ev3dev2.motor import MediumMotor\nMediumMotor('outA').on_for_degrees(50, 60)\n",
     ],
 )
-def test_a_program_that_drives_no_motor_or_far_enough_is_not_over_early(text: str) -> None:
+def test_a_program_that_drove_far_enough_is_not_said_to_end_early(text: str) -> None:
     assert find_early_end(load(text)) is None
 
 
-def test_a_short_wait_is_not_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_short_wait_is_not_reported_as_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
     run = load(VAIN["at rest"][0])
     monkeypatch.setattr(unmet, "_MIN_STAY_S", 31.0)
     assert find_unmet(run) is None
 
 
-def test_light_with_noise_is_not_measured_again() -> None:
+def test_no_wait_in_vain_is_reported_for_light_with_noise() -> None:
     assert find_unmet(load(VAIN["equality"][0].replace("bands", "bands -N 5"))) is None

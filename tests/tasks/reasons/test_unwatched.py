@@ -45,7 +45,7 @@ def list_unwatched(text: str) -> list[str]:
     ],
     ids=["percent", "colour"],
 )
-def test_a_line_that_keeps_the_program_from_looking_is_named(
+def test_a_call_that_kept_the_program_from_reading_the_line_is_named(
     home: object, text: str, words: str
 ) -> None:
     assert list_unwatched(text) == [words]
@@ -64,7 +64,7 @@ def test_a_line_that_keeps_the_program_from_looking_is_named(
     ],
     ids=["short moves", "a colour in time", "a sensor that decides nothing"],
 )
-def test_a_program_that_looks_in_time_or_decides_nothing_is_not_blamed(
+def test_a_program_that_reads_often_enough_is_not_blamed_for_losing_the_line(
     home: object, text: str
 ) -> None:
     assert list_unwatched(text) == []

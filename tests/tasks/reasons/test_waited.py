@@ -187,7 +187,7 @@ GUARDED = "while not ts.is_pressed:\n    print(us.distance_centimeters)\n    sle
         (f"{GUARDED}tank.on(50, 50)", False, True),
     ],
 )
-def test_logging_and_playing_until_something_is_pressed_is_no_wait(
+def test_a_program_that_logs_or_plays_sounds_is_not_said_to_wait_for_a_press(
     record: Record, text: str, sounds: bool, is_told: bool
 ) -> None:
     recorder = record(SPEC, text=text)
@@ -201,13 +201,15 @@ def test_logging_and_playing_until_something_is_pressed_is_no_wait(
     assert bool(touched) is is_told
 
 
-def test_a_button_that_ends_a_program_is_pressed_last(record: Record) -> None:
+def test_of_several_awaited_buttons_the_one_that_ends_the_program_is_advised_last(
+    record: Record,
+) -> None:
     recorder = record(SPEC, text="while not btn.backspace and not btn.up:\n    go()\nrun()")
     poll(recorder, "buttons", "pressed", line=1)
     assert find_awaited(recorder.end(End.TIME_LIMIT))[0].sought == ("up", "backspace")
 
 
-def test_without_a_record_of_readings_nothing_is_said(record: Record) -> None:
+def test_without_recorded_readings_nothing_is_said_about_a_wait(record: Record) -> None:
     recorder = record(SPEC)
     poll(recorder, "in1", "TOUCH")
     run = recorder.end(End.TIME_LIMIT)

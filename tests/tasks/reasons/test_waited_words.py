@@ -164,7 +164,7 @@ PROGRAMS = {
 
 
 @cases("text, sentence", PROGRAMS)
-def test_the_last_line_and_json_say_what_was_waited_for(
+def test_the_last_line_and_json_of_run_say_what_the_program_waited_for(
     tmp_path: Path, here: Command, text: str, sentence: str
 ) -> None:
     (tmp_path / "prog.py").write_text(text)
@@ -227,7 +227,7 @@ GIVEN = {
 
 
 @cases("text, options", GIVEN)
-def test_what_the_sentence_advises_ends_the_wait(
+def test_the_option_advised_for_a_wait_ends_it(
     tmp_path: Path, here: Command, text: str, options: str
 ) -> None:
     (tmp_path / "prog.py").write_text(text)
@@ -343,7 +343,7 @@ def test_a_reading_that_never_came_is_named_with_how_near_it_came(
 
 
 @pytest.mark.slow
-def test_a_program_that_reads_on_thousands_of_lines_is_told_by_its_readings(
+def test_a_wait_spread_over_thousands_of_lines_is_found_by_its_readings(
     tmp_path: Path, here: Command
 ) -> None:
     lines = "    v = us.distance_centimeters\n    if v < 5: v = 1\n" * 1500
@@ -358,7 +358,7 @@ def test_a_gamepad_that_never_comes_is_named(tmp_path: Path, here: Command) -> N
     assert facts["waited_for"].startswith("looked for a gamepad 7 times, none is simulated: ")
 
 
-def test_a_menu_of_which_one_button_was_pressed_waits_for_the_others(
+def test_a_menu_after_one_press_is_said_to_wait_for_the_other_buttons(
     tmp_path: Path, here: Command
 ) -> None:
     (tmp_path / "prog.py").write_text(MENU)
@@ -386,7 +386,9 @@ def test_a_batch_has_a_column_of_what_each_run_waited_for(tmp_path: Path, here: 
 
 
 @pytest.mark.parametrize("subject", Subject)
-def test_each_subject_of_a_wait_has_words(subject: Subject) -> None:
+def test_each_kind_of_awaited_sensor_or_press_has_a_sentence_and_an_advice(
+    subject: Subject,
+) -> None:
     port = "buttons" if subject is Subject.BUTTONS else "in4"
     awaited = Awaited(subject, port, 3, 0.5, 7, "12 cm")
     assert describe_awaited(awaited) and name_remedy(awaited, SPEC)
@@ -402,7 +404,7 @@ def test_the_key_of_a_controller_is_named_for_the_shell_and_for_the_app(
     assert f"the mouse presses {key}" in describe_wait_with_keys([awaited], SPEC)
 
 
-def test_buttons_that_are_asked_for_at_once_are_pressed_at_once() -> None:
+def test_buttons_awaited_together_are_advised_to_be_pressed_together() -> None:
     up = HandPress("up", 1.0, 1.1)
     left = HandPress("left", 3.0, 3.1)
     awaited = Awaited(
@@ -419,7 +421,7 @@ def test_buttons_that_are_asked_for_at_once_are_pressed_at_once() -> None:
     assert "shift with ↑ and ← holds up and left" in describe_wait_with_keys([awaited], SPEC)
 
 
-def test_a_run_that_took_as_long_as_in_reality_is_not_told_to() -> None:
+def test_a_live_run_that_waits_for_a_connection_is_not_advised_speed_1() -> None:
     awaited = Awaited(Subject.CONNECTION, "socket", 3, 0.5, 7)
     assert "--speed 1" in name_remedy(awaited, SPEC)
     assert "--speed" not in name_remedy(awaited, SPEC, is_live=True)
