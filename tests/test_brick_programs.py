@@ -62,7 +62,7 @@ while True:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("gain", [0.6, 1.0, 2.0])
-def test_a_p_controller_goes_round_the_loop(gain: float) -> None:
+def test_a_program_with_a_p_controller_follows_the_line_round_the_loop(gain: float) -> None:
     run = tuisim.simulate(
         f"KP = {gain}\n{P_LINE}", background="Loop", x=220, y=400, angle=90, timeout_s=40
     )

@@ -114,7 +114,7 @@ def test_program_that_raises_shows_its_own_lines_only_and_keeps_its_rows(
     assert len(pd.read_csv(tmp_path / "rows.csv")) == 5
 
 
-def test_a_program_may_bear_the_name_of_a_module_that_the_library_imports(
+def test_a_program_named_like_a_module_that_the_library_imports_runs(
     tmp_path: Path, here: Command
 ) -> None:
     (tmp_path / "beside.py").write_text("TIMES = 2\n")
@@ -167,7 +167,9 @@ def test_each_end_of_a_run_has_its_exit_code(
     assert "tuisim/" not in done.stderr
 
 
-def test_a_program_that_asks_is_told_how_it_gets_answers(tmp_path: Path, here: Command) -> None:
+def test_a_program_that_calls_input_without_answers_is_told_of_option_input(
+    tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "prog.py").write_text("input('? ')\n")
     assert "--input TEXT" in here("run", "prog.py").stderr
 
@@ -183,7 +185,7 @@ def test_several_programs_run_in_turn_into_one_log_and_the_worst_exit_code_count
     pd.testing.assert_frame_equal(frame, package.read_log(tmp_path / "all.parquet"))
 
 
-def test_command_line_wins_over_the_magic_line(tmp_path: Path, here: Command) -> None:
+def test_options_of_run_override_the_magic_line(tmp_path: Path, here: Command) -> None:
     (tmp_path / "prog.py").write_text(
         "%%sim_magic_preloaded -b Loop -x 700 -OHR\nprint(gyro.angle)\n"
     )
@@ -255,7 +257,7 @@ def test_help_and_version_are_printed_to_stdout(here: Command) -> None:
     assert here("--version").stdout == f"tuisim {package.__version__}\n"
 
 
-def test_our_own_mistake_is_one_line(
+def test_an_internal_error_of_tuisim_is_told_in_one_line(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def fail(words: object) -> int:
@@ -296,7 +298,7 @@ def start(folder: Path, *words: str) -> subprocess.Popen[str]:
 @pytest.mark.parametrize(
     "number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["ctrl-C", "terminate"]
 )
-def test_signal_stops_the_run_and_exports_its_rows(
+def test_a_signal_stops_the_run_and_exports_its_rows(
     number: signal.Signals, code: int, tmp_path: Path
 ) -> None:
     (tmp_path / "prog.py").write_text(FIVE + "while True:\n    pass\n")
@@ -313,7 +315,7 @@ def test_signal_stops_the_run_and_exports_its_rows(
 
 
 @pytest.mark.slow
-def test_closed_pipe_is_quiet_and_stops_the_run(tmp_path: Path) -> None:
+def test_a_closed_output_pipe_stops_the_run_without_a_message(tmp_path: Path) -> None:
     (tmp_path / "prog.py").write_text(
         "number = 0\nwhile True:\n    print(number)\n    number += 1\n"
     )

@@ -38,7 +38,7 @@ NOBODY = "~nobody-at-all/x"
         "kernel remove --prefix",
     ],
 )
-def test_a_word_that_can_be_no_file_is_refused(
+def test_a_word_that_cannot_be_a_file_name_is_refused_in_one_line(
     command: str, word: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = [*command.split(), word]

@@ -60,7 +60,7 @@ def test_a_program_cannot_import_the_simulators_modules_as_its_own(
 
 
 @pytest.mark.parametrize("allowed", [10, 14, 40])
-def test_too_few_open_files_are_told_in_a_sentence(
+def test_a_limit_of_too_few_open_files_is_told_in_one_sentence(
     tmp_path: Path, root: Path, allowed: int
 ) -> None:
     (tmp_path / "main.py").write_text("print('A: 1')")

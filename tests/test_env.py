@@ -32,7 +32,7 @@ TASKS = ("LineFollower", "Bands", "Obstacles")
 
 
 @pytest.mark.parametrize("task", TASKS)
-def test_gymnasium_finds_nothing_wrong(task: str) -> None:
+def test_gymnasiums_checker_accepts_the_environments(task: str) -> None:
     check_env(gymnasium.make(f"tuisim.env:tuisim/{task}-v0").unwrapped)
 
 
@@ -57,14 +57,14 @@ def test_a_gym_task_runs_on_any_mat(task: str, background: str) -> None:
         "Loop": (100, 100),
     }.items(),
 )
-def test_a_follower_begins_where_the_page_says(
+def test_the_line_follower_environment_starts_with_the_readings_of_the_page(
     background: str, lights: tuple[float, float]
 ) -> None:
     env = gymnasium.make("tuisim/LineFollower-v0", background=background)
     assert env.reset(seed=0)[0] == pytest.approx(lights, abs=0.5)
 
 
-def test_a_start_on_the_edge_of_a_line_is_seen_at_once() -> None:
+def test_a_start_on_a_lines_edge_shows_in_the_first_observation() -> None:
     world = tuisim.World(background="Loop", x=220, y=500, angle=90)
     env = gymnasium.make("tuisim/LineFollower-v0", world=world)
     assert env.reset(seed=0)[0] == pytest.approx((46.7, 0), abs=0.1)
@@ -89,11 +89,11 @@ def test_the_gym_environment_gives_the_same_episode_for_the_same_seed() -> None:
 
 
 @pytest.mark.slow
-def test_a_thousand_seeds_give_the_same_episodes() -> None:
+def test_a_thousand_seeds_each_give_the_same_episode_twice() -> None:
     assert _is_repeated(1000)
 
 
-def test_the_follower_ends_off_the_mat_and_shows_itself() -> None:
+def test_the_line_follower_episode_ends_off_the_mat_and_can_be_rendered() -> None:
     world = tuisim.World(background="Loop", x=2300, y=500, angle=0)
     env = gymnasium.make("tuisim/LineFollower-v0", world=world, render_mode="rgb_array")
     env.reset(seed=0)
@@ -126,7 +126,7 @@ def test_functions_given_to_the_environment_set_reward_and_end() -> None:
     assert observation.tolist() == pytest.approx([values["left_red_pc"]])
 
 
-def test_a_reward_that_is_no_number_is_refused_by_its_name() -> None:
+def test_a_reward_function_that_returns_no_number_is_refused_by_name() -> None:
     env = LabEnv("x_mm", lambda before, after: None)  # type: ignore[arg-type, return-value]
     env.reset(seed=0)
     with pytest.raises(ConfigError, match="reward: must return a number, got None"):
@@ -172,11 +172,13 @@ def test_goals_given_to_the_environment_set_reward_and_end(
         "reward": ({"reward": len}, r"called as reward\(before, after\), and len takes others"),
     },
 )
-def test_a_wrong_task_is_refused_when_it_is_made(given: dict[str, Any], words: str) -> None:
+def test_wrong_arguments_of_a_gym_environment_are_refused_when_it_is_created(
+    given: dict[str, Any], words: str
+) -> None:
     with pytest.raises(ConfigError, match=words):
         gymnasium.make("tuisim/Goals-v0", columns=("x_mm",), goals="goals.toml", **given)
 
 
-def test_the_task_of_goals_needs_goals() -> None:
+def test_the_gym_environment_of_goals_is_refused_without_goals() -> None:
     with pytest.raises(TypeError, match="argument: 'goals'"):
         gymnasium.make("tuisim/Goals-v0", columns=("x_mm",))

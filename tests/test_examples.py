@@ -48,12 +48,12 @@ RUNS = [
 """Each example under the profiles of its library."""
 
 
-def test_every_example_is_in_the_table() -> None:
+def test_every_example_program_is_in_the_tests_table() -> None:
     assert sorted(EXAMPLES) == [program.name for program in list_programs()]
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_an_example_has_a_title_and_its_mat(name: str) -> None:
+def test_each_example_program_has_a_title_and_runs_on_its_mat(name: str) -> None:
     path = ROOT / "programs" / name
     title = next(program.title for program in list_programs() if program.name == name)
     assert title.endswith(".")
@@ -137,12 +137,14 @@ def test_pybricks_line_follower_stays_on_the_stick(here: Command) -> None:
     assert facts["heading_deg"] == pytest.approx(-360, abs=5)
 
 
-def test_the_mission_of_another_button_is_to_go_round_the_corner(here: Command) -> None:
+def test_the_example_pybricks_mission_drives_round_the_corner_with_the_right_button(
+    here: Command,
+) -> None:
     corner = here("run", "pybricks_mission", "--press", "right@1")
     assert corner.stdout == "Gyro: 0\n"
 
 
-def test_pybricks_data_log_has_a_row_for_each_sample_but_the_last(
+def test_the_file_of_pybricks_data_log_has_a_row_for_each_sample_but_the_last(
     tmp_path: Path, here: Command
 ) -> None:
     printed = here("run", "pybricks_data_log").stdout.splitlines()

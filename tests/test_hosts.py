@@ -19,7 +19,7 @@ CODES = {"run": 1, "batch": 1}
 @pytest.mark.parametrize(
     "host", [pytest.param(host, marks=[pytest.mark.slow] * (host in SLOW)) for host in HOSTS]
 )
-def test_an_enemy_affects_its_own_run_only(host: str, tmp_path: Path) -> None:
+def test_a_hostile_program_affects_only_its_own_run(host: str, tmp_path: Path) -> None:
     found = hosted(host, PROGRAMS, tmp_path / "place")
     assert [found.runs[name].end for name in PROGRAMS] == ["finished", "falsified", "finished"]
     assert found.runs["ada"] == found.runs["zoe"]

@@ -107,7 +107,7 @@ CASES: Mapping[str, Case] = {
 """Those from 41 on are by somebody who knew the library's documentation, and nothing of tuisim."""
 
 
-def test_every_program_is_in_the_table() -> None:
+def test_every_pybricks_test_program_is_in_the_table() -> None:
     assert [*CASES] == names_in(FOLDER)
 
 

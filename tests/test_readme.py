@@ -67,7 +67,7 @@ def test_every_sensor_of_a_robot_file_is_documented() -> None:
     assert [key for key, place in found.items() if place is None] == []
 
 
-def test_places_to_add_things_exist() -> None:
+def test_places_named_in_the_docs_for_adding_things_exist() -> None:
     sources = [*(ROOT / "tuisim").rglob("*.py"), *(ROOT / "backgrounds").glob("*.py")]
     code = "\n".join(path.read_text(encoding="utf-8") for path in sources)
     assert len(HOW_TO_ADD) > 8
@@ -89,7 +89,7 @@ def block(language: str, holding: str) -> str:
     return str(found)
 
 
-def test_a_students_first_program_runs_also_with_a_robot_of_ones_own(
+def test_the_readmes_first_program_runs_also_with_the_readmes_robot_file(
     tmp_path: Path, here: Command
 ) -> None:
     (tmp_path / "my_program.py").write_text(
@@ -101,7 +101,7 @@ def test_a_students_first_program_runs_also_with_a_robot_of_ones_own(
         assert (done.returncode, done.stdout.splitlines()[0]) == (0, "Colour: 100.0"), done.stderr
 
 
-def test_logs_and_runs_are_read_as_documented(tmp_path: Path, here: Command) -> None:
+def test_the_readmes_code_for_reading_logs_and_runs_works(tmp_path: Path, here: Command) -> None:
     assert (
         here("run", "log_greys", "--export", "greys.csv", "--export", "greys.jsonl").returncode == 0
     )

@@ -330,7 +330,7 @@ def mechanics_of(robot: RobotSpec) -> dict[str, object]:
     return found
 
 
-def test_every_program_is_in_the_table() -> None:
+def test_every_real_program_is_in_the_tests_table() -> None:
     # Of a folder, the program is the file that starts it.
     files = [
         path
@@ -341,7 +341,7 @@ def test_every_program_is_in_the_table() -> None:
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_the_robot_is_the_one_that_the_program_talks_about(name: str) -> None:
+def test_the_robot_built_for_a_real_program_has_the_parts_it_uses(name: str) -> None:
     facts = read_source_facts(read_program(file_of(name)).program)
     assert (facts.library is not None, facts.of_course) == (True, False)
     case = CASES[name]
@@ -385,7 +385,7 @@ def test_a_real_program_runs_the_same_with_its_robot_in_a_file(
 
 
 @pytest.mark.slow
-def test_a_gyro_upside_down_is_that_of_a_robot_with_swapped_sides(
+def test_swapping_the_robots_sides_works_like_an_upside_down_gyro(
     tmp_path: Path, here: Command
 ) -> None:
     program = file_of("blind/fetch_can")

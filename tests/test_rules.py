@@ -171,7 +171,7 @@ def large_functions(source: Source) -> Iterable[object]:
     ]
 
 
-def test_each_name_in_the_list_of_oversized_exists() -> None:
+def test_each_file_in_the_list_of_oversized_exists() -> None:
     names = {path.relative_to(ROOT).as_posix() for path in CODE}
     assert {
         name for kind in OVERSIZED.values() for name in kind if name.split(":")[0] not in names
@@ -386,7 +386,7 @@ MAY_REACH_TEXTUAL = [*TERMINAL, *python_files("tuisim/app"), *python_files("tuis
 OUTSIDE_TERMINAL = [path for path in PACKAGE if path not in TERMINAL]
 
 
-def test_the_surface_of_the_terminal_kit_is_small_and_documented() -> None:
+def test_the_terminal_package_exports_at_most_12_documented_names() -> None:
     assert len(terminal.__all__) <= 12
     assert all(import_module(f"tuisim.terminal.{name}").__doc__ for name in terminal.__all__)
 
@@ -447,7 +447,7 @@ def test_names_against_the_style_are_no_more_than_before() -> None:
     } == {}
 
 
-def test_nothing_else_is_tracked_at_the_top_level() -> None:
+def test_no_unknown_file_is_tracked_at_the_top_level() -> None:
     # In a copy without git, what is there was tracked.
     if (ROOT / ".git").exists():
         done = subprocess.run(
@@ -471,7 +471,7 @@ def test_every_name_that_a_room_exports_is_used_by_another_room() -> None:
     assert doors == used
 
 
-def test_imports_go_one_way(tmp_path: Path) -> None:
+def test_imports_between_rooms_go_one_way(tmp_path: Path) -> None:
     contracts = tmp_path / "contracts.toml"
     contracts.write_text(write_contracts(), encoding="utf-8")
     program = (

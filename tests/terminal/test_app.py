@@ -54,7 +54,7 @@ async def test_the_app_sends_only_changed_cells() -> None:
         assert "2" in changes and "left" not in changes and "right" not in changes
 
 
-async def test_everything_is_sent_again_when_it_may_have_been_written_over() -> None:
+async def test_the_app_sends_every_cell_again_after_a_forced_redraw() -> None:
     app = Plain()
     async with on_wire(app) as pilot:
         app.show("a line")
@@ -68,7 +68,7 @@ async def test_everything_is_sent_again_when_it_may_have_been_written_over() -> 
         assert "a line" in "".join(wire_of(pilot).sent)
 
 
-async def test_letters_are_typed_into_a_field_that_has_the_focus() -> None:
+async def test_is_typed_into_is_true_only_while_an_input_field_has_the_focus() -> None:
     app = Plain()
     async with app.run_test() as pilot:
         app.set_focus(None)
@@ -78,7 +78,7 @@ async def test_letters_are_typed_into_a_field_that_has_the_focus() -> None:
         assert app.is_typed_into
 
 
-async def test_without_a_terminal_of_its_own_there_is_none_to_lend() -> None:
+async def test_an_app_without_a_terminal_of_its_own_lends_none() -> None:
     app = Plain()
     async with on_wire(app):
         assert not app.lend_terminal(["true"])

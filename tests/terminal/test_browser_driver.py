@@ -30,7 +30,7 @@ CHOSEN = {
 
 
 @cases("named, chosen", CHOSEN)
-def test_the_driver_suits_what_shows_the_app(
+def test_the_apps_driver_is_chosen_for_terminal_or_browser(
     named: str | None, chosen: type[Driver], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("TEXTUAL_DRIVER", raising=False)
@@ -47,7 +47,7 @@ def driver() -> BrowserDriver:
     return made
 
 
-def test_an_interrupted_write_is_continued(
+def test_the_browser_driver_continues_a_partial_write(
     driver: BrowserDriver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     written = b""
@@ -61,11 +61,11 @@ def test_an_interrupted_write_is_continued(
     assert (driver._write_all(b"a packet"), written) == (8, b"a packet")
 
 
-def test_what_is_written_after_the_server_has_gone_is_dropped(driver: BrowserDriver) -> None:
+def test_the_browser_driver_drops_output_after_the_server_has_gone(driver: BrowserDriver) -> None:
     assert [driver._write_all(b"a packet"), driver._write_all(b"another")] == [8, 7]
 
 
-def test_packets_of_two_threads_are_not_mixed(driver: BrowserDriver) -> None:
+def test_packets_that_two_threads_send_to_the_page_are_not_mixed(driver: BrowserDriver) -> None:
     read, driver.fileno = os.pipe()
     # More than a pipe holds.
     size = 200_000
@@ -88,7 +88,7 @@ CODES = {
 
 
 @cases("codes, expected", CODES)
-def test_the_page_gets_what_its_terminal_passes_on(
+def test_the_browser_driver_passes_terminal_codes_on_to_the_page(
     codes: str, expected: str, driver: BrowserDriver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     written: list[bytes] = []
@@ -97,7 +97,7 @@ def test_the_page_gets_what_its_terminal_passes_on(
     assert [packet[5:].decode() for packet in written] == [expected]
 
 
-def test_a_button_of_the_page_asks_the_app(driver: BrowserDriver) -> None:
+def test_a_button_of_the_web_page_sends_its_action_to_the_app(driver: BrowserDriver) -> None:
     asked: list[object] = []
     driver._app = SimpleNamespace(post_message=asked.append)  # type: ignore[assignment]
     driver.on_meta("act", {"type": "act", "name": "run"})

@@ -139,7 +139,7 @@ def test_bold_text_in_a_screenshot_is_bolder_and_underlines_are_drawn() -> None:
     assert [(shown == 255).all(axis=1).sum() for shown in (plain, under, strike)] == [0, 1, 1]
 
 
-def test_a_wide_character_has_two_cells() -> None:
+def test_a_wide_character_in_a_screenshot_takes_two_cells() -> None:
     left, right = np.split(pixels([[("日", LOOK), ("", LOOK)]])[..., 0], 2, axis=1)
     assert left.any() and (left != right).any()
 
@@ -157,14 +157,14 @@ ROWS: Sequence[tuple[str, list[str]]] = [
 
 
 @pytest.mark.parametrize("row, texts", ROWS)
-def test_svg_holds_text_as_text(row: str, texts: list[str]) -> None:
+def test_an_svg_screenshot_holds_text_as_text(row: str, texts: list[str]) -> None:
     svg = draw_cells_svg([cells(row)], "a <title>")
     assert texts_of(svg) == texts
     root = ElementTree.fromstring(svg)
     assert (root.attrib["width"], root.attrib["height"]) == (str(3 * CELL_PX[0]), str(CELL_PX[1]))
 
 
-def test_svg_places_each_letter_in_its_cell() -> None:
+def test_an_svg_screenshot_places_each_letter_in_its_cell() -> None:
     root = ElementTree.fromstring(draw_cells_svg([cells("x  y"), cells("  z ")], ""))
     places = [
         (node.attrib["x"], int(node.attrib["y"]) // CELL_PX[1]) for node in root.iter(f"{SVG}text")

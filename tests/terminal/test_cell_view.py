@@ -48,7 +48,7 @@ def _around(shown: PixelView, hidden: Region, points: np.ndarray[Any, Any]) -> n
 
 @pytest.mark.slow
 @pytest.mark.parametrize("protocol", Protocol)
-async def test_a_dialog_hides_a_part_of_the_picture_and_gives_it_back(protocol: Protocol) -> None:
+async def test_closing_a_dialog_restores_the_pixel_picture_below_it(protocol: Protocol) -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await answered(pilot, ANSWERS[protocol])
         world = pilot.app.query_one(WorldView)
@@ -89,7 +89,7 @@ async def test_kitty_is_asked_for_what_is_used_and_is_told_to_report_errors() ->
 
 
 @pytest.mark.slow
-async def test_an_error_of_kitty_brings_the_cells_back_at_once() -> None:
+async def test_an_error_from_kitty_switches_pictures_back_to_characters() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await answered(pilot, ANSWERS[Protocol.KITTY])
         await sharp(pilot, pilot.app.query_one(WorldView))
@@ -112,7 +112,9 @@ async def test_one_key_switches_pictures_to_characters_and_back_to_pixels() -> N
 
 
 @pytest.mark.slow
-async def test_who_wants_no_colors_gets_no_pixels(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_with_no_color_set_no_pixel_graphics_are_sent(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setenv("NO_COLOR", "1")
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await answered(pilot, ANSWERS[Protocol.SIXEL])
@@ -120,7 +122,7 @@ async def test_who_wants_no_colors_gets_no_pixels(monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.slow
-async def test_glyphs_that_the_user_has_chosen_are_shown_instead() -> None:
+async def test_glyphs_that_the_user_has_chosen_are_shown_instead_of_pixels() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await answered(pilot, ANSWERS[Protocol.SIXEL])
         lab(pilot).choose_cells(CellSet.HALF)
@@ -132,7 +134,7 @@ async def test_glyphs_that_the_user_has_chosen_are_shown_instead() -> None:
 
 @pytest.mark.quick_cases("kitty")
 @pytest.mark.parametrize("protocol", Protocol)
-async def test_on_a_slow_link_half_blocks_are_sent_for_what_moves(
+async def test_on_a_slow_link_a_moving_picture_is_sent_in_half_blocks(
     protocol: Protocol, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:

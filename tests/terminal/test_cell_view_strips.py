@@ -12,7 +12,7 @@ import tuisim.app.terminal_app  # noqa: F401  # what it changes in Textual is te
 from tuisim.terminal.cell_view import CellStrip
 
 
-def test_cropping_and_dividing_make_strips_of_the_same_kind() -> None:
+def test_cropping_or_dividing_a_cell_strip_gives_cell_strips() -> None:
     cells = CellStrip(list(range(10)))
 
     assert [piece.cell_length for piece in cells.divide([3, 10])] == [3, 7]
@@ -20,7 +20,7 @@ def test_cropping_and_dividing_make_strips_of_the_same_kind() -> None:
     assert cells.crop(20, 30).cell_length == 0
 
 
-def test_a_cell_strip_works_where_segments_are_asked_for() -> None:
+def test_a_cell_strip_can_be_used_like_a_textual_strip() -> None:
     strip = CellStrip([0xFF0000_0000FF, 0x00FF00_00FF00])
 
     assert strip.text == "▀ "
@@ -31,7 +31,7 @@ def test_a_cell_strip_works_where_segments_are_asked_for() -> None:
     assert not CellStrip([])
 
 
-def test_the_drawn_rows_of_a_widget_go_with_it() -> None:
+def test_cached_rows_of_a_widget_are_freed_with_it() -> None:
     drawn = StylesCache()
     black = Color(0, 0, 0)
     assert drawn.get_inner_outer(black, Color(9, 9, 9)) == drawn.get_inner_outer(

@@ -31,7 +31,7 @@ def glyph(cell: int) -> str:
     return GLYPHS[cell >> 48]
 
 
-def test_a_cell_holds_upper_and_lower_colour() -> None:
+def test_a_half_block_cell_holds_the_upper_and_the_lower_colour() -> None:
     picture = np.array([[[1, 2, 3]], [[4, 5, 6]]], np.uint8)
 
     assert fit_cells(picture, build_glyph_set(CellSet.HALF), list_cells(1, 1)).tolist() == [
@@ -40,7 +40,7 @@ def test_a_cell_holds_upper_and_lower_colour() -> None:
 
 
 @pytest.mark.parametrize("cells", FINE)
-def test_two_colours_are_shown_exactly_whatever_their_pattern(cells: CellSet) -> None:
+def test_a_cell_of_two_colours_is_drawn_exactly_for_every_pattern(cells: CellSet) -> None:
     glyphs = build_glyph_set(cells)
     for pattern in range(1, (1 << glyphs.rows * glyphs.cols) - 1):
         picture = picture_of(cells, pattern)
@@ -55,7 +55,7 @@ def test_two_colours_are_shown_exactly_whatever_their_pattern(cells: CellSet) ->
 
 
 @pytest.mark.parametrize("cells", FINE)
-def test_an_even_cell_needs_no_glyph(cells: CellSet) -> None:
+def test_a_cell_of_nearly_one_colour_needs_no_glyph(cells: CellSet) -> None:
     glyphs = build_glyph_set(cells)
     picture = np.full((glyphs.rows, glyphs.cols, 3), 211, np.uint8)
     picture[0, 0] = 212
@@ -66,7 +66,7 @@ def test_an_even_cell_needs_no_glyph(cells: CellSet) -> None:
 
 
 @pytest.mark.parametrize("cells", FINE)
-def test_only_cells_that_differ_are_fitted(cells: CellSet) -> None:
+def test_only_cells_that_changed_are_fitted_to_glyphs_again(cells: CellSet) -> None:
     glyphs = build_glyph_set(cells)
     old = np.zeros((3 * glyphs.rows, 5 * glyphs.cols, 3), np.uint8)
     new = old.copy()
@@ -78,7 +78,7 @@ def test_only_cells_that_differ_are_fitted(cells: CellSet) -> None:
 
 
 @pytest.mark.parametrize("cells", [CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT])
-def test_fine_points_can_be_drawn_as_half_blocks(cells: CellSet) -> None:
+def test_a_fine_picture_can_be_drawn_as_half_blocks(cells: CellSet) -> None:
     coarse = build_half_block(cells)
     picture = np.full((coarse.rows, coarse.cols, 3), 255, np.uint8)
     picture[: coarse.rows // 2] = 0
@@ -99,7 +99,7 @@ def test_fine_points_can_be_drawn_as_half_blocks(cells: CellSet) -> None:
         "rows are apart": ([9, 10], [(0, 9, 1), (1, 0, 1)]),
     },
 )
-def test_changed_cells_are_joined_to_runs(
+def test_changed_cells_of_a_row_are_joined_to_runs(
     changed: list[int], runs: list[tuple[int, int, int]]
 ) -> None:
     old = np.zeros((3, 10), np.int64)
@@ -110,7 +110,7 @@ def test_changed_cells_are_joined_to_runs(
 
 
 @given(st.lists(st.booleans(), min_size=60, max_size=60))
-def test_runs_hold_every_change_and_do_not_touch(changed: list[bool]) -> None:
+def test_runs_of_changed_cells_cover_every_change_and_do_not_touch(changed: list[bool]) -> None:
     old = np.zeros((3, 20), np.int64)
     new = np.array(changed, np.int64).reshape(3, 20)
     covered = np.zeros((3, 20), int)

@@ -12,7 +12,9 @@ from tuisim.terminal.picture_options import CellSet
 
 
 @pytest.mark.parametrize("cells", [CellSet.BRAILLE, CellSet.ASCII])
-def test_the_greys_of_the_mats_look_different(cells: CellSet) -> None:
+def test_without_colours_the_greys_of_the_mats_are_drawn_in_different_glyphs(
+    cells: CellSet,
+) -> None:
     glyphs = build_glyph_set(cells)
 
     def area(grey: int) -> str:

@@ -34,7 +34,7 @@ def area(rgb: tuple[int, int, int], mode: ColorMode) -> Pixels:
 
 
 @for_each(mode=MODES, band=[220, 211, 128, 0])
-def test_bands_of_grey_stand_out_on_white(mode: ColorMode, band: int) -> None:
+def test_in_few_colours_grey_bands_stand_out_on_white(mode: ColorMode, band: int) -> None:
     white = area((255, 255, 255), mode)
     grey = area((band,) * 3, mode)
 
@@ -42,12 +42,12 @@ def test_bands_of_grey_stand_out_on_white(mode: ColorMode, band: int) -> None:
     assert grey.mean() < white.mean() - 5
 
 
-def test_the_ground_of_a_panel_is_plain_in_8_colours() -> None:
+def test_in_8_colours_the_ground_of_a_panel_is_one_colour() -> None:
     assert len(np.unique(area((16, 20, 27), ColorMode(PALETTE_8)))) == 1
 
 
 @for_each(mode=MODES, ground=[0, 128, 211, 255])
-def test_the_robot_stands_out(mode: ColorMode, ground: int) -> None:
+def test_in_few_colours_the_robot_stands_out_on_every_ground(mode: ColorMode, ground: int) -> None:
     colors = GREY if mode.grey else COLORED
     below = area((ground,) * 3, mode).astype(int)
 
@@ -58,7 +58,7 @@ def test_the_robot_stands_out(mode: ColorMode, ground: int) -> None:
     assert max(contrast) > 50
 
 
-def test_marker_and_body_differ_in_grey() -> None:
+def test_in_grey_the_robots_marker_differs_from_its_body() -> None:
     mode = ColorMode(grey=True)
 
     assert area(GREY.marker, mode).mean() - area(GREY.body, mode).mean() > 100
@@ -75,12 +75,14 @@ def test_marker_and_body_differ_in_grey() -> None:
         "white of 16": (0xFFFFFF, PALETTE_16, 15),
     },
 )
-def test_a_colour_becomes_the_nearest_of_the_palette(rgb: int, depth: int, index: int) -> None:
+def test_a_colour_is_reduced_to_the_nearest_of_the_palette(
+    rgb: int, depth: int, index: int
+) -> None:
     assert find_sgr_index(rgb, depth) == index
 
 
 @pytest.mark.parametrize("depth", [PALETTE_256, PALETTE_16])
-def test_reduced_colours_are_written_as_they_are(depth: int) -> None:
+def test_reducing_a_reduced_colour_changes_nothing(depth: int) -> None:
     """Reducing what is already reduced changes nothing, so the code sent is the colour compared."""
     rng = np.random.default_rng(1)
     pixels = rng.integers(0, 256, (200, 3), np.uint8)

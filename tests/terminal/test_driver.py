@@ -22,6 +22,6 @@ def test_the_app_waits_for_another_program_and_ignores_its_interrupt(tmp_path: P
     assert signal.getsignal(signal.SIGINT) is before
 
 
-def test_a_program_that_cannot_start_is_told() -> None:
+def test_lending_the_terminal_to_a_missing_program_raises() -> None:
     with pytest.raises(FileNotFoundError):
         run_in_foreground(["no_such_editor"])

@@ -94,7 +94,7 @@ class Broken(io.StringIO):
         raise OSError(errno.EIO, "Input/output error")
 
 
-def test_more_than_the_queue_holds_is_written_to_a_terminal_that_is_gone() -> None:
+def test_writing_more_than_the_queue_holds_to_a_lost_terminal_does_not_hang() -> None:
     writer = WriterThread(cast(TextIO, ResilientOutput(Broken())))
 
     def leave() -> None:

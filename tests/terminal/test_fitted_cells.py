@@ -20,7 +20,7 @@ def test_cells_of_one_colour_need_no_glyph() -> None:
 
 
 @pytest.mark.parametrize("cells", [CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT])
-def test_flat_cells_are_those_without_two_colors(cells: CellSet) -> None:
+def test_is_flat_marks_exactly_the_cells_fitted_with_one_colour(cells: CellSet) -> None:
     glyphs = build_glyph_set(cells)
     picture = np.concatenate([picture_of(cells, 1), picture_of(cells, 0)], axis=1)
     fitted = fit_cells(picture, glyphs, list_cells(1, 2))

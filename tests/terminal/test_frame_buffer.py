@@ -39,7 +39,7 @@ def sent(frame_buffer: FrameBuffer, update: CompositorUpdate, mode: TextMode = F
     return codes
 
 
-def test_no_italics_where_they_would_be_reverse_video() -> None:
+def test_italics_are_not_sent_to_terminals_that_draw_them_reversed() -> None:
     update = rows([Strip([Segment("a", Style(bold=True, italic=True))], 1)])
 
     assert "\x1b[1;3m" in sent(FrameBuffer(), update)
@@ -131,18 +131,20 @@ def test_the_frame_buffer_sends_only_changed_text(before: str, after: str, codes
         ),
     },
 )
-def test_a_colour_is_written_where_it_changes(strip: Strip, mode: TextMode, codes: str) -> None:
+def test_the_frame_buffer_writes_a_colour_only_where_it_changes(
+    strip: Strip, mode: TextMode, codes: str
+) -> None:
     assert sent(FrameBuffer(), rows([strip]), mode) == f"\x1b[1;1H{codes}"
 
 
-def test_a_link_ends_where_its_text_ends() -> None:
+def test_a_terminal_hyperlink_ends_where_its_text_ends() -> None:
     linked = Strip([Segment("a", Style(link="http://b")), Segment("c")])
 
     assert sent(FrameBuffer(), rows([linked])).endswith(";http://b\x1b\\a\x1b]8;;\x1b\\c")
 
 
 @pytest.mark.parametrize("mode", [FULL, MODE_256])
-def test_a_picture_below_a_dialog_is_the_picture(mode: TextMode) -> None:
+def test_a_picture_below_a_dialog_is_not_sent_again_as_text(mode: TextMode) -> None:
     """Textual makes plain segments of what lies under a dialog; that must not be sent again."""
     cells = CellStrip(
         [
@@ -156,7 +158,7 @@ def test_a_picture_below_a_dialog_is_the_picture(mode: TextMode) -> None:
     assert sent(frame_buffer, rows([Strip(list(cells))]), mode) == ""
 
 
-def test_after_something_else_has_written_everything_is_sent_again() -> None:
+def test_after_forget_the_frame_buffer_sends_everything_again() -> None:
     frame_buffer = FrameBuffer()
     sent(frame_buffer, rows([text("word")]))
     frame_buffer.forget()
@@ -164,7 +166,7 @@ def test_after_something_else_has_written_everything_is_sent_again() -> None:
     assert sent(frame_buffer, rows([text("word")])) == "\x1b[1;1Hword"
 
 
-def test_of_another_size_everything_is_sent_whatever_was_drawn_for_the_size_before() -> None:
+def test_after_a_resize_the_frame_buffer_sends_everything_again() -> None:
     frame_buffer = FrameBuffer()
     sent(frame_buffer, rows([text("words")]))
     frame_buffer.forget()
@@ -173,7 +175,7 @@ def test_of_another_size_everything_is_sent_whatever_was_drawn_for_the_size_befo
     assert sent(frame_buffer, rows([text("word")])) == "\x1b[1;1Hword"
 
 
-def test_an_unknown_kind_of_update_is_left_to_textual() -> None:
+def test_the_frame_buffer_leaves_an_unknown_kind_of_update_to_textual() -> None:
     frame_buffer = FrameBuffer()
     sent(frame_buffer, rows([text("word")]))
 
@@ -214,7 +216,7 @@ def test_the_terminal_shows_what_textual_itself_would_have_sent(seed: int) -> No
     assert shown(mine) == shown(own)
 
 
-def test_part_of_a_row_is_sent_in_its_place() -> None:
+def test_the_frame_buffer_sends_a_changed_part_of_a_row_at_its_place() -> None:
     frame_buffer = FrameBuffer()
     sent(frame_buffer, rows([text("left"), text("right")], [text("left"), text("right")]))
     part = ChopsUpdate(

@@ -23,19 +23,21 @@ def painted(shapes: tuple[GlyphShape, ...] | None) -> set[tuple[int, int]]:
 
 @pytest.mark.parametrize("width, height", [(4, 8), (7, 15), (20, 41)])
 @pytest.mark.parametrize("char", "┼╬╋")
-def test_lines_that_cross_reach_all_edges(char: str, width: int, height: int) -> None:
+def test_crossing_line_characters_are_drawn_to_all_edges_of_the_cell(
+    char: str, width: int, height: int
+) -> None:
     found = painted(draw_character(char, width, height))
     assert {0, width - 1} <= {x for x, _ in found}
     assert {0, height - 1} <= {y for _, y in found}
     assert all(0 <= x < width and 0 <= y < height for x, y in found)
 
 
-def test_an_eighth_of_a_small_cell_is_a_pixel() -> None:
+def test_an_eighth_block_in_a_small_cell_is_drawn_one_pixel_high() -> None:
     assert painted(draw_character("▁", 3, 3)) == {(x, 2) for x in range(3)}
     assert painted(draw_character("▔", 3, 3)) == {(x, 0) for x in range(3)}
 
 
-def test_an_arc_ends_where_lines_of_the_next_cells_begin() -> None:
+def test_an_arc_character_ends_where_lines_of_the_next_cells_begin() -> None:
     (arc,) = draw_character("╭", 8, 16) or ()
     assert isinstance(arc, Bend)
     assert (arc.points[0], arc.points[-1]) == ((3.5, 16.0), (8.0, 7.5))

@@ -45,7 +45,7 @@ def test_each_glyph_is_chosen_for_its_pattern_of_points(
 
 
 @pytest.mark.parametrize("cells", list(CellSet)[1:5])
-def test_every_split_of_a_cell_has_one_glyph(cells: CellSet) -> None:
+def test_every_pattern_of_a_cells_points_has_exactly_one_glyph(cells: CellSet) -> None:
     glyphs = build_glyph_set(cells)
     points = glyphs.rows * glyphs.cols
     patterns = {tuple(row) for row in glyphs.covered} | {tuple(1 - row) for row in glyphs.covered}
@@ -55,7 +55,7 @@ def test_every_split_of_a_cell_has_one_glyph(cells: CellSet) -> None:
     assert (np.diff(glyphs.numbers) > 0).all()
 
 
-def test_sextants_are_named_by_their_points() -> None:
+def test_the_points_of_each_sextant_glyph_match_its_unicode_name() -> None:
     for glyph, points in shown(CellSet.SEXTANT).items():
         name = unicodedata.name(glyph, "")
         if name.startswith("BLOCK SEXTANT-"):

@@ -65,7 +65,7 @@ BURSTS = {
 
 
 @pytest.mark.parametrize("keys, typed", BURSTS.values(), ids=list(BURSTS))
-async def test_keys_of_a_burst_keep_their_order(keys: str, typed: str) -> None:
+async def test_keys_typed_in_a_burst_keep_their_order(keys: str, typed: str) -> None:
     app = _App()
     async with app.run_test() as pilot:
         at_once(pilot, keys.split())
@@ -73,7 +73,7 @@ async def test_keys_of_a_burst_keep_their_order(keys: str, typed: str) -> None:
         assert app.typed == typed
 
 
-async def test_a_key_waits_for_what_is_to_hear_it_and_those_behind_wait_with_it() -> None:
+async def test_keys_typed_while_a_screen_opens_wait_until_it_can_take_them() -> None:
     app = _App()
     async with app.run_test() as pilot:
         app.waits = True
@@ -85,7 +85,7 @@ async def test_a_key_waits_for_what_is_to_hear_it_and_those_behind_wait_with_it(
         assert app.typed == "b"
 
 
-async def test_a_turn_whose_end_never_comes_does_not_hold_the_keys_for_ever(
+async def test_a_key_whose_handling_never_ends_does_not_block_later_keys_for_ever(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(input_order, "_PATIENCE_S", 0.01)

@@ -102,7 +102,7 @@ def test_a_key_is_answered_within_a_second_at_128_kbit_s(first_paint: int, size:
     assert worst_s + line.round_trip_s <= 1.0
 
 
-def test_three_late_answers_are_no_reason_to_give_up() -> None:
+def test_the_pacer_keeps_limiting_frames_after_three_late_answers() -> None:
     line = Line(round_trip_s=0.1)
     line.drive(1.0)
     line.round_trip_s = 3.0
@@ -112,7 +112,7 @@ def test_three_late_answers_are_no_reason_to_give_up() -> None:
     assert line.drive(10.0) <= MAX_ON_THE_WAY * 10.0 / PATIENCE_S
 
 
-def test_a_terminal_that_never_answers_is_drawn_for_all_the_same() -> None:
+def test_a_terminal_that_never_answers_still_gets_frames() -> None:
     line = Line()
     line.answers = False
     assert line.drive(PROOF_S) <= 2.5 * PROOF_S
@@ -134,7 +134,7 @@ def test_questions_to_a_page_that_is_gone_are_no_slow_link() -> None:
     assert not line.pacer.is_slow
 
 
-def test_a_page_that_begins_late_is_not_taken_for_a_slow_link() -> None:
+def test_a_page_that_starts_answering_late_is_not_called_a_slow_link() -> None:
     clock = Clock()
     pacer = Pacer(20, clock=clock, most_queued_s=PAGE_QUEUED_S)
 
@@ -153,7 +153,7 @@ def test_a_page_that_begins_late_is_not_taken_for_a_slow_link() -> None:
     assert (was_slow, pacer.is_slow) == (False, True)
 
 
-def test_what_is_no_frame_is_asked_about_only_if_it_is_large() -> None:
+def test_small_output_that_is_no_frame_is_not_followed_by_a_query() -> None:
     pacer = Pacer(20, clock=Clock())
 
     assert [pacer.record_painted(size) for size in (100, 30_000, 100)] == [False, True, False]
@@ -167,7 +167,7 @@ def test_the_first_painted_frame_is_followed_by_a_query() -> None:
     assert pacer.record_painted(10)
 
 
-def test_an_answer_to_nothing_is_ignored() -> None:
+def test_an_unexpected_answer_of_the_terminal_is_ignored_by_the_pacer() -> None:
     pacer = Pacer(20, clock=Clock())
     pacer.record_answer()
     assert pacer.ready()

@@ -61,7 +61,9 @@ def _seen(points: Pixels, protocol: Protocol) -> Pixels:
 @pytest.mark.slow_cases("sixel-tmux", "kitty-tmux")
 @pytest.mark.parametrize("in_tmux", [False, True], ids=["", "tmux"])
 @pytest.mark.parametrize("protocol", Protocol)
-def test_a_moving_picture_arrives_as_it_is(protocol: Protocol, in_tmux: bool) -> None:
+def test_each_protocol_shows_a_moving_picture_with_its_exact_pixels(
+    protocol: Protocol, in_tmux: bool
+) -> None:
     picture = TilePicture(Graphics(protocol, CELL_PX, in_tmux))
     terminal = PixelTerminal(ROWS + 2, COLS + 3, CELL_PX)
     sent = []
@@ -120,7 +122,7 @@ KEPT = {
 
 @pytest.mark.parametrize("in_tmux", [False, True], ids=["", "tmux"])
 @cases("draw, expected", KEPT)
-def test_kitty_keeps_no_images_that_are_not_seen(
+def test_kitty_images_that_are_no_longer_visible_are_deleted(
     draw: Callable[[PixelTerminal, TilePicture], None], expected: int, in_tmux: bool
 ) -> None:
     picture = TilePicture(Graphics(Protocol.KITTY, CELL_PX, in_tmux))
@@ -129,7 +131,7 @@ def test_kitty_keeps_no_images_that_are_not_seen(
     assert len(terminal.images) == expected
 
 
-def test_kitty_forgets_all_images_when_it_is_told() -> None:
+def test_the_command_that_deletes_all_images_leaves_none_in_kitty() -> None:
     picture = TilePicture(Graphics(Protocol.KITTY, CELL_PX))
     terminal = PixelTerminal(ROWS + 2, COLS + 3, CELL_PX)
     _draw(terminal, picture, picture.put(_disc(20, 40)))
@@ -138,7 +140,7 @@ def test_kitty_forgets_all_images_when_it_is_told() -> None:
 
 
 @pytest.mark.parametrize("protocol", [Protocol.SIXEL, Protocol.ITERM])
-def test_what_covers_a_picture_is_not_drawn_over(protocol: Protocol) -> None:
+def test_a_picture_is_not_drawn_over_the_text_that_covers_it(protocol: Protocol) -> None:
     picture = TilePicture(Graphics(protocol, CELL_PX))
     terminal = PixelTerminal(ROWS + 2, COLS + 3, CELL_PX)
     _draw(terminal, picture, picture.put(_disc(30, 40)))
@@ -173,14 +175,14 @@ def test_pictures_with_many_colors_are_sent_in_the_nearest() -> None:
     ],
     ids=["nothing", "block", "far apart", "nearly a block"],
 )
-def test_changed_cells_are_joined_to_rectangles(
+def test_changed_cells_of_a_picture_are_joined_to_rectangles(
     rows: list[str], expected: list[tuple[int, ...]]
 ) -> None:
     changed = np.array([[mark == "#" for mark in row] for row in rows])
     assert find_rectangles(changed, lambda _: True) == [Rectangle(*one) for one in expected]
 
 
-def test_rectangles_are_not_joined_over_what_must_not_be_drawn() -> None:
+def test_rectangles_are_not_joined_across_covered_cells() -> None:
     changed = np.array([[True, False, True]])
     assert len(find_rectangles(changed, lambda _: True)) == 1
     assert len(find_rectangles(changed, lambda _: False)) == 2

@@ -27,7 +27,7 @@ SOURCES = [
 ]
 
 
-def test_every_sign_of_the_app_has_one_in_ascii() -> None:
+def test_every_special_character_of_the_app_has_an_ascii_substitute() -> None:
     used = set("".join(path.read_text("utf-8") for path in SOURCES))
 
     lost = {char for char in used if not char.isascii() and convert_ascii(char) in ("", "?", "??")}
@@ -45,7 +45,7 @@ def test_every_sign_of_the_app_has_one_in_ascii() -> None:
         "letters": ("é中✓", "e??v"),
     },
 )
-def test_each_sign_keeps_its_width(text: str, plain: str) -> None:
+def test_each_ascii_substitute_has_the_characters_width(text: str, plain: str) -> None:
     assert convert_ascii(text) == plain
 
 
@@ -82,7 +82,7 @@ def test_terminfo_knows_which_terminals_have_no_colours(terminal: str) -> None:
         "no braille in its font": ({"TERM": "linux", "LANG": "C.UTF-8"}, CellSet.ASCII),
     },
 )
-def test_without_colours_no_blocks_are_taken(
+def test_in_a_terminal_without_colours_no_block_glyphs_are_chosen(
     environment: dict[str, str], cells: CellSet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(probe, "read_first_environment", lambda: environment)
@@ -100,7 +100,7 @@ def test_without_colours_no_blocks_are_taken(
         "dots": (CellSet.BRAILLE, 0x28FF),
     },
 )
-async def test_without_colours_nothing_but_text_is_sent(
+async def test_with_no_color_set_no_colour_codes_are_sent(
     cells: CellSet, most: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NO_COLOR", "1")
@@ -146,7 +146,7 @@ def _reversed_on(sent: str) -> list[str]:
         "the cursor in a field": (["o", "x", "y", "z", "left", "left"], "xz"),
     },
 )
-async def test_without_colours_what_is_selected_is_seen(
+async def test_with_no_color_set_selected_rows_are_still_marked(
     keys: list[str], lit: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NO_COLOR", "1")
@@ -161,7 +161,7 @@ async def test_without_colours_what_is_selected_is_seen(
 
 
 @pytest.mark.slow
-async def test_in_ascii_without_colours_signs_point_where_the_robot_is_heading(
+async def test_in_ascii_without_colours_the_robot_is_drawn_pointing_to_its_heading(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setenv("NO_COLOR", "1")

@@ -38,7 +38,7 @@ ATTRIBUTES = b"\x1b[?62;4c"
         "no name": ("", 1, CellSet.QUADRANT),
     },
 )
-def test_fine_glyphs_are_for_terminals_that_draw_them(
+def test_fine_glyphs_are_chosen_only_for_terminals_that_draw_them(
     name: str, octant_cols: int | None, cells: CellSet
 ) -> None:
     assert find_cells(name, octant_cols) is cells

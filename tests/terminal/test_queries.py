@@ -104,7 +104,9 @@ CHOICES = {
 
 
 @cases("answers, expected", CHOICES)
-def test_the_answers_decide_how_pixels_are_drawn(answers: str, expected: Graphics | None) -> None:
+def test_the_terminals_answers_decide_which_graphics_protocol_is_used(
+    answers: str, expected: Graphics | None
+) -> None:
     assert choose_graphics(_facts(answers), AUTO, (9, 18)) == expected
 
 
@@ -134,7 +136,7 @@ def test_kitty_graphics_are_asked_for_once() -> None:
     assert not _facts(KITTY + KITTY_YES).asks_for_kitty
 
 
-def test_another_page_is_asked_for_kitty_again() -> None:
+def test_a_reloaded_page_is_asked_for_kitty_graphics_again() -> None:
     assert _facts(PAGE + PAGE).asks_for_kitty
     assert _facts(PAGE + PLAIN + PAGE).asks_for_kitty
     assert not _facts(PAGE + KITTY_YES + PAGE).asks_for_kitty
@@ -157,7 +159,7 @@ def test_a_nonsensical_cell_size_from_the_kernel_is_ignored(
         os.close(other)
 
 
-def test_sixel_needs_the_size_of_a_cell() -> None:
+def test_sixel_is_not_used_if_the_cells_size_is_unknown() -> None:
     assert choose_graphics(_facts("\x1b[?63;4c"), AUTO, None) is None
 
 
@@ -167,7 +169,7 @@ def test_sixel_needs_the_size_of_a_cell() -> None:
     ids=["xterm", "kitty", "kitty's error", "tmux"],
 )
 @pytest.mark.parametrize("size", [1, 2, 7, 1000])
-def test_answers_are_no_keys_however_they_arrive(answers: str, size: int) -> None:
+def test_answers_of_the_terminal_are_never_taken_for_keys(answers: str, size: int) -> None:
     text = f"a{answers}b"
     found = _messages(*(text[at : at + size] for at in range(0, len(text), size)))
     assert [message.key for message in found if isinstance(message, events.Key)] == ["a", "b"]
@@ -175,18 +177,20 @@ def test_answers_are_no_keys_however_they_arrive(answers: str, size: int) -> Non
 
 
 @for_each(at=range(1, len(XTERM)))
-def test_an_answer_may_come_in_two_reads(at: int) -> None:
+def test_an_answer_of_the_terminal_split_into_two_reads_is_not_taken_for_keys(at: int) -> None:
     assert not _keys(_read((0.0, XTERM[:at]), (0.05, XTERM[at:]), (1.0, "")))
 
 
-def test_a_second_answer_may_come_in_two_reads(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_second_answer_split_into_two_reads_is_not_taken_for_keys(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(AnswerParser, "is_asked", True)
     size = "\x1b[6;14;7t"
     assert not _keys(_messages("\x1b[6;16;8t", size[:1], size[1:], "\x1b[?63;4c"))
     assert not AnswerParser.is_asked
 
 
-def test_an_answer_without_an_end_swallows_no_keys() -> None:
+def test_keys_after_an_unfinished_answer_of_the_terminal_are_not_lost() -> None:
     typed = [(10.0 + second, "a") for second in range(3)]
     assert _keys(_read((0.0, "\x1bP>|XTerm(3"), *typed)) == ["a", "a", "a"]
 
@@ -199,7 +203,9 @@ KEYS = {
 
 
 @cases("text, key", KEYS)
-def test_keys_that_begin_like_an_answer_are_keys(text: str, key: str) -> None:
+def test_keys_that_begin_like_an_answer_of_the_terminal_are_read_as_keys(
+    text: str, key: str
+) -> None:
     parser = AnswerParser()
     found = [*parser.feed(text), *parser.tick(), *parser.feed("")]
     assert [message.key for message in found if isinstance(message, events.Key)] == [key]

@@ -59,7 +59,7 @@ def told(monkeypatch: pytest.MonkeyPatch) -> dict[Widget, Size]:
     [((80, 24), "instrumentation"), ((120, 40), "code"), ((200, 60), "chart")],
     ids=["80x24", "120x40", "200x60"],
 )
-async def test_every_widget_is_told_its_size(
+async def test_every_widget_gets_a_resize_event_with_its_size(
     size: tuple[int, int], last: str, told: dict[Widget, Size]
 ) -> None:
     async with open_lab(LOGS, size=size) as (pilot, app):
@@ -88,7 +88,7 @@ class _Listed(TerminalApp):
 
 
 @pytest.mark.parametrize("key", ["pageup", "pagedown"])
-async def test_a_list_without_room_bears_the_keys_for_pages(key: str) -> None:
+async def test_page_keys_in_a_list_without_room_raise_no_error(key: str) -> None:
     listed = OptionList("first", "second", "third")
     async with _Listed(listed).run_test(size=(40, 12)) as pilot:
         listed.highlighted = 1
@@ -101,7 +101,7 @@ async def test_a_list_without_room_bears_the_keys_for_pages(key: str) -> None:
 
 
 @pytest.mark.parametrize("kind", [OptionList, CommandList])
-async def test_a_click_on_an_option_that_is_gone_does_nothing(kind: type[OptionList]) -> None:
+async def test_clicking_an_option_that_was_removed_does_nothing(kind: type[OptionList]) -> None:
     listed = kind("first", "second")
     async with _Listed(listed).run_test(size=(40, 12)) as pilot:
         listed.highlighted = 0
@@ -113,7 +113,9 @@ async def test_a_click_on_an_option_that_is_gone_does_nothing(kind: type[OptionL
 
 
 @pytest.mark.slow
-async def test_a_notice_that_is_gone_leaves_the_screen(told: dict[Widget, Size]) -> None:
+async def test_a_notice_that_has_expired_is_removed_from_the_screen(
+    told: dict[Widget, Size],
+) -> None:
     async with on_wire(LabApp(settings(LOGS)), notifications=True) as pilot:
         app = await ready(pilot)
         await until_quiet(pilot)
@@ -181,7 +183,9 @@ def _uses(module: ModuleType) -> list[str]:
     return found
 
 
-def test_a_name_that_textual_lacks_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_check_of_textuals_private_names_finds_a_missing_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     assert textual_internals.list_missing_names() == []
     monkeypatch.delattr(OptionList, "_move_page")
     assert textual_internals.list_missing_names() == ["OptionList._move_page"]

@@ -86,6 +86,6 @@ def test_only_the_address_and_its_own_pages_are_admitted(
     )
 
 
-def test_each_token_is_long_and_new() -> None:
+def test_each_access_token_of_the_server_is_new_and_32_characters_long() -> None:
     tokens = {create_token() for _ in range(100)}
     assert (len(tokens), min(map(len, tokens))) == (100, 32)

@@ -61,7 +61,7 @@ async def test_the_server_says_at_most_once_a_minute_that_it_is_full() -> None:
     assert reports == ["The server cannot accept visitors: Too many open files"] * 2
 
 
-def test_the_guide_names_what_visitors_may_use() -> None:
+def test_the_guides_page_on_security_names_the_servers_limits() -> None:
     page = (ROOT / "tuisim" / "guide" / "pages" / "security.md").read_text(encoding="utf-8")
     for text in (
         f"has not sent the address within {gate.STRANGER_S:g} s",

@@ -173,7 +173,7 @@ WRONG = {
 
 
 @cases("request_bytes", WRONG)
-async def test_a_wrong_request_leaves_no_trace_in_the_terminal(
+async def test_a_malformed_request_prints_nothing_in_the_servers_terminal(
     request_bytes: bytes, visited: Visited, caplog: pytest.LogCaptureFixture
 ) -> None:
     visitor = await visited()
@@ -202,7 +202,7 @@ VISITS = {
 
 
 @cases("path, kind", VISITS)
-async def test_each_page_of_the_server_has_its_type_and_policy(
+async def test_each_page_of_the_server_has_its_content_type_and_security_policy(
     path: str, kind: str, visited: Visited
 ) -> None:
     visitor = await visited()
@@ -219,7 +219,7 @@ async def test_the_address_may_lack_its_last_slash(visited: Visited) -> None:
         assert (answer.status, str(answer.url)) == (200, visitor.top)
 
 
-async def test_what_an_app_offers_can_be_downloaded_once(visited: Visited) -> None:
+async def test_a_file_that_an_app_offers_can_be_downloaded_only_once(visited: Visited) -> None:
     visitor = await visited()
     socket, _ = await visitor.started()
     await socket.send_json(["stdin", "offer"])
@@ -236,7 +236,7 @@ async def test_what_an_app_offers_can_be_downloaded_once(visited: Visited) -> No
     ]
 
 
-async def test_a_download_that_breaks_off_is_no_file(
+async def test_a_download_that_breaks_off_is_not_completed_as_a_file(
     visited: Visited, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(server, "ANSWER_WITHIN_S", 0.05)
@@ -266,7 +266,7 @@ PACKETS = {
 
 
 @cases("sent", PACKETS)
-async def test_a_packet_that_makes_no_sense_ends_its_app_only(sent: str, visited: Visited) -> None:
+async def test_a_malformed_packet_ends_only_its_own_app(sent: str, visited: Visited) -> None:
     visitor = await visited()
     socket, pid = await visitor.started()
     _, other = await visitor.started()
@@ -318,7 +318,7 @@ SIZES = {
 
 
 @cases("query, size", SIZES)
-async def test_the_app_starts_in_the_size_of_the_page(
+async def test_the_web_app_starts_in_the_size_of_the_page(
     query: str, size: str, visited: Visited
 ) -> None:
     socket = await (await visited()).socket(query)
@@ -355,7 +355,7 @@ ENDS = {
 
 
 @cases("how, reason, reported", ENDS)
-async def test_visitor_and_server_are_told_why_the_app_has_ended(
+async def test_visitor_and_server_get_the_reason_why_the_app_ended(
     how: str, reason: str, reported: list[str], visited: Visited
 ) -> None:
     reports: list[str] = []
@@ -410,7 +410,7 @@ async def test_the_end_of_the_server_ends_all_apps() -> None:
 FULL = "This server allows 1 visitor at a time, and all places are taken."
 
 
-async def test_one_visitor_too_many_is_told_so(visited: Visited) -> None:
+async def test_a_visitor_beyond_the_servers_limit_is_told_so(visited: Visited) -> None:
     visitor = await visited(visitors=1)
     await visitor.started()
     assert (await visitor.sessions())["free"] == 0

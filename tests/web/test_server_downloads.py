@@ -42,7 +42,7 @@ async def test_the_server_takes_only_bytes_of_a_download_it_asked_for(
         await anext(files.read_pieces(files.take("key")))
 
 
-async def test_an_app_offers_so_many_files_and_takes_none_of_others() -> None:
+async def test_an_app_has_a_limit_of_offered_files_and_cannot_take_others() -> None:
     files = Downloads()
     one = SimpleNamespace(app_service_id="a")
     other: Any = SimpleNamespace(app_service_id="b")

@@ -76,7 +76,7 @@ async def opened(
 
 
 @pytest.mark.parametrize("scale", [1, 1.25, 2, 3])
-async def test_each_pixel_of_a_picture_is_one_of_the_screen(
+async def test_each_pixel_of_a_picture_is_one_pixel_of_the_browsers_screen(
     scale: float, serve: Serve, tmp_path: Path
 ) -> None:
     async with opened(serve, tmp_path, (1000, 700), scale) as page:
@@ -172,7 +172,9 @@ Socket.prototype.send = function (said) {
 """
 
 
-async def test_buttons_press_the_keys_that_go_back_and_forth(serve: Serve, tmp_path: Path) -> None:
+async def test_buttons_of_the_web_page_press_the_keys_that_go_back_and_forth(
+    serve: Serve, tmp_path: Path
+) -> None:
     async with opened(serve, tmp_path, (390, 844), 1, fingers=True) as page:
         await page.js("document.querySelector('[aria-controls=keys]').click()")
         await until_seen(page, is_whole)
@@ -200,7 +202,7 @@ Object.defineProperty(window, "sessionStorage", {
 """
 
 
-async def test_the_page_shows_and_copies_the_app_where_it_may_keep_nothing(
+async def test_the_web_page_works_where_the_browser_forbids_storage(
     serve: Serve, tmp_path: Path
 ) -> None:
     serving = await serve(DRIVES)

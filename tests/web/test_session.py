@@ -186,7 +186,9 @@ async def test_what_is_copied_reaches_the_clipboard_of_the_browser(serve: Serve)
         await tab.until(lambda: b"\x1b]52;c;" + base64.b64encode(DRIVES.encode()) in tab.seen)
 
 
-async def test_a_screenshot_can_be_downloaded(serve: Serve, tmp_path: Path) -> None:
+async def test_a_screenshot_taken_in_a_browser_can_be_downloaded(
+    serve: Serve, tmp_path: Path
+) -> None:
     server = await serve(DRIVES)
     async with server.tab() as tab:
         await tab.until(lambda: "idle" in tab.text)
@@ -198,7 +200,7 @@ async def test_a_screenshot_can_be_downloaded(serve: Serve, tmp_path: Path) -> N
         ]
 
 
-async def test_ctrl_z_says_that_there_is_nothing_to_go_back_to(serve: Serve) -> None:
+async def test_ctrl_z_in_a_browser_says_that_the_app_cannot_be_suspended(serve: Serve) -> None:
     async with (await serve(DRIVES)).tab() as tab:
         await tab.until(lambda: "idle" in tab.text)
         await tab.press("\x1a")
@@ -219,7 +221,7 @@ async def test_a_closed_tab_ends_its_app_and_its_program_only(serve: Serve) -> N
         assert all(map(is_there, others))
 
 
-async def test_a_run_goes_on_while_no_tab_is_open(serve: Serve) -> None:
+async def test_a_run_of_a_web_session_goes_on_while_no_tab_is_open(serve: Serve) -> None:
     server = await serve(RUNS_ON, "-R")
     async with server.tab() as tab:
         await tab.until(lambda: "running" in tab.text and "Light: 5" in tab.text)
@@ -245,7 +247,7 @@ def goes_on(tab: Tab, after_s: float) -> bool:
     return "running" in tab.text and clock_s(tab) > after_s
 
 
-async def test_a_server_that_is_killed_leaves_no_app_that_no_tab_shows(serve: Serve) -> None:
+async def test_a_killed_server_leaves_no_app_running(serve: Serve) -> None:
     server = await serve(RUNS_ON, "-R")
     async with server.tab() as tab:
         await tab.until(lambda: "running" in tab.text)
@@ -276,7 +278,7 @@ async def test_the_end_of_the_server_ends_apps_and_programs(
         await gone(started)
 
 
-async def test_a_page_that_has_the_focus_from_the_start_keeps_it(serve: Serve) -> None:
+async def test_a_web_page_focused_from_the_start_keeps_the_focus(serve: Serve) -> None:
     async with (await serve(DRIVES)).tab() as tab:
         await tab.say("focus")
         await tab.until(lambda: "idle" in tab.text)

@@ -79,7 +79,7 @@ async def shown(serve: Serve, folder: Path) -> AsyncIterator[tuple[Chromium, Lin
         line.cut()
 
 
-async def test_the_page_shows_the_same_app_after_its_line_was_lost(
+async def test_the_web_page_shows_the_same_app_after_its_connection_was_lost(
     serve: Serve, tmp_path: Path
 ) -> None:
     async with shown(serve, tmp_path) as (page, line):

@@ -62,7 +62,7 @@ async def test_an_upload_beyond_the_limits_is_refused_without_naming_a_path(
     assert os.listdir(tmp_path) == ["first"]
 
 
-async def test_a_visitor_who_leaves_while_a_file_comes_leaves_nothing(
+async def test_a_visitor_who_leaves_during_an_upload_leaves_no_file(
     visited: Visited, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -26,7 +26,9 @@ INPUT = {
 
 
 @cases("text, by_a_person", INPUT)
-def test_answers_of_the_terminal_do_not_count_as_done(text: str, by_a_person: bool) -> None:
+def test_automatic_answers_of_the_terminal_do_not_count_as_user_activity(
+    text: str, by_a_person: bool
+) -> None:
     assert is_done_by_a_person(text) is by_a_person
 
 
@@ -42,12 +44,12 @@ MOUSE = {
 
 
 @cases("text, uses", MOUSE)
-def test_the_mouse_on_its_way_does_not_use_an_app(text: str, uses: bool) -> None:
+def test_mouse_movement_alone_does_not_count_as_using_the_app(text: str, uses: bool) -> None:
     assert is_done_by_a_person(text)
     assert is_use(text) is uses
 
 
-def test_a_visitor_is_idle_since_the_last_input() -> None:
+def test_a_visitors_idle_time_counts_from_the_last_input() -> None:
     clock = iter([100.0, 130.0, 135.0]).__next__
     activity = Activity(clock)
     activity.note()

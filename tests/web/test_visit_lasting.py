@@ -33,7 +33,7 @@ async def unshown(visitor: Visitor) -> None:
             await asyncio.sleep(0.005)
 
 
-async def test_a_page_is_told_its_session_and_finds_the_same_app_again(visited: Visited) -> None:
+async def test_a_page_that_reconnects_with_its_session_gets_the_same_app(visited: Visited) -> None:
     visitor = await visited()
     socket, pid = await visitor.started()
     session = await the_session(visitor)
@@ -72,7 +72,7 @@ async def left_again(visitor: Visitor, sent: list[list[object]]) -> int:
 
 
 @cases("sent", UNUSED)
-async def test_an_app_that_nobody_has_used_ends_soon_without_its_tab(
+async def test_an_unused_web_app_ends_soon_after_its_tab_is_closed(
     sent: list[list[object]], visited: Visited
 ) -> None:
     visitor = await visited(visitors=1, keep_unused_s=0.01)
@@ -81,7 +81,7 @@ async def test_an_app_that_nobody_has_used_ends_soon_without_its_tab(
 
 
 @cases("sent", USED)
-async def test_an_app_that_was_used_is_kept_without_its_tab(
+async def test_a_used_web_app_keeps_running_after_its_tab_is_closed(
     sent: list[list[object]], visited: Visited
 ) -> None:
     visitor = await visited(keep_unused_s=0.01)
@@ -90,7 +90,7 @@ async def test_an_app_that_was_used_is_kept_without_its_tab(
     assert is_there(used)
 
 
-async def test_a_second_tab_takes_a_session_over(visited: Visited) -> None:
+async def test_a_second_tab_with_the_session_takes_it_over_from_the_first(visited: Visited) -> None:
     visitor = await visited()
     first, pid = await visitor.started()
     second = await visitor.socket(f"?width=90&height=30&session={await the_session(visitor)}")
@@ -104,7 +104,7 @@ async def test_a_second_tab_takes_a_session_over(visited: Visited) -> None:
     assert is_there(pid)
 
 
-async def test_each_page_is_told_which_panels_there_are(visited: Visited) -> None:
+async def test_each_web_page_gets_the_list_of_panels(visited: Visited) -> None:
     visitor = await visited()
     first, _ = await visitor.started()
     await first.send_json(["stdin", "tell panels world code"])
@@ -126,7 +126,7 @@ async def test_the_list_of_sessions_tells_which_program_runs(visited: Visited) -
     assert listed == [("a\ufffd.py", runs, True) for runs in (False, True, False)]
 
 
-async def test_what_is_offered_while_no_tab_is_open_waits_for_the_next(visited: Visited) -> None:
+async def test_a_file_offered_while_no_tab_is_open_waits_for_the_next_tab(visited: Visited) -> None:
     visitor = await visited()
     socket, _ = await visitor.started()
     session = await the_session(visitor)
@@ -138,7 +138,7 @@ async def test_what_is_offered_while_no_tab_is_open_waits_for_the_next(visited: 
     assert '["deliver_file_start", "key"]' in said
 
 
-async def test_a_session_is_ended_from_another_tab(visited: Visited) -> None:
+async def test_a_web_session_can_be_ended_from_another_tab(visited: Visited) -> None:
     visitor = await visited()
     socket, pid = await visitor.started()
     session = await the_session(visitor)
@@ -175,7 +175,7 @@ async def test_only_pages_of_the_server_end_a_session_or_bring_a_file(
     assert list(tmp_path.iterdir()) == []
 
 
-async def test_a_file_that_is_dropped_is_kept_and_opened(
+async def test_a_file_dropped_onto_the_page_is_stored_and_opened(
     visited: Visited, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -208,7 +208,7 @@ BAD_NAMES = [
 
 
 @pytest.mark.parametrize("name", BAD_NAMES)
-async def test_a_file_is_kept_in_the_folder_only(
+async def test_a_file_dropped_onto_the_page_is_stored_only_in_the_working_folder(
     name: str, visited: Visited, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.chdir(tmp_path)
