@@ -82,8 +82,8 @@ def among(name: str, allowed: Iterable[str], unlisted: Iterable[str] = ()) -> st
 
     Args:
         name: The unknown name.
-        allowed: The names to list.
-        unlisted: Other names that may be the similar one.
+        allowed: The allowed names, all of which the hint lists.
+        unlisted: Further allowed names: the hint contains one of them only if it is the most similar name.
     """
     names = list(allowed)
     close = closest(name, [*names, *unlisted], 1)

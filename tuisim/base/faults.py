@@ -22,9 +22,9 @@ def report_file() -> Path:
 
 
 def describe_fault(error: Exception) -> str:
-    """Return in one line why a run could not be judged.
+    """Return one line for an error that kept a run from being judged: that the run could not be judged, and why.
 
-    Append the traceback to the report file if tuisim is at fault.
+    An error that is not a TuisimError is a fault of tuisim itself: its traceback is also appended to the report file.
     """
     if isinstance(error, TuisimError):
         where = str(getattr(error, "file", ""))

@@ -47,7 +47,7 @@ def _find_shortest(names: Sequence[str]) -> list[str]:
 
 @cache
 def map_modules() -> Mapping[str, str]:
-    """Return the names that the predefined imports of programs define, each with its module."""
+    """Return the names that the prelude `imports` defines for a program, each with its module."""
     lines = PRELUDE_TEXTS["imports"].removeprefix("from ").split("\nfrom ")
     imports = (line.strip().split(" import ") for line in lines)
     return {name: module for module, names in imports for name in names.split(", ")}

@@ -11,7 +11,7 @@ _MAX_FOLDERS = 200
 
 
 def find_module_folder(name: str, folder: str) -> str:
-    """Return the folder that contains a module, among those of the repository that contains the program.
+    """Search the repository that contains a program for a module that the program imports; return the module's folder.
 
     The result is a path relative to `folder`. It is empty if no folder, or only `folder` itself, contains the module.
 
@@ -42,7 +42,7 @@ def _root_of(folder: str) -> str:
 
 
 def _folders_in(root: str) -> Iterator[str]:
-    """Yield a folder and its subfolders, the nearest first."""
+    """Yield a folder and its subfolders, level by level from the top; hidden folders and links are left out."""
     level = [root]
     seen = 0
     for _ in range(_MAX_DEPTH):

@@ -48,7 +48,7 @@ def place_robot(choice: RobotChoice, mat: Background) -> RobotSpec:
 def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) -> Pose:
     """Return the start pose. Its coordinates and heading are those of the settings, where they are set, else the mat's.
 
-    Within solid walls, the mat's start is moved so far that the robot can turn there.
+    Within solid walls, the mat's start is moved away from walls that are too close for the robot to turn there.
 
     Args:
         settings: The settings.
@@ -185,9 +185,9 @@ def extract_settings(spec: RunSpec) -> dict[str, Any]:
 
 
 def _name_robot(robot: RobotSpec, mat: Background) -> str | RobotChoice:
-    """Return the name of the preset that, apart from its pen, equals a robot on a mat.
+    """Return the name of the preset that a robot equals, given the mat that sets the positions of the preset's sensors.
 
-    If there is none, return the robot itself.
+    The position of the pen makes no difference. If there is no such preset, return the robot itself.
     """
     for preset in ROBOTS.values():
         on_mat = place_robot(RobotChoice(preset, own_places=False), mat)

@@ -34,10 +34,10 @@ _ATTACHED = re.compile(r"\A(-[A-Za-z])=")
 
 
 class WordType(click.ParamType):  # type: ignore[type-arg]
-    """The type of the value of an option or argument, for Click.
+    """The Click type of an option or argument: it converts the text that the user has typed, and completes it.
 
     Args:
-        convert: Converts the text; raises ConfigError.
+        convert: Returns the value for a text; raises ConfigError if the text is not allowed.
         names: Returns the names that completion offers besides files.
     """
 
@@ -50,7 +50,10 @@ class WordType(click.ParamType):  # type: ignore[type-arg]
         self._names = names
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the value that a text stands for; return any other value, such as a default, unchanged."""
+        """Return the value for a text that the user has typed.
+
+        A value that is not a text, such as a default, is returned unchanged.
+        """
         return self._convert(value) if isinstance(value, str) else value
 
     def shell_complete(
@@ -81,11 +84,11 @@ def _add_files(completions: list[CompletionItem], incomplete: str) -> list[Compl
 
 
 class GroupedOption(click.Option):
-    """A Click option under a heading of the help, where only its first two names are listed.
+    """A Click option that the help lists under the heading `group`, with at most two of its names.
 
     Args:
-        sets: The path of the setting to which the option belongs, if any.
-        adds: A word that the option, which then has no value of its own, adds to that setting.
+        sets: The path of the setting that the option changes; empty if it changes none.
+        adds: For an option without a value: the word that it adds to the list in that setting.
     """
 
     def __init__(
@@ -196,8 +199,13 @@ def _convert_error(error: click.UsageError, ctx: click.Context) -> ConfigError:
 class Command(click.Command):
     """A Click command whose help groups its options, and whose wrong use raises ConfigError.
 
-    Its callback gets the shared options as `settings`. With `passes_arguments`, these contain the words after `--`: the
-    arguments of the program. `instead` maps options that the command does not have to the ones to use instead.
+    Its callback gets the values of the shared options as the argument `settings`.
+
+    Args:
+        name: The name of the command.
+        passes_arguments: Whether words after `--` are allowed: the program's arguments, which `settings` then contains.
+        instead: Options that the command does not have, each with the one to use instead, for errors.
+        **how: Other arguments of `click.Command`.
     """
 
     def __init__(
@@ -435,7 +443,7 @@ class Group(click.Group):
 
 
 def drop_options(options: Sequence[click.Option]) -> list[str]:
-    """Return the words of the command that now runs, without some options and their values.
+    """Return the words of the command line that is being executed, without some options and their values.
 
     Args:
         options: The options to leave out, which have no short names.

@@ -264,13 +264,13 @@ def parse_log_line(line: str, magic: str) -> Arguments:
 
 
 def update_persistent(before: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings that a notebook keeps after a cell, for its later cells.
+    """Return the settings that a notebook keeps for later cells, after a cell has changed some.
 
-    If the cell sets a mat, those of `RESET_BY_MAT` that were kept before are dropped.
+    A cell that chooses a mat removes the kept settings named in `RESET_BY_MAT`, such as the start pose.
 
     Args:
         before: The settings that were kept before the cell.
-        settings: The settings of the cell.
+        settings: The settings of the cell, which replace kept ones.
     """
     persistent = dict(before)
     if "background" in settings:

@@ -44,10 +44,10 @@ DEFAULT_FPS = 20
 
 
 def parse(value: Value, text: str, key: str) -> Any:
-    """Return the value that the text of an option stands for.
+    """Convert the text of an option to a value, and return the value.
 
     Args:
-        value: The kind of value.
+        value: The description of the value: how its text is read, and what is allowed.
         text: The text.
         key: The name of the option, for errors.
 
@@ -97,7 +97,7 @@ class Name(Value):
 
 
 class RunValue(NamedTuple):
-    """A value of a run specification that has a setting of its own: a value of the world or the pen, or the seed."""
+    """The description of a run's value that users can set on its own: one of the world or the pen, or the seed."""
 
     spec_path: str
     """Its path in the specification."""
@@ -131,7 +131,10 @@ RUN_VALUES: Mapping[str, RunValue] = dict(_run_values())
 
 
 def read_run_values(spec: RunSpec) -> dict[str, Scalar]:
-    """Return the values of a run that have a setting of their own, by the path of the setting, as in TOML files."""
+    """Return those values of a run that are in `RUN_VALUES`, by the path of their setting, such as `start.x_mm`.
+
+    The values are in the form in which TOML files contain them.
+    """
     return {
         path: toml_form(run_value.value, get_value(spec, run_value.spec_path))
         for path, run_value in RUN_VALUES.items()
@@ -181,7 +184,7 @@ class Option:
 
     @property
     def name(self) -> str:
-        """The option's long name without dashes in front and with `_` for others."""
+        """The option's long name without the dashes in front, and with `_` in place of dashes within the name."""
         return next(flag for flag in self.flags if flag.startswith("--"))[2:].replace("-", "_")
 
     @property
@@ -447,18 +450,21 @@ class Settings:
     def changed(self, values: Mapping[str, Any]) -> Settings:
         """Return a copy in which some settings, by path, are added or replaced.
 
-        With a value of None, mat, robot, profile or program decides.
+        If the new value is None, the mat, robot, profile or program decides the setting.
         """
         return Settings({**self.given, **values})
 
 
 def has_world_values(settings: Mapping[str, Any]) -> bool:
-    """Return whether settings contain more than `press`, which applies in any world."""
+    """Return whether settings contain anything besides `press`, the presses by hand, which do not describe a world."""
     return bool(settings.keys() - {"press"})
 
 
 def merge_settings(*layers: Mapping[str, Any]) -> Settings:
-    """Return the settings of several layers: later layers take precedence, and the values of panels are joined."""
+    """Return the settings of several layers together; a later layer replaces the values of earlier ones.
+
+    The two lists of panels, `panels_on` and `panels_off`, are not replaced: they have the panels of all layers.
+    """
     merged: dict[str, Any] = {}
     for layer in layers:
         panels = {

@@ -249,7 +249,16 @@ def _parse_motor(data: object, base: MotorSpec, location: Location) -> MotorSpec
 def _parse_single(
     data: object, mount: Mount, base: RobotSpec, location: Location
 ) -> SensorSpec | None:
-    """Return the only sensor of a kind in a robot's table; None for `false`, which removes it."""
+    """Return the sensor that a value in a robot's table describes, for a kind of which a robot has at most one.
+
+    The value `false` removes the sensor: the result is None. Keys missing in a table are as in the base robot's sensor.
+
+    Args:
+        data: The value in the table.
+        mount: The kind of sensor.
+        base: The robot that the table changes.
+        location: The location of the value, for errors.
+    """
     return (
         None
         if data is False
@@ -260,7 +269,15 @@ def _parse_single(
 def _parse_named(
     data: object, mount: Mount, base: RobotSpec, location: Location
 ) -> tuple[SensorSpec, ...]:
-    """Return the base robot's sensors of a kind with the table's changes and additions; `false` removes a sensor."""
+    """Return all sensors of one kind that a robot has after the changes in its table.
+
+    Args:
+        data: Tables by name of the sensor: a known name changes that sensor, or removes it if the value is `false`; an
+            unknown name adds a sensor.
+        mount: The kind of sensor.
+        base: The robot that is changed.
+        location: The location of `data`, for errors.
+    """
     sensors = {sensor.name: sensor for sensor in base.list_sensors(mount)}
     names = files.table(data, location)
     for name, sensor in names.items():

@@ -146,7 +146,7 @@ class UserConfig:
         }
 
     def keep_section(self, section: Section) -> UserConfig:
-        """Return a configuration with the settings of only one table."""
+        """Return a copy of the configuration that has only the settings of the table `section`."""
         return replace(
             self,
             written={
@@ -281,7 +281,10 @@ def _parse_entries(
 
 
 def _build_hint(name: str, known: Any) -> str:
-    """Return the hint for an unknown name: the table to which it belongs, or a similar name."""
+    """Return the hint for a name that is unknown in its table.
+
+    If another table has a setting of that name, the hint names this table; else the names in `known` that are similar.
+    """
     elsewhere = [setting.section for setting in SETTINGS.values() if setting.name == name]
     return f"it belongs into [{elsewhere[0]}]" if elsewhere else nearest(name, known)
 
