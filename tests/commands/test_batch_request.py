@@ -63,7 +63,7 @@ def test_the_option_for_a_parameter_of_the_batch_file_replaces_it(batch: Batch) 
         "speed": (("--speed", "1"), "no such option: --speed"),
     },
 )
-def test_what_is_wrong_is_said_before_anything_is_run(
+def test_a_batch_with_wrong_options_is_refused_before_anything_is_run(
     batch: Batch,
     words: tuple[str, ...],
     message: str,

@@ -151,7 +151,7 @@ def test_a_rerun_stops_a_stopped_run_at_the_same_tick(
         rerun(stored, store)
 
 
-def test_a_run_that_is_stopped_before_its_first_tick_is_run_again_also_where_ticks_are_not_whole_nanoseconds(
+def test_a_run_stopped_before_its_first_tick_can_be_rerun_also_with_30_ticks_a_second(
     start: Start, tmp_path: Path
 ) -> None:
     handle = start(

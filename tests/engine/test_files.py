@@ -210,7 +210,7 @@ EXPLORER = {
         "further parts taken away",
     ],
 )
-def test_a_robot_file_says_only_what_differs(
+def test_what_a_robot_file_leaves_out_is_as_in_the_default_robot(
     text: str, changes: dict[str, Any], write: Write
 ) -> None:
     assert load_robot(write("mine.toml", text)) == replace(RobotSpec(name="mine"), **changes)
@@ -398,7 +398,7 @@ def test_an_obstacle_file_gives_its_boxes(
     ],
     ids=["ms", "ns", "rules", "base", "motor law"],
 )
-def test_a_profile_file_says_only_what_differs(
+def test_what_a_profile_file_leaves_out_is_as_in_its_base_profile(
     text: str, changes: dict[str, Any], write: Write
 ) -> None:
     base = PROFILES["nbev3devsim" if "base" in text else "robolab"]

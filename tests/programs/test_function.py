@@ -284,7 +284,7 @@ def test_an_object_that_would_be_there_twice_is_refused(load: Import) -> None:
         read_function(load(twice=text).go)
 
 
-def test_what_is_used_of_a_module_of_ones_own_goes_along(load: Import) -> None:
+def test_parts_of_an_own_module_that_a_function_uses_run_with_it(load: Import) -> None:
     text = "import own_helpers as own\ndef go(n=own.STEP): print('A:', n + own.count())\n"
     helpers = "STEP = 2\ndef count(): return STEP * 2\n"
     frame = tuisim.experiment(

@@ -211,7 +211,7 @@ def test_bytes_that_are_no_utf_8_do_not_end_the_app(tmp_path: Path, root: Path) 
 
 
 @pytest.mark.slow
-def test_an_app_that_is_stopped_from_outside_and_not_by_ctrl_z_is_drawn_again_and_hears_every_key(
+def test_an_app_stopped_by_a_signal_is_drawn_again_when_resumed_and_hears_every_key(
     tmp_path: Path, root: Path
 ) -> None:
     # Without a program, the first start shows the welcome.
@@ -260,7 +260,7 @@ async def test_an_app_whose_terminal_is_lost_while_it_is_suspended_ends(
     assert app.return_code == 129
 
 
-async def test_the_terminal_is_taken_again_by_the_event_loop_and_not_where_the_signal_interrupts_the_app(
+async def test_after_a_stop_the_event_loop_takes_the_terminal_again_not_the_signal_handler(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(signal, "signal", lambda *_: None)

@@ -121,7 +121,7 @@ def test_a_terminal_that_never_answers_still_gets_frames() -> None:
     assert 19 <= line.drive(1.0) <= 21
 
 
-def test_questions_to_a_page_that_is_gone_are_no_slow_link() -> None:
+def test_unanswered_queries_to_a_closed_page_do_not_count_as_a_slow_link() -> None:
     line = Line(most_queued_s=PAGE_QUEUED_S)
     line.drive(1.0)
     line.answers = False

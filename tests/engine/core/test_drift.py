@@ -152,7 +152,7 @@ def test_wrong_sizes_turn_a_square_as_far_as_the_closed_form_says() -> None:
         assert radians(error.heading_deg) == pytest.approx(sides + turns, abs=1e-9)
 
 
-def test_slip_loses_a_share_of_each_turn_and_spreads_as_its_root() -> None:
+def test_wheel_slip_shortens_turns_by_its_percent_with_the_expected_spread() -> None:
     ways = []
     for seed in range(200):
         sim = simulation(DriftSpec(turn_slip_pc=2.0), seed)

@@ -183,7 +183,7 @@ def test_input_returns_the_answers_and_ends_after_the_last(run: Run) -> None:
     ]
 
 
-def test_spoken_text_is_a_row_and_takes_its_time(run: Run) -> None:
+def test_speaking_a_text_is_recorded_and_takes_simulated_time(run: Run) -> None:
     done = run('say("it\'s black", wait=True)\nprint(get_clock() > 0.5)')
     assert done.lines == ["it's black", "True"]
     assert [row.text for row in done.run.output.read_all_rows() if row.stream == 3] == [

@@ -119,7 +119,7 @@ def test_a_question_about_a_runs_end_tells_how_to_get_the_robot_there() -> None:
     assert words and all("m and R" in each for each in words)
 
 
-def test_a_hand_presses_in_a_trial_as_the_first_line_says() -> None:
+def test_presses_planned_in_a_programs_first_line_happen_in_a_lessons_trial() -> None:
     lesson = LESSONS["exact-moves"]
     task = build_task(lesson, "# %%sim_magic_preloaded --press enter@1-2\n", 0)
     hz = task.spec.profile.tick_hz

@@ -161,12 +161,12 @@ def test_using_motor_model_is_refused_as_not_simulated(run_on: RunOn) -> None:
         ("from pybricks.parameters import Font, Image, ImageFile\n1 / 0", "division by zero"),
     ],
 )
-def test_a_name_of_the_earlier_version_is_not_refused_with_what_there_is(
+def test_names_of_the_earlier_pybricks_are_refused_with_what_replaces_them(
     run_on: RunOn, line: str, error: str
 ) -> None:
     assert error in run_on(HEAD + line, profile=PROFILE).errors[-1]
 
 
-def test_the_earlier_version_lacks_its_names_because_there_is_a_later_one(run_on: RunOn) -> None:
+def test_names_of_the_earlier_version_can_be_imported_under_its_profile(run_on: RunOn) -> None:
     text = "from pybricks.tools import DataLog, localtime\nfrom pybricks.robotics import Stop, wait"
     assert not run_on(text, profile="lego-micropython").errors

@@ -53,7 +53,7 @@ def test_a_program_drives_the_robot_by_buttons_of_a_remote_control(lab: Lab) -> 
     assert base.distance() == pytest.approx(100, abs=5) and base.angle() < -20
 
 
-def test_a_game_controller_does_not_drive_the_robot(lab: Lab) -> None:
+def test_a_program_drives_the_robot_by_sticks_of_a_game_controller(lab: Lab) -> None:
     press(
         lab, {500: "xbox.joystick_left_up xbox.lt", 1500: "xbox.joystick_left_left", 2000: "xbox.b"}
     )
