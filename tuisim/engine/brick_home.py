@@ -37,10 +37,10 @@ def find_beside(parts: Sequence[str], own_folder: str) -> str:
 
 
 def place_folder(path: str, own_folder: str) -> str:
-    """Return the folder on this computer to which a path of the program leads.
+    """Return the folder on this computer that stands for a folder that the program names.
 
-    If the path is in the brick's home folder and nothing in the program's folder matches it, return the program's
-    folder.
+    A path outside the brick's home folder is returned unchanged. For a path in it, the result is the matching folder in
+    the program's folder, or else the program's folder itself.
     """
     parts = parts_in_home(path, own_folder)
     return path if parts is None else find_beside(parts, own_folder) or own_folder

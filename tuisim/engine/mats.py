@@ -208,7 +208,11 @@ def mats(folder: str | None = None) -> dict[str, Background]:
 
 
 def find_mat(word: str, folder: str | None = None) -> Background:
-    """Return a mat by its name or by the path of an image, the value of `-b`; `folder` is that of `mats`.
+    """Return the mat that a user names with `-b`: by its name, or by the path of an image.
+
+    Args:
+        word: The name or the path.
+        folder: As for `mats`.
 
     Raises:
         BackgroundError: it does not exist, or has no image.

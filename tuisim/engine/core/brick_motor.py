@@ -156,7 +156,10 @@ class BrickMotor:
         return self.moving_dps
 
     def read_turn(self, now_ns: int) -> tuple[float, float]:
-        """Return position and speed of the encoder, in degrees, as a program reads them after the last tick."""
+        """Return the encoder's position in degrees and its speed in degrees per second, as of the last tick.
+
+        The values change only with ticks, so `now_ns` makes no difference.
+        """
         return self.position_deg, self.counting_dps
 
     @property

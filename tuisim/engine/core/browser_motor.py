@@ -263,7 +263,11 @@ class BrowserMotor:
         return 0.0 if self.mode == STOPPED else self.speed_dps
 
     def read_turn(self, now_ns: int) -> tuple[float, float]:
-        """Return position and speed of the encoder; the speed is not the register's, which a stopped motor keeps."""
+        """Return the encoder's position in degrees and its speed in degrees per second, as of the last tick.
+
+        The speed is 0 while the motor has no command. The values change only with ticks, so `now_ns` makes no
+        difference.
+        """
         return self.position_deg, self.counting_dps if self._command else 0.0
 
     @property

@@ -78,7 +78,8 @@ class Solids:
     Args:
         world: Walls and obstacles.
         robot: The robot; its outline is used.
-        early: Fraction of a tick's turn that already applies to the motion of that tick.
+        early: Which heading the robot drives along in a tick in which it turns: 0 for that before the turn, 1 for that
+            after it, or a fraction between them.
     """
 
     def __init__(self, world: WorldSpec, robot: RobotSpec, early: float = 0.0) -> None:

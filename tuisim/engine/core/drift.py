@@ -75,7 +75,10 @@ def _build_equal_sensors(drift: DriftSpec) -> DriftSpec:
 
 @lru_cache(maxsize=64)
 def _draw_normal(seed: int, channel: str) -> float:
-    """Return a normally distributed number for one seed and channel, limited to `MAX_DEVIATIONS`."""
+    """Return a normally distributed number for a seed, limited to ±`MAX_DEVIATIONS`.
+
+    `channel` names the error that is drawn, so that each error of a run gets a number of its own.
+    """
     far, turn = draw_numbers(seed, 0, channel, 2)
     return max(-MAX_DEVIATIONS, min(MAX_DEVIATIONS, sqrt(-2 * log(1 - far)) * cos(2 * pi * turn)))
 
@@ -175,9 +178,10 @@ class _Wheel:
         """How far the wheel has turned in the tick before."""
 
     def engage_mm(self, motor_mm: float) -> float:
-        """Return how far the wheel rolls in a tick, with its backlash and its real diameter.
+        """Return how far the wheel rolls in a tick, given its backlash and its real diameter.
 
-        `motor_mm` is how far a wheel without errors would roll.
+        Args:
+            motor_mm: How far a wheel without backlash and of the nominal diameter would roll.
         """
         half = self._half_mm
         if half:
@@ -224,13 +228,14 @@ class SlippingWheels:
         self._turn_slip = drift.turn_slip_pc / 100
 
     def turn_deg(self, tick: int, left_deg: float, right_deg: float) -> tuple[float, float]:
-        """Return by how many degrees the left and the right motor move the robot in a tick, in spite of all errors.
-
-        A robot without errors whose motors turn by these degrees moves just as far as this robot.
+        """Return the turns of both motors that would move a robot without errors as far as a tick moves this one.
 
         Args:
             tick: The number of the tick.
-            left_deg, right_deg: The real turns of the motors in the tick.
+            left_deg, right_deg: The real turns of the left and the right motor in the tick.
+
+        Returns:
+            The turns of the left and the right motor, in degrees.
         """
         if not (left_deg or right_deg):
             self._left.before_mm = self._right.before_mm = 0.0

@@ -160,7 +160,8 @@ def _glide_straight(
 class BrickDrive:
     """The pose of a robot with a brick, which changes with the rotation of its wheels.
 
-    `early` is the fraction of a tick's turn that already applies to the motion of that tick.
+    `early` says which heading the robot drives along in a tick in which it turns: 0 for that before the turn, 1 for
+    that after it, or a fraction between them.
     """
 
     __slots__ = (

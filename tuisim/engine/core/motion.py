@@ -207,7 +207,13 @@ class Motion:
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
 
     def _begin(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
-        """Set the initial state, as far as it can differ between runs of the same robot in the same world."""
+        """Set the state in which a run begins, except for what is the same in all runs of this robot in this world.
+
+        Args:
+            spec: The run.
+            sink: Receives the tick records.
+            motor_sink: Receives the values of the motors' drivers; None without drivers, or if they are not recorded.
+        """
         self.spec = spec
         self._sink = sink
         self.noise = spec.world.noise
@@ -421,8 +427,13 @@ class Motion:
     ) -> tuple[float, tuple[float, float] | None]:
         """Undo the part of a tick that an obstacle or wall blocks.
 
+        Args:
+            before: The states of the left and the right wheel's motor before the tick.
+            left_deg, right_deg: How far these motors have turned in the tick.
+
         Returns:
-            The part of the tick that remains, and the displacement that pushes the robot aside along x and y.
+            The part of the tick that remains, 0 … 1, and the displacement in mm along x and y by which obstacles push
+            the robot aside; None for no displacement.
         """
         left_mm, right_mm = left_deg * self._left_mm_per_deg, right_deg * self._right_mm_per_deg
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):

@@ -36,7 +36,7 @@ class MotorSink(Protocol):
     """
 
     def extend_buffer(self, ticks: int) -> Buffer:
-        """Return a writable buffer with space for the records of `ticks` ticks, from byte 64 on."""
+        """Return a writable buffer with space for the records of `ticks` ticks; the first record begins at byte 64."""
 
     def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
         """Rewrite the records of all past ticks for another set of motors.

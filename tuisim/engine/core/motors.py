@@ -44,7 +44,7 @@ class Motor(Protocol):
 
     @property
     def mode(self) -> int:
-        """The motor's mode, one of the constants above. The motor runs in all modes but `STOPPED`."""
+        """The motor's mode: one of the constants of `engine.core.motors`. The motor runs in all modes but `STOPPED`."""
 
     @property
     def speed_dps(self) -> float:

@@ -41,7 +41,14 @@ def prepare() -> None:
 
 
 def generate_bytes(seed: int, tick: int, channel: str, size: int) -> bytes:
-    """Return `size` random bytes for one seed, tick and channel."""
+    """Return random bytes that are always the same for the same arguments.
+
+    Args:
+        seed: The seed of the run.
+        tick: The tick, or another number that makes the bytes differ.
+        channel: A name for what the bytes are used for, such as a sensor's: each name has bytes of its own.
+        size: The number of bytes.
+    """
     random: bytes = _load_shake_128()(f"{seed}/{tick}/{channel}".encode()).digest(size)
     return random
 
@@ -53,9 +60,9 @@ def _list_errors(level: int) -> tuple[int, ...]:
 
 
 class Clamping(NamedTuple):
-    """How clamping to 0 … 255 changes the errors of pixels, for errors of up to one level.
+    """The mean and the variance of the light noise of a pixel, after its noisy value is clamped to 0 … 255.
 
-    It has the mean and the variance of the error for each value of a pixel.
+    Both are given for each value that the pixel can have without noise; one object is for one noise level.
     """
 
     shift: tuple[float, ...]
@@ -165,7 +172,14 @@ def _generate_reading_block(seed: int, block: int, channel: str) -> bytes:
 
 
 def draw_numbers(seed: int, tick: int, channel: str, count: int) -> list[float]:
-    """Return `count` numbers from 0 up to 1, evenly distributed, for one seed, tick and channel."""
+    """Return random numbers from 0 up to 1, evenly distributed, that are always the same for the same arguments.
+
+    Args:
+        seed: The seed of the run.
+        tick: The tick, or another number that makes the numbers differ.
+        channel: A name for what the numbers are used for: each name has numbers of its own.
+        count: How many numbers to return.
+    """
     numbers = Struct(f"<{count}I").unpack(generate_bytes(seed, tick, channel, 4 * count))
     return [number / _NUMBERS for number in numbers]
 

@@ -85,7 +85,13 @@ MAX_COST_MS = 60_000
 
 
 def _build_cost(*, default: int, source: str, later: bool = False) -> Any:
-    """Return a data class field for the duration of a call in simulated ns; files may also give it in ms."""
+    """Return a data class field for the duration of a call in simulated ns; files may also give it in ms.
+
+    Args:
+        default: The duration if a file gives none, in ns.
+        source: Where that number comes from.
+        later: Whether the field was added after runs had been stored without it; see `Value`.
+    """
     return whole(0, MAX_COST_MS * MS, default=default, unit="ns", source=source, later=later)
 
 

@@ -206,9 +206,10 @@ class Simulation(Motion):
             self.__class__ = FurtherMotors
 
     def _take_others(self, sources: Sequence[int | None]) -> None:
-        """After a change of the robot, update the end stops and the last reports of the motors that drive no wheel.
+        """Update the end stops and the last reported turns of motors that drive no wheel, after the robot was changed.
 
-        `sources` has the earlier number of each such motor among all motors; None for a new one.
+        Args:
+            sources: For each such motor its number among all motors before the change; None for a new motor.
         """
         stops = self._stops
         reported = self._reported
@@ -296,7 +297,10 @@ class FurtherMotors(Simulation):
         return done + super().advance(ticks - done, until_change) if done < ticks else done
 
     def notice_change(self) -> bool:
-        """Report the turns of the motors that drive no wheel, then do and return the same as `Motion.notice_change`."""
+        """Pass the turns of the motors that drive no wheel to `on_turns`, unless they continue as passed before.
+
+        After that, do and return the same as `Motion.notice_change`.
+        """
         self._report_turns()
         return super().notice_change()
 

@@ -87,7 +87,10 @@ def color(*, default: Any = MISSING, **about: Any) -> Any:
 
 
 def part(of: type, *, default: Any = MISSING, optional: bool = False, **about: Any) -> Any:
-    """Return a data class field for another spec of class `of`; `about` are arguments of `values.Part`."""
+    """Return a data class field for another spec of class `of`, or also for None if `optional` is True.
+
+    `about` are arguments of `values.Part`.
+    """
     value = Part(of, **about)
     return _field(value, default, optional=optional)
 

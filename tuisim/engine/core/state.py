@@ -60,7 +60,7 @@ class Instant:
 
 @dataclass(frozen=True, slots=True)
 class Present:
-    """What a program would read between two ticks, where that differs from the values of the earlier one."""
+    """The values that a program would read between two ticks, as far as they can differ from those of the last tick."""
 
     turns: tuple[tuple[float, float], ...]
     """Position in degrees and speed in degrees per second of each motor."""
@@ -72,7 +72,7 @@ class Present:
     """The number of user actions in the record of the tick; after another one, these values are outdated."""
 
     def apply(self, instant: Instant) -> Instant:
-        """Return the instant of the earlier tick with these values."""
+        """Return a copy of the last tick's instant in which these values replace those of the tick."""
         left, right, *_ = self.turns
         return replace(
             instant,

@@ -152,7 +152,14 @@ def _specify_servo(
     laws: frozenset[MotorLaw] = SERVO_LAWS,
     **more: Any,
 ) -> CallSpec:
-    """Return the description of a command that only motors of the Pybricks firmware have."""
+    """Return the description of a command that only motors of the Pybricks firmware have.
+
+    Args:
+        apply: Executes the command; takes the motor or drive base, the time in ns and the values.
+        ranges: The allowed range of each value.
+        laws: The motor laws under which the command is allowed.
+        more: Other fields of `CallSpec`.
+    """
     return CallSpec(apply, ranges, laws, **more)
 
 

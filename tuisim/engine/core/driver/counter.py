@@ -215,9 +215,13 @@ class Counter:
         return speed_dps
 
     def _search(self, time: int) -> tuple[int, int]:
-        """Return a change of the count and how long it took, from which the driver computes a speed.
+        """Return a change of the count in half degrees, and how long it took in ticks of the clock, to compute a speed.
 
-        The duration is in ticks of the clock. Both numbers are for the changes before `time`, which is now.
+        The driver looks back over more and more changes, until they took at least `MIN_SPAN`. If the count was the same
+        then as it is now, the result is 0 and 1.
+
+        Args:
+            time: Now, in ticks of the clock.
         """
         turned = span = 0
         straight = self._straight

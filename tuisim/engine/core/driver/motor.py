@@ -194,9 +194,9 @@ class DriverMotor(MotorDriver):
         return self._look_ns
 
     def find_last_look_ns(self, time_ns: int) -> int:
-        """Return when the driver checks the motor's state for the last time up to `time_ns`, from its next check on.
+        """Return the time in ns of the last check of the motor's state by the driver that is not after `time_ns`.
 
-        If the next check is after `time_ns`, return the time of the next check.
+        If even the next check is after `time_ns`, return the time of that check.
         """
         return self._look_ns + max(0, time_ns - self._look_ns) // LOOK_NS * LOOK_NS
 

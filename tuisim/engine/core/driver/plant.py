@@ -63,9 +63,9 @@ MEDIUM = PlantSpec(
 
 @dataclass(frozen=True, slots=True)
 class Circuit:
-    """Values that follow from a motor's constants. One object is for a motor with a duty, another for one that coasts.
+    """Values that are computed once from a motor's constants and its battery, such as the steady speed.
 
-    A motor with a duty of 0 brakes.
+    One object describes a motor that has a duty, where 0 brakes; another one describes a motor that coasts.
     """
 
     dps_per_percent: float

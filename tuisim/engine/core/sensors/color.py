@@ -312,8 +312,8 @@ def build_noisy_rgb_reader(
 ) -> Callable[[float, float, float, int, int, int], tuple[int, int, int]]:
     """Return a function that computes a sensor's red, green and blue with noise, truncated to integers.
 
-    It takes the robot's x and y in mm, its heading in degrees, and the level, seed and tick of the noise, and agrees
-    with `measure_color(...).rgb`; as `build_rgb_reader`, it is called in every turn of a control loop.
+    The function takes the robot's x and y in mm, its heading in degrees, and the level, seed and tick of the noise. Its
+    result equals `measure_color(...).rgb`, but it is faster, because control loops call it in every iteration.
     """
     diameter = spec.diameter_mm
     right_mm = spec.x_mm
@@ -361,7 +361,10 @@ def _measure_noisy_sums(
 
 
 def _read_noisy_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
-    """Return the pixels of the box under a sensor, with noise in its disc, whose mean is the sensor's reading."""
+    """Return the pixels of the box under a colour sensor, with light noise on the pixels in the sensor's disc.
+
+    The mean of the noisy pixels in the disc is what the sensor reads at this instant.
+    """
     diameter = spec.diameter_mm
     box = field.read_box(diameter, *find_box_corner(instant.pose, spec))
     if not instant.noise.light:
@@ -421,9 +424,10 @@ disc_pixels_of = lru_cache(maxsize=16)(count_disc_pixels)
 
 
 def read_pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
-    """Return the pixels under a sensor as RGB bytes, row-major, d × d pixels, with noise and brightness.
+    """Return the pixels of the square box around a colour sensor's disc, with noise and brightness.
 
-    Pixels outside the disc are OUTSIDE_DISC_RGB.
+    The pixels come row by row, with three bytes each: red, green and blue. Those outside the disc have the colour
+    OUTSIDE_DISC_RGB.
     """
     box = bytearray(_read_lit_box(spec, instant, field))
     for index, weight in enumerate(disc_weights(spec.diameter_mm, "mean")):

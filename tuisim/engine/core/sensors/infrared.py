@@ -80,9 +80,10 @@ def seek(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> tuple[int, ...]:
 def _find_pressed(
     channel: int, time_s: float, world: WorldSpec, by_hand: Collection[str]
 ) -> frozenset[str]:
-    """Return the buttons that are pressed on a channel of the remote control.
+    """Return the names of the buttons that are pressed on a channel of the remote control; empty if none is.
 
-    Buttons pressed by hand go before those of the world. If presses of the world overlap, the last in the list applies.
+    If a user presses buttons by hand, exactly these are pressed, on every channel. Otherwise the presses in
+    `world.remote` apply; if several overlap, the last one in the list.
     """
     if held := [button for name, button in REMOTE_BY_HAND.items() if name in by_hand]:
         return frozenset(held)
@@ -100,7 +101,8 @@ def remote(
     Args:
         time_s: Simulated time, which selects the presses that are part of the world.
         world: The world.
-        by_hand: Names of `REMOTE_BY_HAND`: if there is one, these buttons are pressed on every channel, and no others.
+        by_hand: Names of `REMOTE_BY_HAND` that a user presses. If there are any, they are pressed on every channel, and
+            the presses of the world are ignored.
     """
     button_1, two, three, four = (
         REMOTE_CODES.get(_find_pressed(channel, time_s, world, by_hand), 0)

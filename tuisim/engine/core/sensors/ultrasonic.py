@@ -80,14 +80,14 @@ def find_first_hit_mm(
     step: tuple[float, float],
     most: float,
 ) -> float:
-    """Return the distance in mm at which a ray meets one of the edges, at most `most`.
+    """Return the distance in mm at which a ray meets one of the edges; `most` if it meets none before.
 
     Args:
-        edges: Sorted by coordinate.
-        places: Their coordinates.
-        start: Start of the ray: across the edges, and along them.
-        step: Change in each direction per mm along the ray.
-        most: Length of the ray.
+        edges: Parallel edges, sorted by their coordinate across.
+        places: These coordinates, in the same order.
+        start: Where the ray begins: its coordinate across the edges, and that along them.
+        step: How much each of these two coordinates changes per mm along the ray.
+        most: Length of the ray in mm.
     """
     across, along = start
     across_step, along_step = step

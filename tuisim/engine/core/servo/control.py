@@ -46,9 +46,13 @@ class Ending(IntEnum):
 def _splice(
     start: Segment, spliced: Segment | None, build: Callable[[Segment], Trajectory]
 ) -> Trajectory:
-    """Return the trajectory that `build` makes from a start.
+    """Return the trajectory that `build` makes for a motion from a start.
 
-    If its first segment only continues the running segment `spliced`, it begins where that segment began.
+    Args:
+        start: The start.
+        spliced: The segment that is running at the start; None for none. If the new trajectory would go on with the
+            same acceleration, it is built from the begin of this segment instead.
+        build: Returns the trajectory from a start.
     """
     trajectory = build(start)
     if spliced is None or trajectory.first.acceleration != start.acceleration:
@@ -189,7 +193,10 @@ class Controller:
         self._begin(trajectory, timed=False)
 
     def match_pace(self, other: Controller) -> None:
-        """Make the new trajectory proportional in position to another controller's, so that both take the same time."""
+        """Replace the trajectory by that of another controller, scaled to its own length: both then take the same time.
+
+        If one of the two controllers has no trajectory, nothing changes.
+        """
         if self.trajectory is not None and other.trajectory is not None:
             ours = self.trajectory
             theirs = other.trajectory
@@ -199,13 +206,13 @@ class Controller:
     def run_in_proportion(
         self, now_us: int, measured: Measure, other: Controller, part: int, whole: int
     ) -> None:
-        """Begin a motion whose ways are in a fixed proportion, `part` to `whole`, to those of another controller.
+        """Begin a motion that follows that of another controller, with its distances multiplied by `part` / `whole`.
 
         Args:
             now_us: The present time.
             measured: Returns where the motion is, from which it begins if this controller is passive.
             other: The other controller.
-            part, whole: The proportion of their ways.
+            part, whole: The factor for distances.
         """
         assert other.trajectory is not None
         start, _ = self._find_start(now_us, measured)
@@ -307,11 +314,13 @@ class Controller:
     # Following
 
     def note_lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
-        """React to a motion that lags behind its trajectory: pause the trajectory, or give up the missing distance.
+        """React to a motion that lags so far behind its trajectory that the controller's power cannot keep it there.
+
+        A motion without a target position gives up the missing distance; any other motion pauses its trajectory.
 
         Args:
             now_us: The present time.
-            passed_us: Time since the last call, or since the motion was last where it should be.
+            passed_us: How long the motion has lagged behind, but no longer than since the last call.
             milli, rate: Position and rate of the motion.
         """
         settings = self.settings

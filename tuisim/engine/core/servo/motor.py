@@ -59,7 +59,13 @@ class Guide(Protocol):
         """Return the time in µs at which the current segment of the motion ends; None if it has no end."""
 
     def note_lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
-        """React to a motor that has lagged behind its trajectory for `passed_us`, until now."""
+        """React to a motor that lags behind its trajectory.
+
+        Args:
+            now_us: The present time.
+            passed_us: How long the motor has lagged behind, until now.
+            milli, rate: The motor's position in thousandths of a count, and its speed in counts per second.
+        """
 
     def lets_go(self, now_us: int, rate: int) -> bool:
         """Return whether a motor whose motion has ended stops following this guide.
@@ -432,7 +438,12 @@ class ServoMotor:
         return self._catch_up(halves, noise_dps)
 
     def _catch_up(self, halves: int, noise_dps: float) -> float:
-        """Turn the motor in one tick as far as it can towards its target position; return the rotation in degrees."""
+        """Turn the motor in one tick as far as it can towards a target position; return the rotation in degrees.
+
+        Args:
+            halves: The target position, in half thousandths of a count.
+            noise_dps: The noise that is added to the motor's speed.
+        """
         fastest_deg, wanted_deg = self._fastest_deg, self._convert_to_deg(halves)
         turned = max(-fastest_deg, min(fastest_deg, wanted_deg - self.position_deg))
         reached = turned == wanted_deg - self.position_deg and not noise_dps

@@ -97,7 +97,7 @@ class Trajectory(NamedTuple):
         return self.last if time_us <= self.end.start_us else self.end
 
     def find_segment_end_us(self, time_us: int) -> int | None:
-        """Return the time in µs at which the segment to which a time belongs ends; None if it has no end."""
+        """Return when the segment that contains a time ends, in µs like that time; None if the segment has no end."""
         if time_us < self.even.start_us:
             return self.even.start_us
         if self.endless or time_us > self.end.start_us:
@@ -178,12 +178,12 @@ def build_angle_move(
 def _speed_up(
     length: int, from_rest: int, top_rate: int, acceleration: int, slowing: int
 ) -> tuple[int, int, int]:
-    """Return the part of a move in which the rate is constant: its begin and its end, in counts, and that rate.
+    """Return where in a move the rate is constant: the begin and the end of that part in counts, and that rate.
 
     Begin and end are equal if the move is too short to reach `top_rate`.
 
     Args:
-        length: How far the move goes.
+        length: How far the move goes, in counts.
         from_rest: Where the move would have begun if it had sped up from rest; 0 or less.
         top_rate: The highest rate.
         acceleration, slowing: How the move speeds up before that part, and how it stops after it.
