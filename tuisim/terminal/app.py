@@ -56,7 +56,7 @@ _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066
 
 
 class Sanitize(LineFilter):
-    """A filter that, before drawing, replaces control characters and those that change the direction of writing."""
+    """A filter for drawn text: it replaces control characters, and characters that change the direction of writing."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
         """Return the segments with a blank in place of each replaced character, so that their width stays the same."""
@@ -75,7 +75,7 @@ def _blank_match(match: re.Match[str]) -> str:
 
 
 def offer(app: App[Any], *files: Path) -> None:
-    """Let the browser that shows an app download files; do nothing for an app in a terminal.
+    """Offer files for download in the browser that shows an app; do nothing for an app in a terminal.
 
     The app may run on another machine than the browser.
     """
@@ -113,7 +113,7 @@ class BufferedApp(HookedApp):
         await super().on_event(event)
 
     async def _give(self, event: events.Event) -> None:
-        """Handle an event of the user whose turn has come, unless it is to be ignored."""
+        """Handle an event of the user, after all earlier ones; drop the event if nothing can handle it."""
         if not self._ignores(event):
             await super().on_event(event)
 
@@ -197,7 +197,10 @@ class BufferedApp(HookedApp):
             loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
 
     def on_terminal_answered(self, event: TerminalAnswered) -> None:
-        """Switch to pixels if the terminal's answers allow it; ask about kitty's protocol if that is still in doubt."""
+        """Switch to pixels if the terminal's answers allow it.
+
+        If it is still unknown whether the terminal knows kitty's protocol, ask the terminal.
+        """
         if event.facts.asks_for_kitty and self.own_driver is not None:
             AnswerParser.is_asked = True
             self.own_driver.write(KITTY_QUESTIONS)
@@ -227,7 +230,7 @@ class BufferedApp(HookedApp):
             self.call_after_refresh(self.handle_situation_change)
 
     def handle_situation_change(self) -> None:
-        """Handle that other keys may be available now; this class does nothing."""
+        """Handle a change of the situation after which other keys may be available; this class does nothing."""
 
     def redraw_pictures(self) -> None:
         """Draw all pictures again, with pixels or glyphs as `picture_mode` says now."""

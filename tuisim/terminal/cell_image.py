@@ -137,9 +137,9 @@ def draw_cells(grid: CellGrid) -> Image:
 
 @lru_cache(maxsize=4096)
 def _draw_mask(text: str, bold: bool, italic: bool, underline: bool, strike: bool) -> Mask:
-    """Return how much of each pixel of a cell a character covers, 0 to 255.
+    """Return how much of each pixel of a cell a character covers, 0 to 255, shape (height, width) of a cell.
 
-    After a NUL, the result is the mask of the right half of a wide character.
+    If a NUL precedes the character in `text`, the result is for the right half of that wide character.
     """
     width, height = CELL_PX
     right = text.startswith("\0")
@@ -191,7 +191,10 @@ def _load_font() -> FreeTypeFont:
 
 
 def _write_character(text: str, bold: bool, italic: bool) -> Mask:
-    """Return how much of each pixel of two cells a character covers, 0 to 255; a narrow one is in the left cell."""
+    """Return how much of each pixel of two neighbouring cells a character covers, 0 to 255.
+
+    A narrow character is in the left cell.
+    """
     from PIL import Image, ImageDraw
 
     width, height = CELL_PX

@@ -214,7 +214,7 @@ class PixelView(RowsView):
         self._refresh_runs(runs)
 
     def _refine_cells(self) -> bool:
-        """Draw some of the coarse cells finely. Return whether more are coarse."""
+        """Draw some of the cells finely that are half blocks so far; return whether some still are."""
         count = REFINED_CELLS if self.picture_mode.is_slow() else QUICKLY_REFINED_CELLS
         if self._tiles is not None:
             self._refresh_runs(self._tiles.refine(count))
@@ -286,7 +286,11 @@ class PixelView(RowsView):
         return cells
 
     def set_signs(self, signs: Mapping[tuple[int, int], int]) -> None:
-        """Show signs in place of some cells of the image, by row and column; an image with pixels is not changed."""
+        """Show signs in place of some cells of the image; an image that is drawn with pixels is not changed.
+
+        Args:
+            signs: The number of each sign's cell, see `cells.sign_cell`, by row and column.
+        """
         rows, cols = self._cells.shape
         changed = {place for place, _ in self._signs.items() ^ signs.items()}
         self._signs = signs
@@ -347,7 +351,7 @@ class LinesView(RowsView):
         return strip
 
     def draw_strip(self, line: Sequence[Run]) -> Strip:
-        """Return a line as a row of the widget."""
+        """Return a line of styled text as a strip, cut or padded to the width of the widget."""
         base = self.rich_style
         whole = Strip([Segment(text, base + style) for text, style in line if text])
         segments = list(whole.adjust_cell_length(self.size.width, base))
@@ -421,7 +425,7 @@ def _build_segment(cell: int) -> Segment:
 
 
 class LazyStrip(MadeOnDemand):
-    """A strip whose segments are made only if Textual needs them; cutting it needs none."""
+    """A strip whose segments are made only if Textual reads them; a part can be cut from it without making them."""
 
     __slots__ = []
 
@@ -501,7 +505,7 @@ class JoinedStrip(LazyStrip):
         return JoinedStrip(self._cut(start, end))
 
     def _cut(self, start: int, end: int) -> list[Strip]:
-        """Return the parts of the strip between two columns."""
+        """Return the columns from `start` up to `end`, as one strip for each part; some may be empty."""
         cut = []
         offset = 0
         for part in self.parts:

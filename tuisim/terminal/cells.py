@@ -108,7 +108,7 @@ _LUMA = np.array([0.299, 0.587, 0.114], np.float32)
 
 @dataclass(frozen=True, slots=True)
 class ColorMode:
-    """The colours of a terminal: how many there are, and whether they are to be used."""
+    """The number of colours of a terminal, and whether only greys are to be used."""
 
     depth: int = TRUECOLOR
     grey: bool = False
@@ -186,8 +186,8 @@ def _mix_pale_8(
 
     Args:
         pixels: Shape (n, 3).
-        thresholds: The dither pattern: the share of white above which a pixel is white, shape (n,).
-        paleness: 1 for grey, 0 for a full colour, shape (n,).
+        thresholds: The dither pattern, shape (n,): a pale pixel becomes white if its share of white is larger.
+        paleness: From 0 for a full colour to 1 for grey, shape (n,); a pixel above 0.75 is pale.
     """
     white = np.interp(pixels @ _LUMA, *_SHARES_8) > thresholds
     dithered = np.where(white[:, None], _STANDARD[7], _STANDARD[0])
@@ -198,7 +198,12 @@ def _mix_pale_8(
 
 @lru_cache(maxsize=8192)
 def build_color_codes(rgb: int, depth: int) -> tuple[str, str]:
-    """Return the codes that set a colour 0xRRGGBB as foreground and as background, for a number of colours."""
+    """Return the SGR codes that set a colour 0xRRGGBB as foreground and as background.
+
+    Args:
+        rgb: The colour.
+        depth: Number of colours of the terminal; if it lacks this one, the codes are those of the nearest one.
+    """
     if depth >= TRUECOLOR:
         channels = "{};{};{}".format(*unpack_rgb(rgb))
         return f"38;2;{channels}", f"48;2;{channels}"
@@ -211,7 +216,10 @@ def build_color_codes(rgb: int, depth: int) -> tuple[str, str]:
 
 
 def find_sgr_index(rgb: int, depth: int) -> int:
-    """Return the number of the palette's colour nearest to 0xRRGGBB: 16 to 255, or 0 to 15 for a depth of 16."""
+    """Return the index, in a terminal's palette of `depth` colours, of the colour nearest to 0xRRGGBB.
+
+    The index is from 16 to 255 with 256 colours, else from 0 to `depth` - 1.
+    """
     color = np.array([unpack_rgb(rgb)], np.int32)
     return int(
         (_find_nearest_256(color) if depth >= PALETTE_256 else _find_nearest_16(color, depth))[0]
@@ -270,7 +278,14 @@ def measure_darkness(points: npt.NDArray[np.uint8]) -> Covered:
 def draw_mono_cells(
     picture: Pixels, glyphs: GlyphSet, places: CellIndex, cell_set: CellSet
 ) -> Cells:
-    """Return some cells of a picture without colours: as braille dots or ASCII signs, shape (n,)."""
+    """Return some cells of a picture, drawn without colours as braille dots or ASCII signs, shape (n,).
+
+    Args:
+        picture: As many points in each cell as the glyphs have.
+        glyphs: The glyphs of `cell_set`.
+        places: Rows and columns of the cells.
+        cell_set: Braille or ASCII.
+    """
     rows = len(picture) // glyphs.rows
     cols = picture.shape[1] // glyphs.cols
     points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(0, 2, 1, 3, 4)[
@@ -297,7 +312,12 @@ def find_cell_points(cell_set: CellSet) -> CellPoints:
 
 
 def draw_mono_rows(picture: Pixels, cell_set: CellSet) -> list[str]:
-    """Return an image as rows of glyphs without colours; it must have as many points in a cell as the set."""
+    """Return an image as rows of glyphs without colours.
+
+    Args:
+        picture: The image, with as many points in each cell as `find_cell_points(cell_set)` says.
+        cell_set: The set of glyphs.
+    """
     glyphs = build_glyph_set(cell_set)
     shape = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
     cells = draw_mono_cells(picture, glyphs, list_cells(*shape), cell_set).reshape(shape)

@@ -29,7 +29,7 @@ CellIndex = tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]
 
 
 def list_cells(rows: int, cols: int) -> CellIndex:
-    """Return the index of every cell of a picture with this number of rows and columns of cells."""
+    """Return the row and the column of every cell of a picture with this number of rows and columns of cells."""
     at_rows, at_cols = np.indices((rows, cols)).reshape(2, -1)
     return at_rows, at_cols
 
@@ -115,9 +115,9 @@ def _find_typical(
 ) -> list[npt.NDArray[np.intp]]:
     """Return the index of the typical point in each cell, first among its covered points, then among its other points.
 
-    The typical point is the point nearest to the mean of its group. The mean itself often is no colour of the picture,
-    and looks blurred. Of two points that are as near, it is the darker one: with the lighter one, the ground would be a
-    notch in the edge of a band beside a robot's corner.
+    The typical point of a group is the point nearest to the mean of the group. The mean itself often is no colour of
+    the picture, and looks blurred. Of two points equally near, it is the darker one: with the lighter one, the
+    background would look like a notch in the edge of a band beside a robot's corner.
     """
     points: list[npt.NDArray[np.intp]] = []
     for share in (covered, 1 - covered):

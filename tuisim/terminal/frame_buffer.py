@@ -145,13 +145,13 @@ class FrameBuffer:
     def _put(
         self, pen: _Pen, y: int, first: int, cells: Sequence[Cell]
     ) -> Iterator[tuple[int, PictureCell]]:
-        """Write the cells of a row that differ; yield column and cell of those that are parts of a picture.
+        """Pass changed cells of a row to the pen; instead, yield column and cell of those that are parts of a picture.
 
         Args:
             pen: Writes the cells.
-            y: The row.
+            y: The row of the screen.
             first: Column of the first cell.
-            cells: The cells.
+            cells: The new cells, side by side.
         """
         row = self._rows.setdefault(y, [])
         if (lacking := first + len(cells) - len(row)) > 0:
@@ -245,7 +245,7 @@ def _split_text(text: str, style: Style | None, mode: TextMode) -> tuple[Cell, .
 
 
 def _simplify_cell(text: str, look: CellLook) -> Cell:
-    """Return a cell that looks the same as another one, and needs the fewest codes."""
+    """Return the cell that looks the same as this character in this style, and needs the fewest codes."""
     if text == _UPPER_HALF and _is_same(look.foreground, look.background) and not look.attributes:
         text = " "
     if text == " " and _SEEN_ON_BLANKS.isdisjoint(look.attributes):
@@ -274,7 +274,10 @@ _ITALIC = "3"
 
 
 def _strip_colors(attributes: tuple[str, ...], style: Style) -> tuple[str, ...]:
-    """Return the attributes of a style without colours; reverse video stands for a background that stands out."""
+    """Return the attributes for a style that is drawn without its colours.
+
+    Reverse video is added if the style has a light background, so that the background still stands out.
+    """
     background = style.bgcolor.triplet if style.bgcolor else None
     if background is None or _REVERSE in attributes:
         return attributes
@@ -355,7 +358,7 @@ class _Pen:
         """Runs that are not written yet: those of one style in a block of rows are written together."""
 
     def take(self, x: int, y: int, text: str, look: CellLook, row: Sequence[Cell | None]) -> None:
-        """Collect a cell of a row, which is written when the other cells of the row are known.
+        """Collect a cell of a row; it is written later, when the rest of the row is known.
 
         Args:
             x, y: Column and row of the cell.
@@ -390,7 +393,14 @@ class _Pen:
         self._runs = []
 
     def write(self, x: int, y: int, text: str, look: CellLook, row: Sequence[Cell | None]) -> None:
-        """Write a cell of a row whose other cells are known; arguments as for `take`."""
+        """Append the codes that write a cell, in a row that changes no more.
+
+        Args:
+            x, y: Column and row of the cell.
+            text: Its character.
+            look: Its style.
+            row: All cells of the row.
+        """
         if not text:
             # An empty text is the right half of a wide character, which the left half draws.
             return
@@ -413,7 +423,7 @@ class _Pen:
             self._parts.append(f"\x1b[{x - self._x}C")
 
     def _can_write(self, cell: Cell | None) -> bool:
-        """Return whether a cell can be written in the current style, without codes and in one column."""
+        """Return whether a cell is one ASCII character that needs no codes in the current style."""
         if cell is None or isinstance(cell[1], PictureCell) or not cell[0]:
             return False
         return cell[0].isascii() and not any(self._switch_look(cell[1]))

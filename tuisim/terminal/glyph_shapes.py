@@ -38,7 +38,7 @@ class GlyphDot:
 
 @dataclass(frozen=True, slots=True)
 class Bend:
-    """A line of a glyph through points, in pixels from the upper left corner of the cell."""
+    """A line of a glyph through several points, which are in pixels from the upper left corner of the cell."""
 
     points: tuple[tuple[float, float], ...]
     width: float
@@ -64,7 +64,12 @@ _ARC_POINTS = 9
 
 @lru_cache(maxsize=4096)
 def draw_character(char: str, width: int, height: int) -> tuple[GlyphShape, ...] | None:
-    """Return the shapes that a character has in a cell of a size in pixels; None for one that a font draws."""
+    """Return the shapes of a block or box drawing character in a cell; None for a character that a font has to draw.
+
+    Args:
+        char: The character.
+        width, height: Size of the cell in pixels.
+    """
     if len(char) != 1:
         return None
     if eighths := _EIGHTHS.get(char):
@@ -128,7 +133,12 @@ def _choose_thickness(width: int) -> int:
 
 
 def _draw_box(words: list[str], width: int, height: int) -> Iterator[GlyphShape]:
-    """Yield the shapes of a box drawing character, given by the words of its Unicode name."""
+    """Yield the shapes of a box drawing character, such as `│`.
+
+    Args:
+        words: The words of the character's Unicode name.
+        width, height: Size of the cell in pixels.
+    """
     thick = _choose_thickness(width)
     if "DIAGONAL" in words:
         rising = ((0.0, float(height)), (float(width), 0.0))
@@ -153,7 +163,11 @@ def _draw_box(words: list[str], width: int, height: int) -> Iterator[GlyphShape]
 
 
 def _parse_arms(words: list[str]) -> dict[str, str]:
-    """Return the weight of each arm of a box drawing character, by the arm's direction."""
+    """Return the weight of each line from the middle of a box drawing character, such as light, by its direction.
+
+    Args:
+        words: The words of the character's Unicode name.
+    """
     arms: dict[str, str] = {}
     weight = ""
     parts = " ".join(words).split(" AND ")
@@ -181,7 +195,7 @@ def _draw_arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> 
     }
 
     def find_edges(sides: tuple[str, str], axis: str) -> tuple[int, int]:
-        """Return where the lines of two opposite arms begin and end across the arms, in pixels of the cell."""
+        """Return the outer edges, in pixels along `axis`, of the strips that draw the arms on two opposite sides."""
         lines = [strip for side in sides if side in arms for strip in strips[arms[side]]] or [
             (0, thick)
         ]

@@ -69,9 +69,9 @@ GLYPHS: tuple[str, ...] = (
 
 @cache
 def block_patterns() -> dict[str, tuple[int, int]]:
-    """Return for each block glyph how many rows of two points it has, and as bits which points it covers.
+    """Return for each glyph of sextants or octants its number of rows of two points, and a bit for each point covered.
 
-    Bit 0 is the upper left point.
+    Bit 0 is the upper left point; the bits follow row by row.
     """
     octants = {char: (4, pattern) for pattern, char in enumerate(_list_octants())}
     return {char: (3, pattern) for pattern, char in enumerate(_list_sextants())} | octants
@@ -172,7 +172,7 @@ def build_glyph_set(cells: CellSet) -> GlyphSet:
 
 @cache
 def build_half_block(cells: CellSet) -> GlyphSet:
-    """Return a set with only the half block, in a cell with as many points as another set has."""
+    """Return a set with only the upper half block, in a cell with as many points as the set `cells` has."""
     fine = build_glyph_set(cells)
     upper = np.clip(fine.rows / 2 - np.arange(fine.rows), 0, 1).astype(np.float32)
     return GlyphSet(fine.cols, fine.rows, np.repeat(upper, fine.cols)[None], np.array([0]))

@@ -48,10 +48,10 @@ _TURN = "_turn"
 
 
 class Turn:
-    """The messages and callbacks that follow from one key; it ends when all of them have been handled.
+    """One key, with all messages and callbacks that follow from it; a turn ends when all of them were handled.
 
     Args:
-        ended: Called once, at the end.
+        ended: Called once, when the turn ends.
     """
 
     def __init__(self, ended: Callable[[], None]) -> None:
@@ -67,7 +67,10 @@ class Turn:
 
     @contextmanager
     def step(self, pump: MessagePump) -> Iterator[None]:
-        """In a `with` block, handle a message or callback of the turn; messages that it causes join the turn."""
+        """In a `with` block, handle one message or callback of the turn.
+
+        Messages that are posted in the block belong to the turn, too.
+        """
         token = _current.set(self)
         try:
             yield
@@ -76,7 +79,7 @@ class Turn:
             self.drop(pump, 1)
 
     def add(self, pump: MessagePump) -> None:
-        """Add a message or callback, which its message pump has to handle before the turn ends."""
+        """Add one message or callback to the turn: the turn does not end before its message pump has handled it."""
         self._left[pump] += 1
 
     def drop(self, pump: MessagePump, count: int | None = None) -> None:
@@ -114,7 +117,7 @@ class Turn:
 
     @property
     def is_here(self) -> bool:
-        """Whether the turn still goes on, and belongs to this thread."""
+        """Whether the turn has not ended, and was begun in the current thread."""
         return not self.is_over and threading.get_ident() == self._thread_id
 
 
@@ -130,9 +133,9 @@ def _turn() -> Turn | None:
 
 
 def post_message(pump: MessagePump, message: Message) -> bool:
-    """Post a message, as a part of the current turn, and return whether it was posted.
+    """Post a message, and add it to the turn in which this is called; return whether it was posted.
 
-    A message that a later one of its class may replace, such as one about drawing, is no part of the turn.
+    A message that Textual may replace by a later one, such as one about drawing, is not added.
     """
     turn = _turn()
     if turn is None or type(message).can_replace is not Message.can_replace:
@@ -178,7 +181,10 @@ async def end_messages(widget: Widget) -> None:
 
 
 def call_next(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> None:
-    """Call a function after the current message, as a part of the current turn."""
+    """Call a function after the message pump's current message.
+
+    The call belongs to the turn in which this is called.
+    """
     if turn := _turn():
         CALL_NEXT(pump, turn.delay(pump, partial(callback, *args, **kwargs)))
     else:
@@ -188,9 +194,9 @@ def call_next(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwa
 def call_after_refresh(
     pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any
 ) -> bool:
-    """Call a function after the next refresh, as a part of the current turn; return whether it will be called.
+    """Call a function after the message pump's next refresh; return whether it will be called.
 
-    Textual's own callbacks only scroll, and are no part of the turn.
+    The call belongs to the turn in which this is called. Only Textual's own callbacks, which scroll, belong to no turn.
     """
     turn = _turn()
     if turn is None or _find_module(callback).startswith("textual."):
@@ -202,7 +208,7 @@ def call_after_refresh(
 
 
 def _follow_turns() -> None:
-    """Let Textual call the functions of this module while there is a turn, else its own.
+    """Make Textual use the functions of this module while any turn goes on, and its own functions otherwise.
 
     Most messages are about drawing, and Textual's own functions are quicker.
     """
@@ -215,7 +221,7 @@ def _follow_turns() -> None:
 def takes_letters(widget: Widget) -> bool:
     """Return whether a widget takes every letter as text.
 
-    Its attribute `takes_letters` says so; a widget without this attribute does if it is an `Input`.
+    The widget's attribute `takes_letters` says so. Without this attribute, the result is True only for an `Input`.
     """
     return bool(getattr(widget, "takes_letters", isinstance(widget, Input)))
 
@@ -292,7 +298,7 @@ class InputOrder:
         return focused if focused is not None and takes_letters(focused) else None
 
     async def _give_turn(self, event: events.Event) -> None:
-        """Handle an event as the first step of a new turn, or as a further step of the turn that goes on."""
+        """Handle an event of the user as a new turn or, if a turn goes on, as a further step of that turn."""
         turn = self._turn
         is_new = self._turn is None
         if turn is None:

@@ -28,10 +28,12 @@ class Throttle:
         self._timer: Timer | None = None
 
     def ask(self, at_once: bool = False) -> None:
-        """Call the function if its last call was at least a period ago; else call it at the end of the period.
+        """Request a call of the function.
+
+        It is called now if the last call was at least a period ago, else when the period ends.
 
         Args:
-            at_once: Call it without any delay.
+            at_once: Whether to call it now in any case.
         """
         if at_once:
             self.call_now()
@@ -84,9 +86,10 @@ class Pacer:
 
     Args:
         fps: Maximum frames per second.
-        asks: Whether to query the terminal at all.
-        clock: A monotonic clock in seconds.
-        most_queued_s: The link counts as slow when a frame queues longer; the time between two frames if not given.
+        asks: Whether to query the terminal, so that its answers show how fast the link is.
+        clock: Returns monotonic time in seconds.
+        most_queued_s: The link counts as slow when a frame waits longer than this; None for the time between two
+            frames.
     """
 
     def __init__(
@@ -133,7 +136,7 @@ class Pacer:
 
     @property
     def is_idle(self) -> bool:
-        """Whether the terminal has shown everything that was sent, or could at least take another frame."""
+        """Whether the terminal has answered all queries, or can take another frame anyway."""
         return not self._asked or self.ready()
 
     def ready(self) -> bool:

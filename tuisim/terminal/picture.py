@@ -41,7 +41,7 @@ class Graphics:
 
     @property
     def cell_points(self) -> tuple[int, int]:
-        """How many points of a picture a cell has, across and down."""
+        """How many points of a picture are in a cell: across, and from top to bottom."""
         width_px, height_px = self.cell_px
         if self.protocol is Protocol.SIXEL and (width_px % self.scale or height_px % self.scale):
             # The terminal cannot scale such a picture.
@@ -167,7 +167,7 @@ class TilePicture:
         return cells
 
     def forget(self) -> None:
-        """Treat all cells as not shown by the terminal, which may still have the images of the tiles."""
+        """Assume that the terminal shows no tile of the picture any more, though it may still store their images."""
         for tile, (_, image) in self._tiles.items():
             self._tiles[tile] = _NEVER, image
 
@@ -282,7 +282,13 @@ class TilePicture:
         return "".join(parts) + self._drop_tiles()
 
     def _send(self, tile: tuple[int, int]) -> tuple[str, list[int]]:
-        """Return the codes that send a tile, and the numbers of images to delete; no codes for a tile that was sent."""
+        """Return the codes that send a tile, and the numbers of the images to delete.
+
+        Both are empty for an unchanged tile.
+
+        Args:
+            tile: The row and column of its upper left cell.
+        """
         top, left = tile
         some = Rectangle(
             top, left, min(top + _TILE_ROWS, self.size[0]), min(left + _TILE_COLS, self.size[1])
@@ -304,7 +310,7 @@ class TilePicture:
         return self._wrap_codes(codes), [had[1]] if had is not None else []
 
     def _drop_tiles(self) -> str:
-        """Return the codes that delete the tiles outside the picture's present size."""
+        """Return the codes that delete the tiles outside the picture's present size, and remove them from `_tiles`."""
         rows, cols = self.size
         beyond = {
             tile: image for tile, image in self._tiles.items() if tile[0] >= rows or tile[1] >= cols
@@ -360,7 +366,10 @@ _JOIN_CELLS = 6
 
 
 def _fill_tiles(changed: Mask) -> Mask:
-    """Return which cells are in a tile with a changed cell: such a tile is a new image, so all its cells change."""
+    """Return which cells are in a tile that has at least one changed cell, shape (rows, columns).
+
+    A changed tile is sent as a new image, so that all its cells change.
+    """
     rows, cols = changed.shape
     filled = np.pad(changed, ((0, -rows % _TILE_ROWS), (0, -cols % _TILE_COLS)))
     tiles = filled.reshape(filled.shape[0] // _TILE_ROWS, _TILE_ROWS, -1, _TILE_COLS).any(

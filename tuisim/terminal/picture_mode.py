@@ -41,7 +41,7 @@ BLOCKS = frozenset({CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCT
 
 
 class Recoloring(TypingProtocol):
-    """Replaces an app's own colours by other colours, such as those of a theme."""
+    """A mapping from the app's own colours to other colours, such as those of a theme."""
 
     def rgb(self, own: Rgb) -> Rgb:
         """Return the colour in place of one of the app's own; any other colour is returned unchanged."""
@@ -76,10 +76,10 @@ class PictureMode:
 
 
 def choose_colors(colors: str) -> int:
-    """Set the colour depth of the terminal; `auto` lets Textual choose it.
+    """Set the colour depth of the terminal, such as `256` or `none`; `auto` takes it from the environment.
 
     Returns:
-        The largest number of colours to use.
+        The largest number of colours with which pictures may be drawn.
     """
     if colors == "auto":
         colors = read_colors(os.environ)
@@ -121,7 +121,7 @@ _DEPTHS = {"standard": PALETTE_16, "windows": PALETTE_16, "256": PALETTE_256}
 def find_color_depth(app: App[Any]) -> int:
     """Return the number of colours with which an app draws; full colour if the terminal does not say.
 
-    Blocks without colours are drawn in greys; dots and signs need no colours at all.
+    Without colours, it is still more than one for block glyphs, which are then drawn in greys.
     """
     picture_mode = find_picture_mode(app)
     if app.no_color and picture_mode.cells not in BLOCKS:
@@ -284,7 +284,11 @@ class Sharpness:
         return time.monotonic() - self._changed_s >= self._still_s
 
     def record_change(self, *, is_coarse: bool = False) -> None:
-        """Record that the picture was drawn; `is_coarse` if it is to be drawn more finely later."""
+        """Record that the picture was drawn.
+
+        Args:
+            is_coarse: Whether some of it is coarse, so that it has to be drawn more finely later.
+        """
         self._changed_s = time.monotonic()
         self._is_coarse = is_coarse
         if is_coarse and self._timer is None:

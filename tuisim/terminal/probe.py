@@ -50,7 +50,7 @@ Version = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """From which versions on a terminal draws sextants and octants itself, without a font."""
+    """The first versions of a terminal program that draw sextants and octants themselves, without a font."""
 
     sextants: Version
     octants: Version | None
@@ -72,8 +72,8 @@ def find_cells(name: str, octant_cols: int | None) -> CellSet:
     """Return the finest set of glyphs that a terminal with UTF-8 is known to show.
 
     Args:
-        name: Its answer to XTVERSION, see `name_around`; empty without an answer.
-        octant_cols: By how many columns an octant moved its cursor; None if it did not answer.
+        name: The name that the terminal answered to XTVERSION, see `name_around`; empty without an answer.
+        octant_cols: By how many columns an octant moved the terminal's cursor; None if the terminal did not answer.
     """
     match = _NAME_AND_VERSION.match(name)
     known = TERMINALS.get(match[1]) if match else None
@@ -146,7 +146,7 @@ _ALL_COLORS = "RGB"
 def is_multiplexer(terminal: str) -> bool:
     """Return whether a kind of terminal, as in TERM, is GNU screen, or tmux under the name of GNU screen.
 
-    GNU screen takes the code for italics for the code for reverse video.
+    GNU screen shows reverse video for the code that means italics.
     """
     return terminal == _MULTIPLEXER or terminal.startswith((f"{_MULTIPLEXER}-", f"{_MULTIPLEXER}."))
 
@@ -154,9 +154,9 @@ def is_multiplexer(terminal: str) -> bool:
 def has_all_colors(environment: Mapping[str, str]) -> bool:
     """Return whether tmux says that the terminal around it shows all colours; False without tmux.
 
-    COLORTERM does not say so: it was inherited from the terminal around a multiplexer. GNU screen before version 5
-    takes the numbers of such a colour for blinking, underlined and coloured text, and cannot be asked. Inside GNU
-    screen (STY), tmux may be the program around it.
+    COLORTERM does not say so, as a multiplexer inherits it from the terminal around it. GNU screen before version 5
+    reads the code of such a colour as blinking, underlined and coloured text, and cannot be asked. Inside GNU screen
+    (STY), tmux may be the program around it.
     """
     return _ALL_COLORS in _ask_tmux("client_termfeatures", environment).split(",")
 
@@ -170,9 +170,13 @@ def name_around(name: str, environment: Mapping[str, str]) -> str:
 
 
 def _ask_tmux(what: str, environment: Mapping[str, str]) -> str:
-    """Return a property of the terminal around tmux, such as its name.
+    """Return what tmux knows of the terminal around it.
 
     The result is empty if tmux does not know it, or is not the innermost program.
+
+    Args:
+        what: The name of one of tmux's format variables, such as `client_termname`.
+        environment: The environment of this process.
     """
     if "TMUX" not in environment or "STY" in environment:
         return ""
@@ -294,7 +298,12 @@ def _measure_latency_s(fd: int) -> float | None:
 
 
 def _ask_width(fd: int, output: int | None = None) -> bytes:
-    """Print an octant, and return the terminal's answer with the position of the cursor after it."""
+    """Print an octant; return the terminal's answer, which says where the cursor is after it.
+
+    Args:
+        fd: The terminal, open for reading.
+        output: The terminal, open for writing; None if `fd` is that, too.
+    """
     answer = _ask(fd, WIDTH_QUERY, _POSITION.search, output)
     _write(_CLEAR, output)
     return answer

@@ -71,7 +71,7 @@ class TerminalFacts:
 
     @property
     def without_refusal(self) -> TerminalFacts:
-        """The facts without an assumed refusal: unless the terminal has answered, kitty's protocol is unknown."""
+        """The facts, in which kitty's protocol is unknown unless the terminal itself has answered about it."""
         return (
             self
             if self.has_kitty_graphics or self.kitty_error
@@ -143,7 +143,7 @@ _LONGEST = 500
 
 
 class TerminalAnswered(Message):
-    """Posted to the app when the terminal has answered the last query."""
+    """Message: the terminal has answered the last of the queries that were sent together; it has all facts so far."""
 
     def __init__(self, facts: TerminalFacts) -> None:
         super().__init__()
@@ -195,7 +195,10 @@ class AnswerParser(XTermParser):
         return match[0] if match else ""
 
     def tick(self) -> Iterable[Message]:
-        """Yield messages for input that was held back as the possible begin of an answer; drop an incomplete answer."""
+        """Yield messages for input that was held back as the possible begin of an answer, if no more has come.
+
+        If the input surely was the begin of an answer, drop it.
+        """
         is_answer = _BEGUN.match(self._begun)
         if self._begun and monotonic() - self._begun_s >= (_REST_S if is_answer else _KEY_S):
             text = "" if is_answer else self._begun

@@ -8,7 +8,7 @@ from textual.message import Message
 
 
 class ActionAsked(Message):
-    """Posted when a button of the web page that shows the app requests an action."""
+    """Message to the app: a button of the web page that shows the app requests one of the app's actions."""
 
     def __init__(self, name: str) -> None:
         super().__init__()
@@ -16,7 +16,7 @@ class ActionAsked(Message):
 
 
 class ServerAsks(Message):
-    """Posted when the server that shows the app in a browser requests something."""
+    """Message to the app: the server that shows the app in a browser requests something, as `asked` says."""
 
     def __init__(self, request: Mapping[str, object]) -> None:
         super().__init__()

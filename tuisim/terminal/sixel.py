@@ -25,10 +25,11 @@ _SHORT_RUN = 3
 
 
 def encode(picture: Pixels) -> str:
-    """Return the codes that draw a picture at the cursor; terminals differ in where the cursor is afterwards.
+    """Return the sixel codes that draw a picture at the cursor; terminals differ in where the cursor is afterwards.
 
     Args:
-        picture: Shape (height, width, 3); more than `MAX_COLORS` colours are replaced by the nearest of a palette.
+        picture: Shape (height, width, 3). If it has more than `MAX_COLORS` colours, each is replaced by the nearest one
+            of a palette.
     """
     height_px, width_px = picture.shape[:2]
     colors, numbers = _find_palette(picture)

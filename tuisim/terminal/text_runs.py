@@ -39,7 +39,7 @@ def cut(text: str, width: int) -> str:
 
 
 def cut_line(line: Sequence[Run], width: int) -> Sequence[Run]:
-    """Return a line cut to a number of cells; it ends in an ellipsis if more than blanks was cut."""
+    """Return a line of styled text cut to a number of cells; it ends in an ellipsis unless only blanks were cut off."""
     if (
         sum(len(text) for text, _ in line) <= width
         or not "".join(text for text, _ in line)[width:].strip()
@@ -60,10 +60,10 @@ def cut_line(line: Sequence[Run], width: int) -> Sequence[Run]:
 
 
 def find_first_row(chosen: int, count: int, room: int) -> int:
-    """Return the first row to show of a list, so that the selected row is near the middle.
+    """Return the index of the first visible row of a list that is scrolled so that the selected row is near the middle.
 
     Args:
-        chosen: The selected row.
+        chosen: Index of the selected row.
         count: Number of rows of the list.
         room: Number of rows that are visible.
     """

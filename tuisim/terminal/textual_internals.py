@@ -196,7 +196,7 @@ class HookedApp(App[None]):
 
     @property
     def is_writing(self) -> bool:
-        """Whether Textual writes to the terminal the updates that are drawn now."""
+        """Whether Textual writes drawn updates to the terminal now: not in a batch, and not without a terminal."""
         if not SUPPORTED:
             return False
         return self._running and not (
@@ -226,7 +226,13 @@ class HookedScreen(ModalScreen[Result], Generic[Result]):
             await super()._on_message(message)
 
     def read_lower_parts(self, crop: Region) -> list[list[Strip]] | None:
-        """Return the strips of each row of the screen below, from left to right; None if they are not known."""
+        """Return the drawn strips of the screen below this one, a list from left to right for each row of a region.
+
+        The result is None if there is no such screen, or if the installed Textual is not supported.
+
+        Args:
+            crop: The region, of which only the rows matter.
+        """
         stack = self.app.screen_stack
         index = stack.index(self) if self in stack else 0
         if not index or not SUPPORTED:
@@ -250,7 +256,7 @@ class Codes(CompositorUpdate):
 
 
 class MadeOnDemand(Strip):
-    """A strip whose segments are made when they are read first."""
+    """A strip whose segments are made when they are read for the first time."""
 
     __slots__ = ["_made"]
 
@@ -289,7 +295,11 @@ class HookedLinuxDriver(LinuxDriver):
         self.handle_continuation()
 
     def wrap_output(self, wrap: Callable[[TextIO], object]) -> None:
-        """Replace the output of the driver by the object that `wrap` returns for it."""
+        """Replace the driver's output file by an object around it.
+
+        Args:
+            wrap: Returns the object for the present output file; the object needs `write`, `flush` and `fileno`.
+        """
         self._file = wrap(cast(TextIO, self._file))  # type: ignore[assignment]  # write, flush and fileno are enough
 
     @property
@@ -313,7 +323,7 @@ class HookedLinuxDriver(LinuxDriver):
 
 
 class ThoroughCompositor(Compositor):
-    """Textual's compositor, changed to compare each layout with the last layout of which the widgets got messages.
+    """Textual's compositor, changed to compare each layout with the last layout about which widgets were sent messages.
 
     Textual compares it with the map of all widgets, and makes that map again when any code asks for the size of a
     widget between two layouts. It then would never send `Resize` or `Show` to a widget that was mounted in between, and
@@ -326,7 +336,7 @@ class ThoroughCompositor(Compositor):
         self._told: CompositorMap = {}
 
     def reflow(self, parent: Widget, size: Size) -> ReflowResult:
-        """Lay out the widgets; return which of them were hidden, shown or resized since the last layout they got."""
+        """Lay out the widgets below `parent`; return which were hidden, shown or resized since the last such call."""
         before = self._full_map
         hidden, visible, resized = super().reflow(parent, size)
         previous_map = self._told
@@ -355,7 +365,7 @@ NOTICE_LAYER = "_toastrack"
 
 
 def can_show_notices(app: App[Any]) -> bool:
-    """Return whether an app can show notices; an app without a terminal may not."""
+    """Return whether an app can show notices; they may be disabled in an app without a terminal."""
     return not getattr(app, "_disable_notifications", False)
 
 
@@ -402,7 +412,7 @@ def count_tab_columns(area: TextArea) -> int:
 
 
 def find_line(area: TextArea, row: int) -> tuple[int, int]:
-    """Return the line of a wrapped text that a row of the screen shows, and the index of the row in that line.
+    """Return the line of a text area that a row shows, and which row of that wrapped line it is, both from 0.
 
     Raises:
         IndexError: there is no such row.
@@ -430,7 +440,12 @@ END: Callable[[Widget], Awaitable[None]] = (
 def route_messages(
     post: Post, dispatch: Dispatch, call_next: CallNext, call_later: CallLater
 ) -> None:
-    """Let Textual call these functions in place of its own for the messages and callbacks of all widgets."""
+    """Make every widget handle messages and callbacks with these functions instead of Textual's own.
+
+    Args:
+        post, dispatch: Replace `post_message` and `_dispatch_message` of `MessagePump`.
+        call_next, call_later: Replace `call_next` and `call_after_refresh` of `MessagePump`.
+    """
     MessagePump.post_message = post  # type: ignore[method-assign, assignment]
     MessagePump._dispatch_message = dispatch  # type: ignore[method-assign, assignment]
     MessagePump.call_next = call_next  # type: ignore[method-assign]
@@ -438,7 +453,12 @@ def route_messages(
 
 
 def set_input_parser(parser: type[XTermParser], decoder: Callable[[], Any]) -> None:
-    """Let Textual's driver of a terminal make its parser and its decoder of these classes."""
+    """Let Textual's driver of a terminal parse its input with another class, and decode it with another decoder.
+
+    Args:
+        parser: The class of the parser.
+        decoder: Called without arguments for a new decoder of bytes.
+    """
     if SUPPORTED:
         linux_driver.XTermParser = parser  # type: ignore[attr-defined]
         linux_driver.getincrementaldecoder = lambda _: decoder  # type: ignore[attr-defined, assignment]
@@ -456,7 +476,7 @@ _click, _move_page = getattr(OptionList, "_on_click", None), getattr(OptionList,
 
 
 async def _choose_clicked(listed: OptionList, event: Click) -> None:
-    """Choose the option of a list that was clicked; do nothing if the list has become shorter meanwhile."""
+    """Select the clicked option of a list; do nothing if the list no longer has that option."""
     if event.style.meta.get("option", 0) < listed.option_count:
         await _click(listed, event)  # type: ignore[misc]  # there if it is called
 
