@@ -43,7 +43,7 @@ CASES: dict[str, Case] = {
     "another unit in a cell": (
         "a.csv",
         b"x,red\na,1 V\nb,2 V\nc,3 V\nd,4 mV\n",
-        Read(4, left_out=1, note="1 cell of 'red' is not a number (row 5"),
+        Read(4, left_out=1, note="1 cell of 'red' is not a number (line 5"),
     ),
     "a unit and decimal commas": ("a.csv", b"x;red\na;1,5 mm\nb;2 mm\n", red(1.5, 2)),
     "hexadecimal": ("a.csv", b"x,red\na,0x1F\nb,0x00\n", red(31, 0, note="are hexadecimal")),

@@ -28,7 +28,7 @@ def test_read_log_takes_files_from_elsewhere(tmp_path: Path) -> None:
         warnings.simplefilter("always")
         frame = read_log(path)
     assert {str(warning.message) for warning in caught} == {
-        f"{path}: 1 line above the table not read (row 1)",
+        f"{path}: 1 line above the table not read (line 1)",
         f"{path}: text, not numbers: 'Wort'",
         f"{path}: the times in 'Zeit' are whole numbers in large steps: read as milliseconds (unit= selects another)",
     }

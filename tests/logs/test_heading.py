@@ -29,12 +29,12 @@ CASES: dict[str, Case] = {
     "a title": (
         "a.csv",
         b"My robot, third run\ntime,red\n" + ROWS,
-        three(note="1 line above the table not read (row 1)"),
+        three(note="1 line above the table not read (line 1)"),
     ),
     "an oscilloscope": (
         "a.csv",
         b"Model,DPO2012\nFirmware,1.5\nRecord Length,3\nSample Interval,0.1\n\nTIME,CH1\n" + ROWS,
-        three("CH1", note="4 lines above the table not read (rows 1, 2, 3, …)"),
+        three("CH1", note="4 lines above the table not read (lines 1, 2, 3, …)"),
     ),
     "a logic analyser": (
         "a.csv",
@@ -76,24 +76,24 @@ CASES: dict[str, Case] = {
     "a footer": (
         "a.csv",
         b"time,red\n" + ROWS + b"end of measurement\n",
-        Read(3, left_out=1, note="1 line is not a row (row 5)"),
+        Read(3, left_out=1, note="1 line is not a row (line 5)"),
     ),
     "a heading that is repeated": (
         "a.csv",
         b"time,red\n" + ROWS + b"time,red\n0.3,8\n0.4,9\n",
-        Read(5, note="the heading is repeated (row 5)"),
+        Read(5, note="the heading is repeated (line 5)"),
     ),
     "two tables": (
         "a.csv",
         b"time,red\n" + ROWS + b"\ntime,gyro,rate\n0.0,1,2\n0.1,3,4\n",
         three(
-            note="another table begins in row 6, with 'time', 'gyro', 'rate': --table 2 reads it"
+            note="another table begins in line 6, with 'time', 'gyro', 'rate': --table 2 reads it"
         ),
     ),
     "two tables of one width": (
         "a.csv",
         b"time,red\n" + ROWS + b"time,blue\n0.0,1\n0.1,2\n",
-        three(note="another table begins in row 5, with 'time', 'blue'"),
+        three(note="another table begins in line 5, with 'time', 'blue'"),
     ),
 }
 
@@ -134,7 +134,7 @@ def test_a_row_of_units_below_the_heading_is_skipped_and_noted(tmp_path: Path) -
     assert (log.form.separator, log.form.decimal) == ("semicolon", ",")
     log = open_log(path, ReadChoices(header=2))
     assert (values(log, "red"), log.form.header) == ([5.5, 6.5], 2)
-    assert "1 line below the heading not read (row 3)" in log.notes
+    assert "1 line below the heading not read (line 3)" in log.notes
 
 
 @cases(

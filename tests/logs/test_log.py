@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -92,6 +93,18 @@ def test_infinite_numbers_in_a_log_raise_no_warning() -> None:
     assert log_of(a=[infinite, infinite, 3.0], b=[1.0, 2.0, 3.0]).names == ("a", "b")
 
 
-def test_samples_before_the_first_valid_time_get_that_time() -> None:
-    log = log_of(time=[float("inf"), 7.0, float("nan"), 8.0], a=[1.0, 2.0, 3.0, 4.0])
-    assert log.series("a").time_s.tolist() == [7.0, 7.0, 7.0, 8.0]
+def test_a_layout_whose_time_is_missing_in_a_row_leaves_that_row_out() -> None:
+    log = log_of(row=[0, 1, 2], at=[float("inf"), 7.0, None], a=[1.0, 2.0, 3.0])
+    timed = log.replace_layout(replace(log.layout, time="at", values=("a",)))
+    assert timed.series("a").time_s.tolist() == [7.0]
+    assert timed.series("a").values.tolist() == [2.0]
+    assert timed.notes == (
+        "2 rows have no time and are left out: 'at' is empty there, or cannot be read",
+    )
+
+
+def test_the_rows_are_counted_if_none_has_a_time() -> None:
+    log = log_of(at=pa.nulls(2, pa.float64()), a=[1.0, 2.0])
+    timed = log.replace_layout(replace(log.layout, time="at", values=("a",)))
+    assert timed.series("a").time_s.tolist() == [0.0, 1.0]
+    assert timed.notes == ("no time in 'at' can be read: row numbers are used",)

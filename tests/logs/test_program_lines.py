@@ -44,7 +44,7 @@ CASES: dict[str, Case] = {
             2,
             (VALUE,),
             0,
-            "1 line above the table not read (row 1)",
+            "1 line above the table not read (line 1)",
             lambda log: values(log, VALUE) == [5, 6],
         ),
     ),

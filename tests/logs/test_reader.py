@@ -81,9 +81,9 @@ CASES: dict[str, Case] = {
     "mixed separators": (
         "a.csv",
         (CSV + "9.9;5\n4.0,80\n").encode(),
-        Read(41, left_out=1, note="1 line is not a row (row 42)"),
+        Read(41, left_out=1, note="1 line is not a row (line 42)"),
     ),
-    "short rows": ("a.csv", (CSV + "4.0\n4.1,82\n").encode(), Read(42, left_out=1, note="row 42")),
+    "short rows": ("a.csv", (CSV + "4.0\n4.1,82\n").encode(), Read(42, left_out=1, note="line 42")),
     "long rows": (
         "a.csv",
         (CSV + "4.0,80,1,2\n4.1,82\n").encode(),
@@ -92,17 +92,17 @@ CASES: dict[str, Case] = {
     "words among numbers": (
         "a.csv",
         CSV.replace(",20\n", ",oops\n").encode(),
-        Read(40, left_out=1, note="1 cell of 'red' is not a number (row 12"),
+        Read(40, left_out=1, note="1 cell of 'red' is not a number (line 12"),
     ),
     "many words among numbers": (
         "a.csv",
         CSV.replace(",2", ",x2").encode(),
-        Read(40, left_out=6, note="rows 3, 12, 13"),
+        Read(40, left_out=6, note="lines 3, 12, 13"),
     ),
     "a line of blanks and words in one column": (
         "a.csv",
         b"red\n5\n  \n6\noops\n7\n",
-        Read(5, left_out=1, note="1 cell of 'red' is not a number (row 5"),
+        Read(5, left_out=1, note="1 cell of 'red' is not a number (line 5"),
     ),
     "empty cells": (
         "a.csv",
@@ -252,7 +252,7 @@ CASES: dict[str, Case] = {
     "json lines with words among numbers": (
         "a.jsonl",
         b'{"time": 0, "red": 1}\n{"time": 1, "red": "x"}\n{"time": 2, "red": 5}\n',
-        Read(3, left_out=1, note="1 cell of 'red' is not a number (row 2"),
+        Read(3, left_out=1, note="1 cell of 'red' is not a number (line 2"),
     ),
     "json lines with other columns each": (
         "a.jsonl",
@@ -320,12 +320,12 @@ CASES: dict[str, Case] = {
     "printed lines": (
         "a.txt",
         b"Colour: 98.8\nhello\nColour: 45\nUltrasonic: 3\n",
-        Read(3, ("Colour", "Ultrasonic"), left_out=1, note="1 line is not a sample (row 2"),
+        Read(3, ("Colour", "Ultrasonic"), left_out=1, note="1 line is not a sample (line 2"),
     ),
     "few printed lines among other words": (
         "a.txt",
         b"says: hi\nColour: 98.8\nleft, then right\nhello\nColour: 45\nDist = 4\nbye\n",
-        Read(3, ("Colour", "Dist"), left_out=4, note="4 lines are not samples (rows 1, 3, 4"),
+        Read(3, ("Colour", "Dist"), left_out=4, note="4 lines are not samples (lines 1, 3, 4"),
     ),
     "a table below lines that look printed": (
         "a.txt",

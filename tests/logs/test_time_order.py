@@ -65,12 +65,32 @@ CASES: dict[str, Case] = {
     "date and clock, the first of which are missing": (
         "a.csv",
         b"date,clock,red\n,,5\n2024-01-05,10:00:00,6\n2024-01-05,10:00:02,7\n",
-        red(0, 0, 2),
+        red(0, 2, note="1 row has no time and is left out: 'date clock' is empty there"),
     ),
     "a date under another name, missing at first": (
         "a.csv",
         b"when,red\n,5\n2024-01-05 10:00:00,6\n2024-01-05 10:00:02,7\n",
-        red(0, 0, 2),
+        red(0, 2, note="1 row has no time and is left out"),
+    ),
+    "an empty time in the middle": (
+        "a.csv",
+        b"time,red\n0,5\n,6\n2,7\n",
+        Read(2, note="1 row has no time", check=lambda log: values(log) == [5, 7]),
+    ),
+    "times that are no numbers": (
+        "a.csv",
+        b"Time;red\n0,0;1,5\n1,0;2,0\nabc;7,0\nnan;8,0\n3,0;2,5\n4,0;x\n",
+        Read(
+            4,
+            left_out=2,
+            note="1 cell of 'Time' is not a number (line 4)",
+            check=lambda log: values(log)[:3] == [1.5, 2, 2.5] and times(log) == [0, 1, 3, 4],
+        ),
+    ),
+    "a clock that begins again after a row without a time": (
+        "a.csv",
+        b"time,red\n23:59:58,5\n,6\n00:00:00,7\n",
+        red(86398, 86400, note="in row 2 of the table: a day is added"),
     ),
     "few dates are remarks": (
         "a.csv",

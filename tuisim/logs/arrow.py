@@ -181,6 +181,7 @@ def read_parquet(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
     """
     import pyarrow.parquet as pq
 
+    notes.noun = "row"
     try:
         file = pq.ParquetFile(path)
         empty = _name_columns(file.schema_arrow.empty_table(), notes)

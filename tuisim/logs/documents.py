@@ -71,6 +71,7 @@ class DocumentReader:
             if table is None:
                 self._notes.say(f"not complete JSON: {error}")
             return table
+        self._notes.noun = "row"
         return self._build_table(value)
 
     def _build_table(self, value: Any) -> pa.Table | None:

@@ -16,6 +16,8 @@ from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import convert_to_floats, read_numbers, wrap_int64
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import ROW, Layout, read_times
+from tuisim.logs.time_order import keep_timed_rows
+from tuisim.logs.warnings import Notes
 
 LogTable = pa.Table
 
@@ -219,15 +221,7 @@ class Log:
             self._cache.times_s = read_times(
                 self.table.column(self.layout.time), self.layout.unit_s, self.layout.since_first
             ).seconds
-        times = self._cache.times_s if rows is None else self._cache.times_s[rows]
-        # Missing times are forward-filled.
-        missing = ~np.isfinite(times)
-        if missing.any():
-            # Missing times before the first one are back-filled.
-            first = int(np.argmin(missing))
-            last = np.maximum.accumulate(np.where(missing, first, np.arange(len(times))))
-            times = np.zeros(len(times)) if missing.all() else times[last]
-        return times
+        return self._cache.times_s if rows is None else self._cache.times_s[rows]
 
     def numbers(self, column: str) -> FloatArray:
         """Return a numeric column as floats, shape (n,), NaN for empty cells. Callers must not modify the array."""
@@ -242,8 +236,17 @@ class Log:
         )
 
     def replace_layout(self, layout: Layout) -> Log:
-        """Return the same log with another layout."""
-        return replace(self.drop_all_derived(), layout=layout, _cache=LogCache())
+        """Return the same log with another layout, without the rows that then have no time."""
+        log = self.drop_all_derived()
+        notes = Notes()
+        table, layout, _ = keep_timed_rows(log.table, layout, notes)
+        return replace(
+            log,
+            table=table,
+            layout=layout,
+            notes=(*log.notes, *notes.texts()),
+            _cache=LogCache(),
+        )
 
     def drop_all_derived(self) -> Log:
         """Return the same log without derived series."""

@@ -54,7 +54,7 @@ from tuisim.logs.program_lines import (
     strip_brackets,
 )
 from tuisim.logs.text_tables import CsvReader
-from tuisim.logs.time_order import guess_unit_s, join_times, order_times
+from tuisim.logs.time_order import guess_unit_s, join_times, keep_timed_rows, order_times
 from tuisim.logs.units import TIMEDELTA
 from tuisim.logs.warnings import Notes
 
@@ -169,6 +169,9 @@ def _build_log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: Rea
             )
         table, layout, seconds = order_times(table, layout, later)
         _tell_odd_columns(table, layout, unread, later)
+    else:
+        table, layout, times = keep_timed_rows(table, layout, later)
+        seconds = None if times is None else times.seconds
     return Log(
         title,
         table,

@@ -169,7 +169,7 @@ class CsvReader:
                 row = block.first_row + index
                 if not self._tables_left:
                     self._notes.say(
-                        f"another table begins in row {row}, with {listed(map(repr, names))}:"
+                        f"another table begins in line {row}, with {listed(map(repr, names))}:"
                         f" --table {self._choices.table + 1} reads it"
                     )
                 rest = Block(row, "\n".join(lines[index:]))

@@ -18,6 +18,7 @@ from tuisim.logs.columns import (
     ROW,
     UNITS_S,
     Layout,
+    Times,
     find_epoch_unit_s,
     find_texts,
     is_numeric,
@@ -113,11 +114,10 @@ def order_times(
         layout: The roles of its columns.
         notes: Receives the rows where time goes back.
     """
-    if layout.time in (ROW, "row"):
+    table, layout, times = keep_timed_rows(table, layout, notes)
+    if times is None:
         return table, layout, None
-    seconds, wraps, period = read_times(
-        table.column(layout.time), layout.unit_s, layout.since_first
-    )
+    seconds, wraps, period = times
     if len(wraps):
         notes.say(f"the clock begins again at 0 in {_name_rows(wraps)}: {period} is added")
     back = np.flatnonzero(seconds[1:] < seconds[:-1]) + 1
@@ -134,6 +134,39 @@ def order_times(
             table = table.append_column(name, wrap_int64(numbers))
             layout = replace(layout, run=name)
     return table, layout, seconds
+
+
+def keep_timed_rows(
+    table: pa.Table, layout: Layout, notes: Notes
+) -> tuple[pa.Table, Layout, Times | None]:
+    """Return the rows of a table that have a time, its layout, and these times; None if the rows are counted.
+
+    If no row has a time, the rows are counted.
+
+    Args:
+        table: The table.
+        layout: The roles of its columns.
+        notes: Receives how many rows have no time.
+    """
+    if layout.time in (ROW, "row"):
+        return table, layout, None
+    times = _read_layout_times(table, layout)
+    has_time = np.isfinite(times.seconds)
+    count = int(np.count_nonzero(~has_time))
+    if not count:
+        return table, layout, times
+    if count == len(has_time):
+        notes.say(f"no time in {layout.time!r} can be read: row numbers are used")
+        return table, replace(layout, time=ROW, unit_s=1.0, since_first=False), None
+    rows = counted(count, "row has no time and is", "rows have no time and are")
+    notes.say(f"{rows} left out: {layout.time!r} is empty there, or cannot be read")
+    table = table.filter(pa.array(has_time))
+    # They are read again, as a clock may begin again at 0 after a row that is left out.
+    return table, layout, _read_layout_times(table, layout)
+
+
+def _read_layout_times(table: pa.Table, layout: Layout) -> Times:
+    return read_times(table.column(layout.time), layout.unit_s, layout.since_first)
 
 
 def _name_rows(rows: IntArray) -> str:

@@ -15,10 +15,11 @@ MAX_CHARACTERS = 200
 """Length of a warning; a longer one, which quotes something of the file, is cut."""
 
 
-def list_rows(rows: Sequence[int]) -> str:
-    """Return rows of a file in words: the numbers of the first few, then `…` if there are more."""
+def list_rows(rows: Sequence[int], noun: str = "row") -> str:
+    """Return rows in words: the numbers of the first few, then `…` if there are more."""
     more = ", …" if len(rows) > ROWS_NAMED else ""
-    return f"{'row' if len(rows) == 1 else 'rows'} {', '.join(map(str, rows[:ROWS_NAMED]))}{more}"
+    numbers = ", ".join(map(str, rows[:ROWS_NAMED]))
+    return f"{noun if len(rows) == 1 else f'{noun}s'} {numbers}{more}"
 
 
 class Notes:
@@ -29,6 +30,8 @@ class Notes:
         """How a text is read: what was chosen, else what was found."""
         self.first_lines: Sequence[tuple[int, str]] = ()
         """The first lines of a text that are not blank, each with its number."""
+        self.noun = "line"
+        """What the numbers of rows count: lines of a text, else rows of a table."""
         self._rows: dict[tuple[str, str], list[int]] = {}
         self._counts: dict[tuple[str, str], int] = {}
         self._general: dict[str, None] = {}
@@ -55,7 +58,7 @@ class Notes:
     def say_rows(self, text: str, rows: Sequence[int]) -> None:
         """Add a warning about rows that were read nevertheless; nothing is added without rows."""
         if rows:
-            self.say(f"{text} ({list_rows(rows)})")
+            self.say(f"{text} ({list_rows(rows, self.noun)})")
 
     @property
     def left_out(self) -> int:
@@ -65,7 +68,7 @@ class Notes:
     def texts(self) -> tuple[str, ...]:
         """Return the warnings as sentences."""
         texts = [
-            f"{counted(count, *text)} ({list_rows(self._rows[text])})"
+            f"{counted(count, *text)} ({list_rows(self._rows[text], self.noun)})"
             for text, count in self._counts.items()
         ]
         sentences = [shortened(text, MAX_CHARACTERS) for text in self._general]

@@ -318,7 +318,7 @@ async def test_a_notice_says_once_how_a_log_file_was_read(tmp_path: Path) -> Non
         await until(pilot, lambda: screen.model.opened.done)
         await pilot.pause()
         said = notices(pilot.app)
-        assert said == [*screen.model.log.notes] == ["1 line is not a sample (row 3)"]
+        assert said == [*screen.model.log.notes] == ["1 line is not a sample (line 3)"]
 
 
 async def test_a_log_that_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path) -> None:

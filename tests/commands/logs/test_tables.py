@@ -25,6 +25,21 @@ def test_a_summary_has_count_mean_and_limits(here: Command, log: Path) -> None:
     assert (right["min"], right["first_s"], right["last_s"]) == (1.0, 0.0, 4.5)
 
 
+def test_a_row_without_a_readable_time_has_no_part_in_any_table(
+    here: Command, tmp_path: Path
+) -> None:
+    path = tmp_path / "bad.csv"
+    path.write_text("Time;Speed\n0,0;1,5\n1,0;2,0\nabc;7,0\n3,0;2,5\n4,0;x\n")
+    summary = here("log", "summary", str(path), "--json")
+    (speed,) = json.loads(summary.stdout)
+    assert (speed["count"], speed["max"], speed["last_s"]) == (3, 2.5, 3.0)
+    assert "1 cell of 'Time' is not a number (line 4)" in speed["notes"]
+    assert "1 row has no time and is left out" in "; ".join(speed["notes"])
+    assert json.loads(here("log", "events", str(path), "--at", "6", "--json").stdout) == []
+    resampled = here("log", "resample", str(path), "--period", "1").stdout
+    assert resampled.split()[1:4] == ["0.0,1.5", "1.0,2.0", "2.0,2.0"]
+
+
 def test_events_list_the_commands_to_a_motor(here: Command, log: Path) -> None:
     here("run", "square")
     rows = json.loads(here("log", "events", "last", "--when", "command left", "--json").stdout)

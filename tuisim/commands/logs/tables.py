@@ -68,8 +68,9 @@ def summary(arguments: Arguments) -> int:
             series = log.series(name)
             figures = asdict(signals.compute_summary(series.values))
             quantiles = dict(zip(_QUANTILE_NAMES, figures.pop("quantiles"), strict=True))
-            times_s = series.time_s
-            span = {"first_s": float(times_s.min()), "last_s": float(times_s.max())}
+            times_s = series.time_s[np.isfinite(series.values)]
+            ends_s = (times_s.min(), times_s.max()) if len(times_s) else (np.nan, np.nan)
+            span = dict(zip(("first_s", "last_s"), map(float, ends_s), strict=True))
             rows.append({"log": log.title, "variable": name, **span, **figures, **quantiles})
             if arguments.json:
                 rows[-1]["notes"] = log.notes
