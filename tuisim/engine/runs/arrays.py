@@ -16,7 +16,7 @@ IntArray = NDArray[np.int64]
 
 
 def find_spans(is_so: NDArray[np.bool_]) -> IntArray:
-    """Return the first index of each stretch of true values and the index after its last, shape (n, 2)."""
+    """Return where an array is true: for each stretch its first index and the index after its last, shape (n, 2)."""
     edges: IntArray = np.flatnonzero(np.diff(is_so, prepend=False, append=False))
     return edges.reshape(-1, 2)
 
@@ -36,7 +36,10 @@ def compute_world_points_mm(
 
 
 def compute_cos_and_sin(angles_deg: NDArray[Any]) -> tuple[FloatArray, FloatArray]:
-    """Return cosine and sine of angles, each of shape (n,), exactly as `math` computes them; NaN for no number."""
+    """Return cosine and sine of angles, each of shape (n,), exactly as `math` computes them.
+
+    They are NaN for an angle that is infinite or NaN.
+    """
     # The results of NumPy may differ from those of `math` in the last bit, which can change a pixel. NaN stands for the
     # heading of a damaged record.
     turns = list(map(math.radians, np.where(np.isfinite(angles_deg), angles_deg, np.nan).tolist()))

@@ -104,7 +104,15 @@ class BrickState:
         return tuple(self.leds.get(name, 0) for name in names if is_shown)
 
     def extrapolate_turns(self, time_s: float, tick_hz: int) -> tuple[tuple[float, float], ...]:
-        """Return position and speed of each further motor at a later time, if it keeps its speed in `turns`."""
+        """Return where the motors in `turns` will be at a later time, and their speeds, if the speeds do not change.
+
+        Args:
+            time_s: The later time, in simulated seconds.
+            tick_hz: Ticks per second of the run.
+
+        Returns:
+            For each motor its position in degrees and its speed in degrees per second.
+        """
         since_s = time_s - self.turns_tick / tick_hz
         return tuple((position_deg + dps * since_s, dps) for position_deg, dps in self.turns)
 
@@ -178,7 +186,12 @@ DRAWN_STREAMS = frozenset({Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MO
 
 
 def is_sound(stream: Stream, text: bytes) -> bool:
-    """Return whether the functions of this module can have written the text of a row of one of `DRAWN_STREAMS`."""
+    """Return whether an output row about the brick's state can be genuine: written by the functions of this module.
+
+    Args:
+        stream: The stream of the row, one of `DRAWN_STREAMS`.
+        text: The text of the row.
+    """
     try:
         face = BrickState().update_face([OutputRow(text.decode(), 0, 0, 0, stream)])
     except (ValueError, TypeError, AttributeError, RecursionError, zlib.error):

@@ -122,7 +122,11 @@ class Catalogue:
         return self._write(lambda connection: _insert(connection, info))
 
     def update(self, run_id: str, **values: str | int | float | None) -> None:
-        """Change columns of a run's row, by their names; a run that is not listed is ignored.
+        """Change columns of a run's row in the catalogue; a run that is not listed is ignored.
+
+        Args:
+            run_id: The id of the run.
+            values: The new values, by the name of the column.
 
         Raises:
             ValueError: a column does not exist.

@@ -157,7 +157,10 @@ class CommandIndex:
         return bool(len(rows))
 
     def read_scale_changes(self) -> list[ScaleChange]:
-        """Read all further commands, but only those that change scales, and return `scale_changes` with all of them."""
+        """Read all further commands, but use only those that change a scale; return `scale_changes` with all changes.
+
+        A scale is the number of degrees that the program counts while a motor turns by one.
+        """
         import numpy as np
 
         while len(rows := read_command_rows(self._run.folder, self._end, _PIECE)):
@@ -172,7 +175,11 @@ class CommandIndex:
             pass
 
     def _take(self, rows: Array) -> None:
-        """Group recorded commands into events, and add the events; a repeated command belongs to the event before."""
+        """Group rows of recorded commands into events, and add the events; repetitions of a command join its event.
+
+        Args:
+            rows: The rows, in the order of the record.
+        """
         import numpy as np
 
         times = np.maximum.accumulate(np.maximum(rows["time_ns"], self._newest_ns))
@@ -200,7 +207,12 @@ class CommandIndex:
             self._add(*event)
 
     def _note_changes(self, rows: Array, times: Array) -> None:
-        """Store the commands that change at once what the program reads."""
+        """Store those commands that change what the program reads immediately, not only with the next tick.
+
+        Args:
+            rows: Rows of recorded commands.
+            times: Their times in ns.
+        """
         import numpy as np
 
         changes = np.flatnonzero(np.isin(rows["call"], IMMEDIATE_CALLS))
@@ -209,7 +221,11 @@ class CommandIndex:
         self._change_ticks.extend((times[changes] * self._hz // NS_PER_S).tolist())
 
     def _note_wheels(self, rows: Array) -> None:
-        """Store what the last command that moves or stops a wheel's motor, or a drive base, asks of it."""
+        """Store for each wheel what the last command to its motor, or to a drive base, makes it do, in `WHEEL_WORDS`.
+
+        Args:
+            rows: Rows of recorded commands; those that do not move or stop a wheel are ignored.
+        """
         import numpy as np
 
         moves = np.isin(rows["call"], MOVES)
@@ -219,7 +235,10 @@ class CommandIndex:
                 self._wheels[part] = describe_aim(Call(int(row["call"])), row["values"].tolist())
 
     def describe_wheels(self) -> str:
-        """Return of `WHEEL_WORDS` how the program has left wheels that turn."""
+        """Return how the program has left its wheels, in words of `WHEEL_WORDS`, such as `still set to turn`.
+
+        If the wheels differ, return those of their words that come first in `WHEEL_WORDS`.
+        """
         return min(self._wheels.values(), key=WHEEL_WORDS.index, default=WHEEL_WORDS[-1])
 
     def _take_scales(self, rows: Array, times: Array, codes: Array) -> None:
@@ -243,9 +262,12 @@ class CommandIndex:
                 self.scale_changes.append((self._find_tick(time_ns), port, scale))
 
     def _read_codes(self, rows: Array) -> Array:
-        """Return a number for each command that stands for its robot, its call and its part.
+        """Return for each command a number that combines its robot, its call and its part.
 
         If a command plugs parts in, add the robot with these parts to the known robots.
+
+        Args:
+            rows: Rows of recorded commands.
         """
         import numpy as np
 
@@ -346,7 +368,10 @@ class CommandIndex:
         )
 
     def _name_part(self, code: int) -> str:
-        """Return the name of the part to which an event's command was given, such as `left motor B`."""
+        """Return the name of the part to which a command was given, such as `left motor B`.
+
+        `code` is the command's number from `_read_codes`.
+        """
         call = _find_call(code)
         number = code & 0xFF
         if CALL_WORDS[call].part:
@@ -360,7 +385,12 @@ class CommandIndex:
     # What came
 
     def _measure(self, number: int, aim: Aim) -> str:
-        """Return in words what a command to wheels or a drive base caused, such as the way; empty for others."""
+        """Return in words what a command to wheels or a drive base caused, such as a distance; empty for others.
+
+        Args:
+            number: The number of the event with the command.
+            aim: The kind of motion that the command starts.
+        """
         import numpy as np
 
         part = self._codes[number] & 0xFF
@@ -437,7 +467,10 @@ def _name_call(code: int) -> str:
 
 
 def _find_mains() -> Array:
-    """Return for each number of a call the index of the value that differs most when the call is repeated."""
+    """Return for each kind of command which of its values is the main one, whose range is shown for repeated commands.
+
+    The result has the index of that value at the index of the `Call`.
+    """
     import numpy as np
 
     mains = np.zeros(256, np.int64)

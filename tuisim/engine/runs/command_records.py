@@ -65,7 +65,7 @@ class CommandsWriter(MappedWriter):
         self._count = self._length[0] = count + 1
 
     def _extend(self, count: int) -> bool:
-        """Make space for one more command than `count`; return whether there was space."""
+        """Make space in the file for `count` + 1 commands; return False if there is none."""
         if count >= MAX_COMMANDS or self._is_full:
             return False
         self._make_room(HEADER_BYTES + (count + 1) * COMMAND_RECORD.size)
@@ -89,7 +89,8 @@ class RecordedCommands:
     def unpack(self) -> Iterator[SimulationCommand]:
         """Yield the commands.
 
-        Each has as many values as a record has space for; those that the command lacks mean nothing.
+        Each has as many values as fit into a record. A kind of command that takes fewer values uses only the first
+        ones; the others can be any numbers.
 
         Raises:
             ValueError: a record has a number that stands for no call.

@@ -28,7 +28,11 @@ class Quantity:
     """Names that the values 0, 1, … stand for; empty if the value is a number."""
 
     def write(self, low: float, high: float) -> str:
-        """Return a value as text, given its range over repeated commands: one number if both ends are equal."""
+        """Return as text the value of a command that may have been repeated with other values.
+
+        Args:
+            low, high: The lowest and the highest value; if they are equal, the text has one number.
+        """
         if self.names:
             return self.names[int(low)] if 0 <= low < len(self.names) else f"{low:g}"
         ends = dict.fromkeys(f"{value * self.share:.5g}" for value in sorted((low, high)))
@@ -163,7 +167,12 @@ _WITHOUT: Mapping[Call, str] = {
 
 
 def describe_aim(call: Call, values: Sequence[float]) -> str:
-    """Return of `WHEEL_WORDS` how one of `MOVES` leaves a wheel that turns."""
+    """Return what a command makes a turning wheel do, in words of `WHEEL_WORDS`.
+
+    Args:
+        call: The kind of command, one of `MOVES`.
+        values: The values of the command.
+    """
     # NaN lets the motor coast.
     if call in _STOPS or (call is Call.RUN_FREELY and not abs(values[0]) > 0):
         return WHEEL_WORDS[1]

@@ -402,7 +402,13 @@ def tick_times_s(records: Array, spec: RunSpec) -> Array:
 def _list_noises(
     records: Array, spec: RunSpec, actions: Sequence[UserAction]
 ) -> list[tuple[NoiseSpec, int]]:
-    """Return the noise settings of a run in order of time, each with its number of ticks."""
+    """Return the noise settings of a run in order of time, each with the number of ticks for which it applied.
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`.
+        spec: The run, as it began.
+        actions: The user's actions, which may have changed the noise.
+    """
     import numpy as np
 
     if not any(isinstance(action.command, SetNoise) for action in actions):
@@ -424,7 +430,16 @@ def _measure_columns(
     field: Field,
     field_at: FieldAt | None,
 ) -> dict[str, Array]:
-    """Return the measured columns of sensors by name, computed with arrays where possible, else tick by tick."""
+    """Return the measured columns of sensors by name, computed with arrays where possible, else tick by tick.
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
+        sensors: The sensors.
+        noises: The result of `_list_noises`.
+        spec: The run.
+        field: The mat.
+        field_at: As for `compute_column_values`.
+    """
     import numpy as np
 
     from tuisim.engine.runs.sensor_arrays import measure_array

@@ -135,8 +135,9 @@ class RunHandle:
         field: The files of the prepared mat.
         options: How the run is executed.
         store: Where the run folder is created.
-        of_many: Whether a missing template is made first; `prepare_next` makes one for later runs.
-        isolated: Whether the child is started through bubblewrap instead.
+        of_many: Whether other runs of this robot and world follow soon: if there is no template, one is made now, and
+            forks this child. Otherwise `prepare_next` makes one.
+        isolated: Whether the child runs in bubblewrap; no template forks it then.
     """
 
     def __init__(
@@ -545,7 +546,10 @@ class RunHandle:
                 self.pump()
 
     def _repeat_stop(self) -> None:
-        """Send the request to stop again if it had no effect; kill a child that is stuck."""
+        """Repeat a request to stop that had no effect yet; if that takes too long, kill the child.
+
+        If the run folder was deleted, request the stop.
+        """
         if self._announced is not None:
             return
         if self._stop_at is None and not self.folder.is_dir():
@@ -610,7 +614,10 @@ def _find_here() -> str:
 
 
 def set_surroundings(program: Program) -> Program:
-    """Return a program with a working directory unchanged; give any other that of this process, and its PYTHONPATH."""
+    """Return a program that has a working directory; a program that has one already is returned unchanged.
+
+    Any other program gets the working directory of this process, and the folders in the user's PYTHONPATH.
+    """
     if program.working_directory:
         return program
     return replace(program, python_path=user_python_path(), working_directory=_find_here())
@@ -619,7 +626,16 @@ def set_surroundings(program: Program) -> Program:
 def start_run(
     program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None
 ) -> RunHandle:
-    """Start a program, and store its run, by default in the user's store. Does not block.
+    """Start a program, and store its run. Does not block.
+
+    Args:
+        program: The program.
+        spec: The run.
+        options: How the run is executed.
+        store: Where the run is stored; None for the user's store.
+
+    Returns:
+        The control of the run.
 
     Raises:
         BackgroundError: the mat does not exist.

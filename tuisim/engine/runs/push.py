@@ -126,7 +126,13 @@ def _measure_aside_mm(records: NDArray[Any], spec: RunSpec, reach_mm: float) -> 
 def _are_near(
     x_mm: NDArray[Any], y_mm: NDArray[Any], spec: RunSpec, reach_mm: NDArray[Any]
 ) -> NDArray[Any]:
-    """Return for each point whether a wall or an obstacle is within reach of it."""
+    """Return for each point whether a wall or an obstacle is closer to it than its value in `reach_mm`.
+
+    Args:
+        x_mm, y_mm: The points, each of shape (n,).
+        spec: The run, with the walls and obstacles.
+        reach_mm: A distance for each point, shape (n,).
+    """
     import numpy as np
 
     is_near = np.zeros(len(x_mm), np.bool_)

@@ -99,7 +99,7 @@ class ReadingsWriter(MappedWriter):
 
         Args:
             code: One of `READING_CODES`.
-            time_ns: Simulated time, not before that of the reading before.
+            time_ns: Simulated time, at least that of the previous reading.
             line: Source line; 0 for none.
         """
         self.newest_ns = time_ns
@@ -119,7 +119,7 @@ class ReadingsWriter(MappedWriter):
         return False
 
     def _extend(self, count: int) -> bool:
-        """Make space for one more reading than `count`; return whether there was space."""
+        """Make space in the file for `count` + 1 readings; return False if there is none."""
         if count >= MAX_READINGS or self._is_full:
             return False
         self._make_room(HEADER_BYTES + (count + 1) * READING_RECORD.size)

@@ -137,10 +137,15 @@ class Recording:
         return self._marks.at(tick)
 
     def instant(self, record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
-        """Return the instant of a tick record, after what the program's commands in this tick have changed at once.
+        """Return the run's values at a tick, with the changes that the program's commands in it made immediately.
 
-        It has the drivers' values of the motors, unless their file is damaged, and the motors' scales: the number of
-        degrees that the program counts for one of the motor.
+        They include the values of the motors' drivers, unless their file is damaged, and for each motor how many
+        degrees the program counts while it turns by one.
+
+        Args:
+            record: The record of the tick.
+            spec: The run.
+            noise: The noise settings at the tick.
         """
         motors: tuple[MotorValues, ...] = ()
         with suppress(LogError):
@@ -294,7 +299,11 @@ class RowIndex:
         return bisect_right(self._ticks, tick)
 
     def list_texts(self, count: int, most: int) -> tuple[list[OutputRow], int]:
-        """Return the last readable ones of the first `count` rows, at most `most`, and the number of earlier ones."""
+        """Return the last rows with readable text among the first `count` rows, at most `most` of them.
+
+        Returns:
+            These rows, and how many rows with readable text come before them.
+        """
         end = bisect_right(self._texts, count - 1)
         first = max(0, end - most)
         return [self.row(number) for number in self._texts[first:end]], first

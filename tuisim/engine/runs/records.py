@@ -103,7 +103,13 @@ _NS_PER_ROW = 1_000_000_000 // MAX_ROWS_PER_S
 
 
 def pack_header(magic: bytes, record_bytes: int, length: int) -> bytes:
-    """Return the header of a recording, which has HEADER_BYTES bytes."""
+    """Return the header of a recording, which has HEADER_BYTES bytes.
+
+    Args:
+        magic: The bytes with which files of this kind begin.
+        record_bytes: The size of a record.
+        length: The number of records, or of bytes of output, that readers can see.
+    """
     return _HEADER.pack(magic, FORMAT_VERSION, record_bytes, length).ljust(HEADER_BYTES, b"\0")
 
 
@@ -293,6 +299,11 @@ class OutputRow:
 def read_published_length(data: bytes, magic: bytes, file: str) -> int:
     """Return the length in a recording's header: the number of telemetry records, or the bytes of output.
 
+    Args:
+        data: The contents of the file, or only its header.
+        magic: The bytes with which files of this kind begin.
+        file: The path of the file, for errors.
+
     Raises:
         LogError: the file is not such a recording, or of another version.
     """
@@ -320,7 +331,12 @@ def is_hole(part: bytes | memoryview) -> bool:
 
 
 def iterate_raw_rows(data: bytes | memoryview, end: int) -> Iterator[tuple[int, bytes]]:
-    """Yield the stream and the text of each complete row before `end`, faster than `iterate_rows`."""
+    """Yield the stream and the text of each complete row of output, faster than `iterate_rows`.
+
+    Args:
+        data: The contents of an output file.
+        end: Published length in bytes; later rows are left out.
+    """
     start = HEADER_BYTES
     head = OUTPUT_ROW.unpack_from
     after_head = OUTPUT_ROW.size

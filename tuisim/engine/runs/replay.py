@@ -99,7 +99,13 @@ class CommandCheck:
 
 
 def _narrow_ranges(call: Call, part: int, sim: Simulation) -> tuple[Range, ...]:
-    """Return the allowed ranges of a command's values; that of a speed depends on the kind of motor."""
+    """Return the allowed range of each value of a command; that of a speed depends on the kind of motor.
+
+    Args:
+        call: The kind of command.
+        part: The number of the motor that gets it.
+        sim: The simulation.
+    """
     ranges = [*CALLS[call].ranges]
     place = CALLS[call].speed_place
     if place is not None and sim.spec.profile.motor_law is not MotorLaw.NBEV3DEVSIM:
@@ -224,7 +230,7 @@ def _build_advance(sim: Simulation, actions: Iterable[UserAction]) -> Callable[[
 def replay_run(
     run: StoredRun, actions: Sequence[UserAction], limit_s: float = inf
 ) -> tuple[StoredRun, str]:
-    """Simulate a run that is over again, and replace its recording by the result where they differ.
+    """Simulate an ended run again, and replace its recording by the result where they differ.
 
     The recorded lines of the program and its output stay unchanged.
 
@@ -235,8 +241,7 @@ def replay_run(
 
     Returns:
         The run with the new ticks and actions, and a text: the time from which its recording differed, such as `1.50
-        s`, or
-        empty if it did not differ.
+        s`; empty if it did not differ.
 
     Raises:
         LogError: the commands are damaged, no program can have given them, they take too long, or the result cannot be

@@ -148,7 +148,14 @@ class ReplayDebugger:
     def lines_back(
         self, recording: Recording, at: Position, count: int, look: protocol.Inspect
     ) -> None:
-        """Pause at the line that the program executed `count` lines before an instant."""
+        """Pause at the line that the program executed `count` lines before an instant.
+
+        Args:
+            recording: The recording of the run to repeat.
+            at: The instant.
+            count: The number of lines.
+            look: The request for the program's state at the pause.
+        """
         self._line = 0
         self._request = look
         self._back = count

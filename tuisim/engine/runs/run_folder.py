@@ -205,7 +205,18 @@ def build_run_data(
     options: Mapping[str, Any] | None,
     live: bool,
 ) -> dict[str, Any]:
-    """Return the contents of the `run.json` of a run that is about to start, as data for JSON."""
+    """Return the contents of the `run.json` of a run that is about to start, as data for JSON.
+
+    Args:
+        run_id: The id of the run.
+        number: Its number in the catalogue.
+        created: When the run was created, as text.
+        program: The program.
+        spec: The specification of the run.
+        field: The files of the prepared mat as data for JSON; None if there are none.
+        options: The run options as data for JSON; None for no options.
+        live: Whether the run is paced by the wall clock.
+    """
     return {
         "format": RUN_FORMAT,
         "id": run_id,

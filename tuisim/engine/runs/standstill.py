@@ -151,7 +151,14 @@ def _find_stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
 
 
 def describe_touched(solids: Solids, records: NDArray[Any], tick: int, spec: RunSpec) -> str:
-    """Return what the robot touches at a tick, such as `the wall`; empty if it touches nothing."""
+    """Return what the robot touches at a tick, such as `the wall`; empty if it touches nothing.
+
+    Args:
+        solids: The walls and obstacles, for this robot.
+        records: Telemetry, structured as `TICK_FIELDS`.
+        tick: The index of a record.
+        spec: The run.
+    """
     gaps = solids.measure_gaps_mm(_build_pose(records, tick))
     number = next((number for number, gap in enumerate(gaps) if gap < _CONTACT_MM), None)
     if number is None:

@@ -507,9 +507,14 @@ def _build_info(run_id: str, data: Mapping[str, Any]) -> RunInfo:
 
 
 def _copy_files(folder: Path, place: Path) -> None:
-    """Copy the files that every run records, except `run.json` and the lock; links and other files are left out.
+    """Copy the files that every run records, except `run.json` and the lock, from a run folder to another folder.
 
-    A link would be followed with the rights of this process, which the program may not have had.
+    Links and other files are left out: a link would be followed with the rights of this process, which the program may
+    not have had.
+
+    Args:
+        folder: The run folder.
+        place: The folder that gets the copies.
     """
     import shutil
 

@@ -33,7 +33,9 @@ def apply_commands(
     commands: Iterable[SimulationCommand],
     law: MotorLaw,
 ) -> Instant:
-    """Return what the program reads at an instant after its commands there.
+    """Return an instant with the changes that commands in its tick make immediately, such as a reset of the gyro.
+
+    A program that reads a value after these commands gets it from this instant.
 
     Args:
         instant: The values that the record of the tick has.
@@ -67,7 +69,7 @@ def apply_commands(
 
 
 def find_pen(commands: Iterable[SimulationCommand], *, is_down: bool) -> bool:
-    """Return whether the pen is down after commands before which it is or is not."""
+    """Return whether the pen is down after some commands; `is_down` says whether it was down before them."""
     moves = [bool(values[0]) for _, _, call, values in commands if call is Call.MOVE_PEN]
     return moves[-1] if moves else is_down
 

@@ -127,8 +127,9 @@ class _View(ABC):
 
     Args:
         folder: The run folder.
-        is_checked: Whether data that the simulation cannot have written is treated as damage, and not returned. So it
-            is for a run that is running or falsified. If its file disappears, that is damage, too.
+        is_checked: Whether the program may have changed the file, as in a run that is running or falsified: data that
+            the simulation cannot have written, and a file that disappears, are then damage, and the data is not
+            returned.
 
     Raises:
         LogError: by every method, if this machine cannot read the file.
@@ -213,7 +214,10 @@ class _View(ABC):
         return self._damage
 
     def _get_known(self, count: int) -> memoryview | None:
-        """Return the recording if more than `count` records have been read, so that these cannot change; else None."""
+        """Return the copy of the recording if it has more than `count` records, else None.
+
+        The first `count` records in a copy that is returned cannot change any more.
+        """
         return memoryview(self._copy).toreadonly() if count < self._there else None
 
     def _read_new(self) -> None:
@@ -267,7 +271,17 @@ class _View(ABC):
                 return
 
     def _read_chunk(self, fd: int, head: bytes, begin_count: int, end_count: int) -> int:
-        """Read and check the records between two positions; return the position up to which they are valid."""
+        """Read records from the file into the copy, and check them.
+
+        Args:
+            fd: The descriptor of the file.
+            head: The header of the file.
+            begin_count: The index of the first record, or byte, to read.
+            end_count: The index after the last one.
+
+        Returns:
+            The index up to which they are valid.
+        """
         begin, end = (
             HEADER_BYTES + self._record_bytes * (count - self._dropped)
             for count in (begin_count, end_count)
@@ -290,7 +304,16 @@ class _View(ABC):
         return sound
 
     def _make_room(self, fd: int, head: bytes, begin: int, end: int) -> tuple[int, int]:
-        """Make the copy large enough for further records; return where in it they begin and end."""
+        """Enlarge the copy, so that more bytes of the file fit; records that are not needed any more are dropped.
+
+        Args:
+            fd: The descriptor of the file.
+            head: The header of the file.
+            begin, end: Where the further bytes would begin and end in the copy if nothing were dropped.
+
+        Returns:
+            Where they begin and end in the enlarged copy.
+        """
         drops = 0
         if self._is_checked and self._kept is not None:
             drops = min(
@@ -350,7 +373,13 @@ def _read_header(fd: int) -> bytes:
 
 
 def _read_buffer(fd: int, place: memoryview, at: int) -> int:
-    """Fill a buffer with bytes of a file from a position on; return the number of bytes read."""
+    """Fill a buffer with bytes of a file; return the number of bytes read.
+
+    Args:
+        fd: The descriptor of the file.
+        place: The buffer.
+        at: The position in the file from which to read.
+    """
     done = 0
     while done < len(place) and (got := os.preadv(fd, [place[done:]], at + done)):
         done += got

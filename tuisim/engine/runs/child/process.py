@@ -242,6 +242,14 @@ def _fork(
 ) -> ChildProcess | None:
     """Fork a child from the template for `key`, or from the warm process if `key` is None.
 
+    Args:
+        folder: The run folder.
+        cwd: The child's working directory; None for that of this process.
+        log_fd: Descriptor of the file for its error output.
+        inherited: Further descriptors that it gets.
+        run: The contents of the `run.json` in the folder.
+        key: Names the template.
+
     Returns:
         The child; None if the warm process does not run, or cannot fork one.
     """
@@ -286,12 +294,15 @@ def _spawn(folder: Path, cwd: str | None, log: IO[bytes], inherited: Sequence[in
 
 
 def mark(pid: int) -> int:
-    """Mark a child and all its future descendants.
+    """Give a child a mark, by which it and all its future descendants can be found.
 
-    The mark stays when a descendant starts a new session, another program, or changes its environment.
+    A descendant keeps the mark if it starts a new session or another program, or changes its environment.
+
+    Args:
+        pid: The process id of the child.
 
     Returns:
-        The mark; 0 if the child cannot be marked.
+        The mark, a random number; 0 if the child cannot be marked.
     """
     new_mark = 1 << 62 | int.from_bytes(os.urandom(7))
     try:
@@ -338,7 +349,10 @@ def end_descendants(pid: int, marked: int) -> None:
 
 
 def _list_younger(pid: int) -> set[int]:
-    """Return ids of processes that include all processes that started after a process; some may not be in use."""
+    """Return process ids among which are those of all processes that started after the process `pid`.
+
+    Other ids in the result belong to no process, or to one that started earlier.
+    """
     last = int(Path("/proc/loadavg").read_text("ascii").split()[-1])
     # Process ids increase, and wrap around when they are used up.
     if pid <= last < pid + MAX_ID_GAP:

@@ -117,11 +117,11 @@ def _continue_parent(pid: int) -> None:
 
 
 class ForkClient:
-    """The host's connection to a process that forks children.
+    """The host's connection to a server: a process that forks children for it.
 
     Args:
-        connection: The socket to the process.
-        process: The process.
+        connection: The socket to the server.
+        process: The server.
     """
 
     def __init__(self, connection: socket.socket, process: ChildProcess) -> None:
@@ -134,7 +134,7 @@ class ForkClient:
 
     @property
     def is_usable(self) -> bool:
-        """Whether this process itself has started the server; processes that are forked from it must not use it."""
+        """Whether this process itself has started the server; processes forked from this one must not use it."""
         return self._pid == os.getpid()
 
     def fork(
