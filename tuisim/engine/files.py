@@ -358,6 +358,11 @@ def read_part(data: object, base: _Spec | type[_Spec], at: Location, **given: ob
 def with_values(base: _Spec | type[_Spec], values: Mapping[str, Any], at: Location) -> _Spec:
     """Return a spec with other values, or a new spec of a class.
 
+    Args:
+        base: The spec or the class.
+        values: The values by name.
+        at: The location of the values, for errors.
+
     Raises:
         ConfigError: the values break a rule.
     """

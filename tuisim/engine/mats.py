@@ -236,7 +236,13 @@ def find_mat(word: str, folder: str | None = None) -> Background:
 
 
 def mat_of_spec(name: str) -> tuple[str, Background]:
-    """Return the word with which `find_mat` finds the mat of a run specification, and the mat.
+    """Return the mat of a run specification, and the word that names it for `find_mat`.
+
+    Args:
+        name: The mat's name in the specification.
+
+    Returns:
+        The word, and the mat.
 
     Raises:
         BackgroundError: the mat no longer exists.

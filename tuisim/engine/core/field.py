@@ -88,11 +88,11 @@ class Field:
         return left_sums[0] + count * red, left_sums[1] + count * green, left_sums[2] + count * blue
 
     def has_box(self, diameter: int, col: int, row: int) -> bool:
-        """Return whether the whole box of a disc is on the mat."""
+        """Return whether the whole square box around a disc is on the mat; arguments as for `sum_disc`."""
         return 0 <= col <= self.width_px - diameter and 0 <= row <= self.height_px - diameter
 
     def _count_on_floor(self, diameter: int, col: int, row: int) -> int:
-        """Return how many pixels of a disc are off the mat."""
+        """Return how many pixels of a disc are beside the mat; arguments as for `sum_disc`."""
         count = 0
         for down, first, end in list_disc_spans(diameter):
             count += end - first
@@ -108,7 +108,10 @@ class Field:
         return self.floor_rgb or (0, 0, 0)
 
     def read_box(self, diameter: int, col: int, row: int) -> bytes:
-        """Return the pixels of one box, row-major, three bytes per pixel."""
+        """Return the pixels of the square box around a disc, row by row, three bytes per pixel.
+
+        The arguments are as for `sum_disc`.
+        """
         off = bytes(self.floor_rgb or (0, 0, 0))
         left, right = max(col, 0), min(col + diameter, self.width_px)
         before, after = off * max(left - col, 0), off * max(col + diameter - right, 0)
@@ -123,7 +126,7 @@ class Field:
         return b"".join(rows)
 
     def read_disc(self, diameter: int, col: int, row: int) -> bytes:
-        """Return the pixels of a disc, row by row, three bytes per pixel."""
+        """Return the pixels of a disc, row by row, three bytes per pixel; arguments as for `sum_disc`."""
         if not self.has_box(diameter, col, row):
             return in_disc(Field.read_box(self, diameter, col, row), diameter)
         pixels = self.pixels
@@ -190,7 +193,12 @@ def _weight(squared: float, radius: float, strategy: str) -> int:
 
 
 def weighted_mean(box: bytes, diameter: int, strategy: str) -> tuple[float, float, float]:
-    """Return the weighted mean red, green and blue of a box of RGB pixels."""
+    """Return the weighted mean red, green and blue of the pixels in a box around a disc.
+
+    Args:
+        box: The pixels, row by row, three bytes per pixel.
+        diameter, strategy: As for `disc_weights`.
+    """
     weights = disc_weights(diameter, strategy)
     total = sum(weights)
     red, green, blue = (

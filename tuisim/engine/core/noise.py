@@ -185,7 +185,10 @@ def draw_numbers(seed: int, tick: int, channel: str, count: int) -> list[float]:
 
 
 def draw_reading_noise(seed: int, tick: int, channel: str) -> tuple[float, float, float]:
-    """Return three normally distributed numbers for the light noise of a colour sensor's reading in one tick."""
+    """Return three normally distributed numbers for the light noise of a colour sensor's reading in one tick.
+
+    `channel` is the name of the sensor: each sensor has noise of its own.
+    """
     block, offset = divmod(tick, _BLOCK_TICKS)
     numbers = _FOUR_NUMBERS.unpack_from(
         _generate_reading_block(seed, block, channel), offset * _READING_BYTES

@@ -225,7 +225,12 @@ class Simulation(Motion):
         )
 
     def _add_motor(self, kind: str, *, free: bool) -> Motor:
-        """Return a new motor that is at rest at the present tick."""
+        """Return a new motor that is at rest at the present tick.
+
+        Args:
+            kind: The kind of motor.
+            free: Whether it drives no wheel.
+        """
         motor = create_motor(self.spec, kind, free=free)
         if isinstance(motor, SimulatedMotor):
             motor.start_clock(draw_jiffies(self.spec.seed))

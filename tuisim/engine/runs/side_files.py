@@ -270,7 +270,11 @@ def read_modules(run_folder: Path) -> list[OwnModule]:
 
 
 def copy_modules(source: Path, target: Path) -> None:
-    """Copy the modules of another run, if it has any.
+    """Copy the modules that are stored with a run to the folder of another run; do nothing if there are none.
+
+    Args:
+        source: The folder of the run that has the modules.
+        target: The folder of the other run.
 
     Raises:
         LogError: they cannot be copied.

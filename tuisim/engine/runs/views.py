@@ -551,7 +551,14 @@ class OutputView(_View):
     def _read_both_rows(
         self, data: memoryview, position: int, end: int, dropped: int
     ) -> Iterator[tuple[OutputRow, int]]:
-        """Yield the rows that were dropped from memory, then those in memory, each with the position after it."""
+        """Yield the rows between two positions, each with the position after it.
+
+        Args:
+            data: The rows that are in memory.
+            position: The position of the first row.
+            end: The position after the last row.
+            dropped: The position of the first row in memory; the rows before it were dropped, and are read again.
+        """
         for row, after in self._read_dropped_rows(position, dropped):
             yield row, after
             position = after

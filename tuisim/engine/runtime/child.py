@@ -85,7 +85,10 @@ class KnownPrograms:
         self._codes: dict[tuple[str, str, bool], types.CodeType | None] = {}
 
     def code(self, program: Program, drops_annotations: bool) -> types.CodeType | None:
-        """Return the code of a program that is about to be run; None if the process of the run has to compile it."""
+        """Return the code of a program that is about to be run; None if the process of the run has to compile it.
+
+        `drops_annotations` is as for `compile_program`.
+        """
         key = program.text, program.file, drops_annotations
         if len(program.text) > MAX_CHARACTERS:
             return None

@@ -83,7 +83,7 @@ class DebugHooks(Protocol):
         """Pause if the run has reached the requested instant; called right before a tick, after user actions."""
 
     def limit_ticks(self, most: int) -> int:
-        """Return the number of ticks that may run before `check_breakpoints` has to be called."""
+        """Return the number of ticks, at most `most`, that may run before `check_breakpoints` has to be called."""
 
     def check_breakpoints(self) -> None:
         """Pause if a breakpoint matches the tick that was just run."""
@@ -122,10 +122,10 @@ class ControlledRun(Protocol):
         """Return the debugger; it is created on first use."""
 
     def check_stop(self, before_tick: bool = False) -> None:
-        """Raise `StopProgram` if the program has to stop."""
+        """Raise `StopProgram` if the program has to stop; `before_tick` as for `Session.check_stop`."""
 
     def ask_stop(self, end: End, summary: str) -> None:
-        """Record that the run has to end at the next checkpoint."""
+        """Record that the run has to end at the next call that checks for a stop; arguments as for `StopProgram`."""
 
 
 class RunControl:
@@ -317,7 +317,7 @@ class RunControl:
     def _raise_here(self, session: ControlledRun, before_tick: bool = False) -> None:
         """Raise `StopProgram` in this thread, which has waited for commands, if a stop is requested.
 
-        Otherwise it would be raised in the main thread.
+        Without this call it would be raised in the main thread. `before_tick` is as for `Session.check_stop`.
         """
         try:
             session.check_stop(before_tick)

@@ -22,7 +22,10 @@ from tuisim.engine.shim.unsupported.modules import point_at_keys, point_at_packa
 
 
 def format_safely(write: Callable[[object], str], value: object) -> str:
-    """Return the `str` or `repr` of a value, or a placeholder if the value's own code raises an error."""
+    """Return a value as text, or a placeholder if the value's own code raises an error.
+
+    `write` is `str` or `repr`.
+    """
     try:
         return write(value)
     except BaseException:  # a program's own method may do anything
@@ -159,7 +162,11 @@ class ErrorHooks:
 
 
 def flush_streams(own: tuple[LineStream, LineStream]) -> None:
-    """Flush streams with which the program has replaced `sys.stdout` or `sys.stderr`, as Python does at the end."""
+    """Flush streams with which the program has replaced `sys.stdout` or `sys.stderr`, as Python does at the end.
+
+    Args:
+        own: The streams that the program had at its start, which need no flush.
+    """
     for stream in (vars(sys).get("stdout"), vars(sys).get("stderr")):
         if stream is not None and not any(stream is own_stream for own_stream in own):
             # The program has ended, so errors of its own streams do not matter.

@@ -64,7 +64,15 @@ _MAX_DECLARATION = 1000
 
 
 def _check_encoding(text: str, file: str) -> None:
-    """Raise the SyntaxError that Python raises for a file that is not text in the encoding that it declares."""
+    """Raise a SyntaxError, as Python does, if the bytes of a file are not text in the encoding that it declares.
+
+    Args:
+        text: The text of the file, in which each such byte is a surrogate.
+        file: The name of the file, for the error.
+
+    Raises:
+        SyntaxError: the encoding is none of text, a byte does not fit it, or there is a null byte.
+    """
     if "coding" in text[:_MAX_DECLARATION] and (declared := _find_declared_encoding(text)):
         number, encoding = declared
         if not _is_text_encoding(encoding):

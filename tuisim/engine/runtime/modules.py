@@ -135,6 +135,10 @@ def install_finder(run_folder: Path, brick_folder: str, drops_annotations: bool)
     """Install a module finder that stores the program's own modules with the run.
 
     When a run is repeated, the finder loads the modules that are stored in its folder instead.
+
+    Args:
+        run_folder: The folder of the run.
+        brick_folder, drops_annotations: As for `OwnModules`.
     """
     finders: list[Any] = sys.meta_path
     finders[finders.index(PathFinder)] = OwnModules(

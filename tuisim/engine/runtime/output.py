@@ -106,7 +106,14 @@ class Addresses:
         return _FIRST <= number < _FIRST + self._count * _STEP
 
     def _find(self, real: int, before: str) -> object:
-        """Return the object at an address; None if there is none to which the text before the address can refer."""
+        """Return the object at the address `real`, if the text before the printed address can refer to it.
+
+        Return None if there is no such object.
+
+        Args:
+            real: The address.
+            before: The text before it.
+        """
         if self._searched > _MAX_SEARCHED:
             return None
         # The garbage collector does not list all objects, so those that the program's names refer to are searched, too.

@@ -306,9 +306,9 @@ class ProgramRunner:
         return ProgramOutcome(End.FINISHED)
 
     def _hold_at_end(self, outcome: ProgramOutcome) -> ProgramOutcome:
-        """If the program has ended before a requested instant, let the debugger pause. Return the outcome.
+        """Let the debugger pause after the end of the program, if the user has requested a pause at a later instant.
 
-        It is another outcome if the user stops the run during this pause.
+        Return how the run ended: `outcome`, or a stop if the user stops the run during the pause.
         """
         if self._session.debugger is None or self._session.stop_reason is not None:
             return outcome

@@ -333,7 +333,11 @@ class Scheduler:
     # Threads
 
     def spawn(self, function: Callable[[], Any], daemon: bool) -> ScheduledThread:
-        """Start a thread, and return it; it runs when the current one waits.
+        """Start a thread of the program, and return it; it first runs when the current thread waits.
+
+        Args:
+            function: The function to call in it.
+            daemon: Whether the end of the program does not wait for it.
 
         Raises:
             RuntimeError: too many threads, for the limit or for the machine.

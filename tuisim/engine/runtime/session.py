@@ -220,7 +220,12 @@ class Session:
             self.note_reading(code, line)
 
     def note_reading(self, code: int, line: int = 0) -> None:
-        """Record that the program has read something, in `line` or, for 0, in its present line; see `DeviceSession`."""
+        """Record that the program has read something; a repetition while no time passes is not recorded again.
+
+        Args:
+            code: What it has read, see `DeviceSession.note_reading`.
+            line: The line of the program; 0 for the present one.
+        """
         readings = self.readings
         now = self.now
         # While no time passes, a loop may read the same value again and again: record it once.

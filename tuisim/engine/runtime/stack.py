@@ -43,7 +43,12 @@ def show_whole_stacks() -> Iterator[None]:
 
 
 def _iterate_visible(walk: Iterable[Any], file_of: Callable[[Any], str]) -> Iterator[Any]:
-    """Yield those items whose frames a program may see: not those of the runtime, and none below the program."""
+    """Yield those items whose frames a program may see: not those of the runtime, and none below the program.
+
+    Args:
+        walk: Items that stand for the frames of a stack.
+        file_of: Returns the file of an item's frame.
+    """
     for item in walk:
         if _shows_whole:
             yield item

@@ -234,7 +234,15 @@ def add_namesake_note(error: BaseException, file: str) -> None:
 
 
 def _keep_program_frames(trace: Trace, own: Callable[[str], bool]) -> list[Trace]:
-    """Remove frames that are not the program's from an error and its causes; return the errors, newest first."""
+    """Remove frames that are not the program's from an error and from the errors that led to it.
+
+    Args:
+        trace: The error.
+        own: Returns whether a file belongs to the program.
+
+    Returns:
+        The error, and the errors that led to it, newest first.
+    """
     chains = [[trace]]
     limit = vars(sys).get("tracebacklimit")
     max_frames = max(limit, 0) if isinstance(limit, int) else sys.maxsize

@@ -127,7 +127,15 @@ def _measure_ray_mm(
     surfaces: Surfaces,
     max_mm: float,
 ) -> float:
-    """Return the distance at which one ray meets a surface that echoes, at most `max_mm`."""
+    """Return the distance at which one ray meets a surface that echoes; `max_mm` if it meets none before.
+
+    Args:
+        start: Where the ray begins: x and y in mm.
+        angle_deg: The direction of the ray in the world.
+        facing_deg: The direction of the sensor, which decides which surfaces echo.
+        surfaces: The surfaces.
+        max_mm: Length of the ray.
+    """
     x_mm, y_mm = start
     angle = math.radians(angle_deg)
     cos, sin = math.cos(angle), math.sin(angle)

@@ -52,6 +52,10 @@ def compute_usual_settings(
     """Return the default speeds and accelerations of a drive base: in mm and degrees, and in counts.
 
     Those in counts may be more exact, because those in mm and degrees are whole numbers.
+
+    Args:
+        law: The firmware that moves the motors.
+        distance, heading: The settings of the drive base's two controllers.
     """
     firmware = FIRMWARES[law]
     controls = distance, distance, heading, heading

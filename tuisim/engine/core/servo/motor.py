@@ -209,7 +209,14 @@ class ServoMotor:
     def set_up(
         self, now_us: int, sign: int, gear_ratio: float, *, keeps_angle: bool = False
     ) -> None:
-        """Reset the motor, as for a new object of a program: it coasts, and its position is 0 unless `keeps_angle`."""
+        """Reset the motor, as for a new object of a program: it coasts.
+
+        Args:
+            now_us: The present time.
+            sign: 1 or -1 for the direction that the program counts as positive.
+            gear_ratio: Turns of the motor for one turn of the part that it drives.
+            keeps_angle: Whether the position stays; otherwise it becomes 0.
+        """
         self.run_freely(now_us, None)
         self.sign = sign
         if not keeps_angle:

@@ -212,7 +212,12 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
 
 
 def find_steady_dps(kind: str, actuation: int) -> float:
-    """Return the speed that a kind of motor reaches in the end at a power; 0 if friction keeps it at rest."""
+    """Return the speed that a kind of motor reaches in the end at a power; 0 if friction keeps it at rest.
+
+    Args:
+        kind: One of `MOTOR_KINDS`.
+        actuation: The power, in hundredths of a percent.
+    """
     if (model := MODELS.get(kind)) is None:
         from tuisim.engine.core.servo.hub_motors import PLANTS
 

@@ -41,7 +41,12 @@ class Step:
     """The step is complete at a line with at most this many open calls of the program's own code."""
 
     def is_done(self, task: ScheduledThread, depth: int) -> bool:
-        """Return whether a line that is about to run completes the step."""
+        """Return whether a line that is about to run completes the step; True if the thread of the step has ended.
+
+        Args:
+            task: The thread that is about to run the line.
+            depth: Number of open calls of the program's own code in it.
+        """
         if self.task is None or self.task.done:
             return True
         return task is self.task and depth <= self.most_depth
@@ -274,7 +279,7 @@ class Debugger:
     # Ticks
 
     def limit_ticks(self, most: int) -> int:
-        """Return the number of ticks that may run before `check_breakpoints` has to be called."""
+        """Return the number of ticks, at most `most`, that may run before `check_breakpoints` has to be called."""
         tick = self._session.sim.tick
         if self._watcher.ticks:
             return 1

@@ -371,7 +371,14 @@ class Inspector:
         watches: tuple[str, ...],
         seconds: float,
     ) -> dict[str, Any]:
-        """Return variables and watched expressions as data for JSON; called in the copy of the process."""
+        """Return variables and watched expressions as data for JSON; called in the copy of the process.
+
+        Args:
+            frame: The frame whose names are read; None for the program's global names only.
+            local: The local names; None for those of the frame.
+            watches: The watched expressions.
+            seconds: CPU time for the program's own code.
+        """
         inside = self._module if frame is None else frame.f_globals
         if frame is None:
             names = inside

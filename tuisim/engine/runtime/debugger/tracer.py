@@ -31,7 +31,8 @@ class Tracer:
     Args:
         session: The run.
         scheduler: Knows the current thread, and calls back when a thread starts to run.
-        check: Called for each line that `closely` or `lines` select; may pause the run.
+        check: Called for the lines whose numbers are in `lines`, or for every line while `closely` is True; may pause
+            the run.
     """
 
     def __init__(self, session: Session, scheduler: Scheduler, check: LineCheck) -> None:
@@ -162,7 +163,10 @@ class Tracer:
     def history(
         self, count: int, name_of: Callable[[ScheduledThread], str]
     ) -> tuple[ExecutedLine, ...]:
-        """Return the last executed lines, up to `count`, whose position in their tick is known."""
+        """Return the last executed lines, up to `count`, whose position in their tick is known.
+
+        `name_of` returns the name of a thread.
+        """
         met = [row for row in self._met if row[0] != self._uncounted_tick]
         return tuple(
             ExecutedLine(tick, ordinal, line, name_of(task), depth)

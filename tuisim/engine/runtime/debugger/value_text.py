@@ -52,7 +52,10 @@ class Renderer:
         self._until_s = wallclock.process_time() + seconds
 
     def render(self, value: object, depth: int = 0) -> str:
-        """Return a value as text of at most `MAX_CHARACTERS` characters; never raises."""
+        """Return a value as text of at most `MAX_CHARACTERS` characters; never raises.
+
+        `depth` is the number of containers that are being converted and contain the value.
+        """
         exact: Any = type(value)
         if exact in (bool, types.NoneType, float, complex, types.EllipsisType):
             return repr(value)
@@ -155,9 +158,15 @@ def evaluate(
 
 
 def evaluate_truth(text: str, names: Mapping[str, Any], builtin: Any) -> str:
-    """Return `.`, followed by a reason for a pause if an expression is true or cannot be evaluated.
+    """Return `.`, followed by the reason for a pause if the condition of a breakpoint gives one.
 
-    An expression with an undefined name is not a reason.
+    Such a reason is that the condition is true, cannot be evaluated, or takes too long. A condition that is false, or
+    has an undefined name, gives none.
+
+    Args:
+        text: The condition, an expression.
+        names: The variables that it can use.
+        builtin: The program's builtins.
     """
     code = compile(text.strip(), "<break>", "eval", dont_inherit=True)
     try:

@@ -284,9 +284,11 @@ LONG_NS = 5 * NS_PER_S
 def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:
     """Return the function that the program calls at the start of each loop body.
 
+    It keeps a loop that takes no simulated time from running forever, and passes on output that C code has written.
+
     Args:
         session: The run.
-        turns: The number of iterations without simulated time passing, after which some time passes.
+        turns: After this number of calls without simulated time, some time passes.
         cost_ns: How much time passes then.
     """
     left = turns

@@ -36,6 +36,12 @@ def _get_argument(index: int, name: str, given: Sequence[Any], named: Mapping[st
     """Return an argument of a call by its position or its name; None if the call lacks it.
 
     The real function, which is called afterwards, raises the error about the missing argument.
+
+    Args:
+        index: The position of the argument.
+        name: The name of the argument.
+        given: The positional arguments of the call.
+        named: The keyword arguments of the call.
     """
     return given[index] if index < len(given) else named.get(name)
 

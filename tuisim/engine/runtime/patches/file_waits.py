@@ -203,7 +203,16 @@ class FileWaits:
         sockets.connect = self._connect(sockets.connect, sockets.connect_ex)
 
     def _wait_for_socket(self, socket: Any, writes: bool, code: int | None = None) -> None:
-        """Wait until a socket is ready; with a `code`, record a reading at each poll that finds it not ready."""
+        """Wait in simulated time until a socket is ready, at most for the socket's own timeout.
+
+        Args:
+            socket: The socket.
+            writes: Whether it must be ready for writing; otherwise for reading.
+            code: A reading to record at each poll that finds it not ready; None for none.
+
+        Raises:
+            TimeoutError: the timeout is over.
+        """
         timeout_s = socket.gettimeout()
         if timeout_s == 0.0:
             return
