@@ -169,7 +169,10 @@ def all_ports(session: DeviceSession) -> list[SimDevice]:
 
 
 def ports_hint(session: DeviceSession, class_name: str) -> str:
-    """Return a hint for a motor or sensor that was not found: which devices the robot has; empty for other classes."""
+    """Return a hint for the error about a missing motor or sensor, which lists those that the robot has, by port.
+
+    `class_name` is the kernel's name of the class of devices; the hint is empty for other classes than these two.
+    """
     if class_name not in (MOTOR_CLASS, SENSOR_CLASS):
         return ""
     robot = session.sim.spec.robot

@@ -135,7 +135,13 @@ def patch_fonts_module(module: types.ModuleType) -> None:
 
 
 def sized(size_px: int, bold: bool, monospace: bool) -> ImageFont:
-    """Return an upright font of any height in pixels."""
+    """Return an upright font of any height.
+
+    Args:
+        size_px: The height in pixels.
+        bold: Whether strokes are bold.
+        monospace: Whether all characters are equally wide.
+    """
     cell_px = _CELLS["lut"].get(size_px, max(1, round(_CELL * size_px))) if monospace else None
     return drawn(Face(size_px, bold, slanted=False, cell_px=cell_px))
 
@@ -224,7 +230,7 @@ def _letter(large: FreeTypeFont, letter: str, face: Face) -> tuple[Picture, int,
 
 
 def _plain_letter(letter: str, times: float) -> Picture:
-    """Return an enlarged letter of the plain font, which has the accented letters that the other font lacks."""
+    """Return the picture of a letter in the plain font, which also has accented letters, enlarged `times` times."""
     from PIL import Image, ImageDraw
 
     image = Image.new("L", _PLAIN_CELL_PX)

@@ -301,7 +301,10 @@ class TachoMotor(SignedTacho):
         self._begun()
 
     def _begun(self) -> None:
-        """Handle rare cases after the start of a move: ramps, except for `run-direct`, and a target speed of 0."""
+        """Complete the start of a move: apply the ramps, except to `run-direct`.
+
+        If the target speed is 0, note the tick at which the motor will stand still.
+        """
         if self._ramps and not self._direct:
             self._ramp()
         motor = self._motor

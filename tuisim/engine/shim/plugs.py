@@ -93,7 +93,9 @@ class Plugs:
     def _choose_port(self, part: str) -> str:
         """Return a port for a part whose port the program does not name; empty if there is none.
 
-        A free port comes first, then one whose part the program does not use.
+        A free port is preferred; otherwise it is one whose part the program does not use.
+
+        `part` is a class of `engine.core.plugged`.
         """
         ports = OUTPUT_PORTS if part in MOTOR_PARTS else INPUT_PORTS
         free = [port for port in ports if not self.find_path(port)]

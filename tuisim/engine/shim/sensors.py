@@ -251,7 +251,7 @@ class ColorDevice(LegoSensor):
     def switch(self, mode: str) -> None:
         """Switch to a mode.
 
-        For a short time, the sensor then still returns the values from the end of the last time in this mode.
+        For a short time after that, the sensor still returns the values that it last had in this mode.
         """
         if self._stale_ns and not self._session.free:
             self._left_values[self.mode] = self.modes[self.mode].measure()

@@ -132,7 +132,7 @@ class Loudspeaker:
         """Collects the tones of a song while the library plays its notes."""
 
     def play(self, heard: Heard, wait_ns: int) -> None:
-        """Play a sound, and let `wait_ns` of simulated time pass."""
+        """Play the sound `heard`, and let `wait_ns` of simulated time pass."""
         self._session.speak(heard.text, wait_ns, heard.tones_row, heard.file)
 
     def rest(self, seconds: float) -> None:

@@ -103,7 +103,14 @@ def _patch_moves(motor: Any) -> None:
     def on_for_degrees(
         self: Any, speed: Any, degrees: float, brake: bool = True, block: bool = True
     ) -> None:
-        """Rotate the motor at `speed` by `degrees`."""
+        """Rotate the motor by an angle at a speed; a negative speed or angle changes the direction.
+
+        Args:
+            speed: In percent, or an object such as `SpeedDPS`.
+            degrees: The angle.
+            brake: Whether the motor brakes at the end; otherwise it coasts.
+            block: Whether the call returns only when the motor has stopped.
+        """
         native = self._speed_native_units(speed)
         if isinstance(speed, motor.SpeedValue):
             # Halves are rounded up before the sign is removed, as in the browser simulator.
@@ -115,26 +122,47 @@ def _patch_moves(motor: Any) -> None:
     def on_for_rotations(
         self: Any, speed: Any, rotations: float, brake: bool = True, block: bool = True
     ) -> None:
-        """Rotate the motor at `speed` by `rotations`."""
+        """Rotate the motor by a number of rotations at a speed; a negative speed or number changes the direction.
+
+        Args:
+            speed: In percent, or an object such as `SpeedDPS`.
+            rotations: The number.
+            brake: Whether the motor brakes at the end; otherwise it coasts.
+            block: Whether the call returns only when the motor has stopped.
+        """
         self.on_for_degrees(speed, rotations * 360, brake, block)
 
     def on_for_seconds(
         self: Any, speed: Any, seconds: float, brake: bool = True, block: bool = True
     ) -> None:
-        """Rotate the motor at `speed` for `seconds`."""
+        """Rotate the motor for some time at a speed.
+
+        Args:
+            speed: In percent, or an object such as `SpeedDPS`.
+            seconds: The time.
+            brake: Whether the motor brakes at the end; otherwise it coasts.
+            block: Whether the call returns only when the motor has stopped.
+        """
         _refuse_negative(seconds)
         self.speed_sp, self.time_sp = round_half_up(self._speed_native_units(speed)), seconds
         start(self, "run_timed", brake, block)
 
     def on(self: Any, speed: Any, brake: bool = True, block: bool = False) -> None:
-        """Rotate the motor at `speed` until the next command."""
+        """Rotate the motor at a speed until the next command; `block` waits until it has stopped."""
         self.speed_sp = round_half_up(self._speed_native_units(speed))
         start(self, "run_forever", brake, block)
 
     def on_to_position(
         self: Any, speed: Any, position: float, brake: bool = True, block: bool = True
     ) -> None:
-        """Rotate the motor at `speed` to `position`."""
+        """Rotate the motor to a position at a speed.
+
+        Args:
+            speed: In percent, or an object such as `SpeedDPS`.
+            position: The position in degrees.
+            brake: Whether the motor brakes at the end; otherwise it coasts.
+            block: Whether the call returns only when the motor has stopped.
+        """
         self.speed_sp, self.position_sp = round_half_up(self._speed_native_units(speed)), position
         start(self, "run_to_abs_pos", brake, block)
 

@@ -23,9 +23,9 @@ from tuisim.engine.shim.waits import Wait, waits_for
 
 
 class Patience:
-    """A counter that says whether the library, while it calls `poll`, only waits for motors to stop.
+    """Knows whether the library calls `poll` only to wait until a motor has stopped.
 
-    The call of `poll` itself does not say it.
+    The call of `poll` itself does not say so.
     """
 
     def __init__(self) -> None:
@@ -191,9 +191,13 @@ def _patch_device(device_class: Any, brick: DeviceFiles) -> None:
 
 
 def _charge_memory(device_class: Any, session: DeviceSession) -> None:
-    """Let reads of attributes that the library has stored take the time of its own code.
+    """Make reads of attributes whose values the library has cached take simulated time: that of the library's own code.
 
-    Nothing changes if the profile has no such time.
+    Nothing changes if the profile gives no such time.
+
+    Args:
+        device_class: The library's class of devices.
+        session: The run.
     """
     cost_ns = session.sim.spec.profile.cached_read_ns
     if not cost_ns:

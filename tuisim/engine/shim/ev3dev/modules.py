@@ -150,7 +150,13 @@ def finishers(
 
 
 def install(session: DeviceSession, built: BuiltBrick, plugs: Plugs) -> None:
-    """Make the libraries for ev3dev importable by the program, with the simulated devices behind them."""
+    """Make the libraries for ev3dev importable by the program, with the simulated devices behind them.
+
+    Args:
+        session: The run.
+        built: The brick.
+        plugs: Plugs in missing devices.
+    """
     sys.meta_path.insert(0, refuse_other((PYBRICKS,), Library.EV3DEV2))
     sys.meta_path.append(MissingLibrary())
     sys.meta_path.append(HardwareFinder(Library.EV3DEV2))

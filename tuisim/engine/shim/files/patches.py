@@ -202,7 +202,15 @@ class FilePatches:
         return self._raw(file, mode, closefd)
 
     def _raw(self, file: Any, mode: str, closefd: bool) -> DeviceIO | None:
-        """Return the opened device file; None for another file, or if Python's own function has to raise an error."""
+        """Return an opened device file, given its path or descriptor.
+
+        Return None for another file, or if Python's own function has to raise an error.
+
+        Args:
+            file: The path or the descriptor.
+            mode: As for `open`.
+            closefd: Whether closing the object closes the descriptor.
+        """
         kinds = [kind for kind in mode if kind in _FLAGS]
         if len(kinds) != 1 or set(mode) - {*_FLAGS, "b", "+"}:
             return None

@@ -268,7 +268,14 @@ class Image(Connected):
         fill: bool = False,
         color: Color | None = Color.BLACK,
     ) -> None:
-        """Draw a box between two corners, both included; `r` is the radius of its corners."""
+        """Draw a box between two corners, both included.
+
+        Args:
+            x1, y1, x2, y2: The corners, in pixels.
+            r: The radius with which corners are rounded.
+            fill: Whether the box is filled; otherwise only its outline is drawn.
+            color: The colour; None draws nothing.
+        """
         left, right = sorted((whole(x1), whole(x2)))
         top, bottom = sorted((whole(y1), whole(y2)))
         radius = min(max(whole(r), 0), (right - left) // 2, (bottom - top) // 2)
@@ -281,7 +288,14 @@ class Image(Connected):
     def draw_circle(
         self, x: float, y: float, r: float, fill: bool = False, color: Color | None = Color.BLACK
     ) -> None:
-        """Draw a circle of radius `r` around a point."""
+        """Draw a circle.
+
+        Args:
+            x, y: The centre, in pixels.
+            r: The radius.
+            fill: Whether the circle is filled; otherwise only its outline is drawn.
+            color: The colour; None draws nothing.
+        """
         x, y, r = map(whole, (x, y, r))
         with self._drawing() as (_, pen):
             if (paint := paint_of(color)) and r >= 0:
@@ -342,7 +356,15 @@ class Image(Connected):
         paint: Rgb | None,
         background: Rgb | None,
     ) -> int:
-        """Draw a line of text at a place, and return its width in pixels."""
+        """Draw a line of text, and return its width in pixels.
+
+        Args:
+            pen: The Pillow object that draws.
+            place: The top left corner of the text.
+            text: The text.
+            paint: The colour of the text; None draws no text.
+            background: The colour behind it; None for none.
+        """
         x, y = place
         width = self._font.text_width(text)
         line = drawable(text)

@@ -261,7 +261,12 @@ class Motor(DCMotor):
         return None
 
     def _done(self, now_us: int, call: str) -> bool:
-        """Return whether the motor's move is over; print a message once if something blocks the motor."""
+        """Return whether the motor's move is over; print a message once if something blocks the motor.
+
+        Args:
+            now_us: The present time.
+            call: The call that waits for the end of the move, for the message.
+        """
         motor = self.simulated
         if motor.guide is None:
             return True
@@ -291,7 +296,13 @@ class Motor(DCMotor):
     def run_until_stalled(
         self, speed: float, then: Stop = Stop.COAST, duty_limit: float | None = None
     ) -> int:
-        """Run the motor at a speed until something stops it, and return its angle in degrees."""
+        """Run the motor at a speed until something stops it, and return its angle in degrees.
+
+        Args:
+            speed: In degrees per second.
+            then: What the motor does afterwards.
+            duty_limit: The highest power in percent; None for no limit.
+        """
         limit = None if duty_limit is None else max(0, min(100, whole(duty_limit))) * PERCENT
         self.run(speed)
         self.tell(Call.LIMIT_DUTY, limit)

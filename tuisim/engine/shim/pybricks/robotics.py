@@ -104,7 +104,10 @@ class DriveBase(Connected):
         return self.brick.finish(self._wait_for_end(call), self.stop) if wait else None
 
     def _wait_for_end(self, call: str) -> Waiting[None]:
-        """Wait until the move of a call is over; print a message once if something blocks the wheels."""
+        """Wait until a move is over; print a message once if something blocks the wheels.
+
+        `call` is the call that waits, for the message.
+        """
         base = self._base
 
         def done(now_us: int) -> bool:

@@ -182,7 +182,10 @@ class Control(motor.Control):
         integral_deadzone: float | None = None,
         integral_rate: float | None = None,
     ) -> tuple[int, ...] | None:
-        """Set the gains in micro-Nm per degree (and second), and two more numbers; without arguments, return them."""
+        """Set the gains kp, ki and kd in micro-Nm per degree (and second), and the two numbers for the integral.
+
+        Without arguments, return all five.
+        """
         gains = super().pid(kp, ki, kd, integral_deadzone, integral_rate)
         return gains and gains[:5]
 
@@ -234,14 +237,28 @@ class DriveBase(robotics.DriveBase):
     def turn(
         self, angle: float, then: Stop = Stop.HOLD, wait: bool = True, absolute: bool = False
     ) -> None:
-        """Turn by an angle in degrees, clockwise; with `absolute`, turn to a heading of this angle."""
+        """Turn on the spot.
+
+        Args:
+            angle: By how many degrees to turn, clockwise.
+            then: What the motors do afterwards.
+            wait: Whether the call blocks until the move is over.
+            absolute: Whether `angle` is the heading to turn to instead; the shorter way is taken.
+        """
         by: float = whole(angle)
         if absolute:
             by = (by - self.angle() + 180) % 360 - 180
         return self._move(0, by, "turn()", then, wait=wait)
 
     def curve(self, radius: float, angle: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
-        """Drive along an arc by an angle in degrees; a negative radius turns in the other direction."""
+        """Drive along an arc.
+
+        Args:
+            radius: The radius in mm; a negative one turns in the other direction.
+            angle: The angle of the arc in degrees.
+            then: What the motors do afterwards.
+            wait: Whether the call blocks until the move is over.
+        """
         turned = -whole(angle) if radius < 0 else whole(angle)
         way = whole(radius) * radians(abs(whole(angle)))
         return self._move(way, turned, "curve()", then, wait=wait)
@@ -254,7 +271,18 @@ class DriveBase(robotics.DriveBase):
         then: Stop = Stop.HOLD,
         wait: bool = True,
     ) -> None:
-        """Drive along an arc by an angle in degrees or a distance in mm; a negative radius turns the other way."""
+        """Drive along an arc, whose length is given by an angle or by a distance.
+
+        Args:
+            radius: The radius in mm; a negative one turns in the other direction.
+            angle: The angle of the arc in degrees; None if `distance` is given.
+            distance: The length of the arc in mm; None if `angle` is given.
+            then: What the motors do afterwards.
+            wait: Whether the call blocks until the move is over.
+
+        Raises:
+            ValueError: both or neither of `angle` and `distance` are given, or the radius is too small.
+        """
         if (angle is None) == (distance is None):
             raise ValueError("Please specify distance or angle but not both.")
         if abs(whole(radius)) < MIN_RADIUS_MM:

@@ -22,7 +22,7 @@ class Motor(motor.Motor):
         return self.control.stalled()
 
     def set_run_settings(self, max_speed: float, acceleration: float) -> None:
-        """Set the highest speed and acceleration of the motor's moves."""
+        """Set the highest speed of the motor's moves, and their acceleration, in degrees per second (squared)."""
         self.control.limits(max_speed, acceleration)
 
     def set_dc_settings(self, duty_limit: float, duty_offset: float) -> None:
@@ -41,7 +41,14 @@ class Motor(motor.Motor):
         stall_speed: float,
         stall_time: float,
     ) -> None:
-        """Set the gains, and when a move is done and when the motor is stalled; `tight_loop_limit` has no effect."""
+        """Set the gains of the motor's controller, and when a move is done and when the motor is stalled.
+
+        Args:
+            kp, ki, kd: The gains.
+            tight_loop_limit: Has no effect.
+            angle_tolerance, speed_tolerance: How near to its target angle and speed a move is done.
+            stall_speed, stall_time: The speed below which, and the time after which, the motor is stalled.
+        """
         self.control.pid(kp, ki, kd)
         self.control.target_tolerances(speed_tolerance, angle_tolerance)
         self.control.stall_tolerances(stall_speed, stall_time)
@@ -51,7 +58,13 @@ class DriveBase(robotics.DriveBase):
     """The drive base of version 2.0 of Pybricks, which keeps the methods of version 1.0."""
 
     def drive_time(self, speed: float, steering: float, time: float) -> None:
-        """Drive for a time in milliseconds, then let the motors coast."""
+        """Drive for some time, then let the motors coast.
+
+        Args:
+            speed: In mm/s.
+            steering: The rate of turn in degrees per second.
+            time: The time in milliseconds.
+        """
         self.drive(speed, steering)
         wait(time)
         self.stop()

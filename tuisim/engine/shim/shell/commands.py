@@ -80,7 +80,12 @@ class Streams:
 
 
 def refuse(what: str, hint: str) -> Exception:
-    """Return the error for a feature that is not simulated. It is an OSError, like that for a missing program."""
+    """Return the error for a feature that is not simulated. It is an OSError, like that for a missing program.
+
+    Args:
+        what: The feature.
+        hint: What a program can use instead.
+    """
     return refused_as(OSError, f"{what} is not part of the simulated brick", hint)
 
 
@@ -135,10 +140,14 @@ class Shell:
         self.mixer = mixer
 
     def start(self, calls: Sequence[Call], streams: Streams) -> Steps:
-        """Start the commands of a line, and return the steps in which they run.
+        """Return the steps in which the commands of a line run; the first command begins with the first step.
+
+        Args:
+            calls: The commands.
+            streams: Their streams and their folder.
 
         Raises:
-            NotSimulated: the brick does not have one of the programs.
+            NotSimulated: the brick does not have one of the programs, or a part of the line is not simulated.
         """
         before = ""
         for call in calls:

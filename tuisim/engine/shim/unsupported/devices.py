@@ -131,7 +131,13 @@ def of_driver(name: str) -> Hardware | None:
 
 
 def refusal(where: str, kind: Hardware, name: str = "") -> NotSimulated:
-    """Return the error for the use of hardware that is not simulated; arguments as for `_told`."""
+    """Return the error for the use of hardware that is not simulated.
+
+    Args:
+        where: The name, port or mode that the program used.
+        kind: The hardware.
+        name: Its driver, address or mode, as the program wrote it; empty for none.
+    """
     return NotSimulated(*_told(where, kind, name))
 
 

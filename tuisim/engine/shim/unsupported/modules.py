@@ -206,13 +206,29 @@ class _Part(type):
 
 
 def refused_part(path: str, name: str, hardware: Hardware) -> Any:
-    """Return an object for a name in a module for hardware, which a program can import but not use."""
+    """Return an object for a name in a module for hardware: a program can import it, but not use it.
+
+    Args:
+        path: The full name of the module.
+        name: The name in it.
+        hardware: The hardware.
+    """
     words = {"full_name": f"{path}.{name}", "hardware": hardware, "__module__": path}
     return type(name, (OSError,), words) if name.endswith(_ERRORS) else _Part(name, (), words)
 
 
 def _kept_part(place: Any, path: str, name: str, hardware: Hardware) -> Any:
-    """Return a `refused_part`, and store it as an attribute of `place`."""
+    """Return a `refused_part`, after storing it as an attribute of `place`, a module or another such object.
+
+    Args:
+        place: The module or object.
+        path: Its full name.
+        name: The name in it.
+        hardware: The hardware that it is for.
+
+    Raises:
+        AttributeError: the name begins with two underscores.
+    """
     if name.startswith("__"):
         raise AttributeError(f"{path} has no attribute {name!r}")
     made = refused_part(path, name, hardware)

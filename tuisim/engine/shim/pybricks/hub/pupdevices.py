@@ -115,11 +115,14 @@ class ColorSensor(Sensor):
         return self._read_as("COL-AMBIENT", lambda percent: convert((0, 0, percent)))
 
     def hsv(self, surface: bool = True) -> Any:
-        """Return hue, saturation and value of what the sensor sees, as a `Color`."""
+        """Return hue, saturation and value of what the sensor sees, as a `Color`.
+
+        `surface` says whether the sensor's own light is on; without it, the ambient light is measured, as a grey.
+        """
         return self._read_hsv(surface, lambda measured: Color(*measured))
 
     def color(self, surface: bool = True) -> Any:
-        """Return the detectable colour that is nearest to what the sensor sees."""
+        """Return the detectable colour that is nearest to what the sensor sees; `surface` is as for `hsv`."""
         return self._read_hsv(surface, lambda measured: find_nearest(measured, self._colors))
 
     def detectable_colors(self, colors: Any = None) -> Sequence[Any] | None:
