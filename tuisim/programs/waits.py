@@ -41,6 +41,11 @@ class LoopEnd:
     """Whether nothing in the loop calls or reads anything: it only computes."""
 
     @property
+    def is_endless(self) -> bool:
+        """Whether nothing that comes can end the loop: it renews nothing that it compares, or compares nothing."""
+        return bool(self.set_line) or (self.is_silent and not self.name)
+
+    @property
     def color(self) -> str:
         """The colour with which the loop compares, in lower case; empty for none."""
         return COLOR_WORDS.get(shorten(self.limit), "")
@@ -203,7 +208,6 @@ def _find_end(
     value, ending, limit = comparison
     name, set_line, read_line, attribute = "", 0, value.lineno, find_attribute(value)
     is_silent = not _has_any(loop, ast.Call, ast.Attribute)
-    has_exit = _has_any(loop, ast.Break, ast.Return)
     if isinstance(value, ast.Name):
         name = value.id
         values = _find_values(name, tree)
@@ -214,7 +218,7 @@ def _find_end(
         if values and values[-1][0] < loop.lineno and find_attribute(values[-1][1]):
             set_line = values[-1][0]
         is_silent = is_silent and bool(inner)
-    if attribute or (name and not has_exit and (set_line or is_silent)):
+    if attribute or (name and not _has_exit(loop) and (set_line or is_silent)):
         lines = test.lineno, loop.lineno, _find_last_line(loop)
         yield LoopEnd(*lines, ending, limit, attribute, read_line, name, set_line, is_silent)
 
@@ -256,6 +260,18 @@ def _split_sum(
 
 def _has_any(loop: _Loop, *kinds: type[ast.AST]) -> bool:
     return any(isinstance(node, kinds) for node in ast.walk(loop))
+
+
+def _has_exit(loop: _Loop) -> bool:
+    """Return whether anything but its condition can end a loop."""
+    return _has_any(loop, ast.Break, ast.Return, ast.Raise) or any(map(_is_exit, ast.walk(loop)))
+
+
+def _is_exit(node: ast.AST) -> bool:
+    match node:
+        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
+            return name.strip("_") in ("exit", "quit")
+    return False
 
 
 def _find_last_line(node: ast.stmt) -> int:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.cases import cases
 from tests.tasks.reasons.runs import run_text
 from tuisim.tasks.reasons.reason import ReasonKind, describe_end, find_reasons
@@ -30,6 +32,13 @@ from ev3dev2.sensor.lego import TouchSensor
 hit = TouchSensor('in1').is_pressed
 while not hit:
     print(1)
+"""
+STALE = """\
+# %%sim_magic_preloaded -b Grey_bands
+light = colorLeft.reflected_light_intensity_pc
+tank_drive.on(SpeedPercent(40), SpeedPercent(40))
+while light > 6:
+    print(light)
 """
 ASKS = """\
 # %%sim_magic_preloaded -b Empty_Map -o Wall -x 400 -y 600
@@ -100,12 +109,38 @@ def test_a_misuse_is_named_with_its_instant_line_and_value(text: str, words: str
     assert words in describe_end(run)
 
 
-def test_a_truth_that_never_changes_is_named_beside_the_wait_for_it() -> None:
-    waited, read_once = find_reasons(run_text(STUCK, limit_s=5.0))
-    assert waited.kind is ReasonKind.BLOCKED
+def test_a_truth_that_never_changes_is_named_without_a_wait_for_it() -> None:
+    (read_once,) = find_reasons(run_text(STUCK, limit_s=5.0))
     assert (
         "line 4: hit never changes: line 3 read it only once, at 0.00 s, before" in read_once.words
     )
+
+
+@pytest.mark.parametrize("limit_s", [0.3, 1.5, 2.5], ids=["white", "first grey", "later grey"])
+def test_a_loop_that_renews_no_reading_is_named_wherever_its_run_was_cut_off(
+    limit_s: float,
+) -> None:
+    (stuck,) = find_reasons(run_text(STALE, limit_s=limit_s))
+    assert stuck.words == (
+        "0.02 s, line 4: from here on it waited for light to be 6 or less, but nothing changes it after "
+        "line 2: read it inside the loop"
+    )
+
+
+@cases(
+    "text",
+    {
+        "left by a break": STALE + "    if get_clock() > 1:\n        break\n",
+        "left by an exit": STALE + "    if get_clock() > 1:\n        sys.exit()\n",
+        "left at once": STALE.replace("> 6", "< 6"),
+    },
+)
+def test_a_loop_that_something_else_ends_is_no_endless_wait(text: str) -> None:
+    assert not [
+        reason
+        for reason in find_reasons(run_text("import sys\n" + text, limit_s=0.3))
+        if reason.kind is ReasonKind.BLOCKED
+    ]
 
 
 @cases(

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from tests.tasks.reasons.runs import run_text
-from tuisim.tasks.reasons.one_colour import OneColor, find_one_color
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.tasks.reasons.one_colour import OneColor, find_one_color, name_only_color
 
 TEXT = """\
 # %%sim_magic_preloaded -b Grey_bands -x {x} -y 500
@@ -34,3 +36,22 @@ def test_a_sensor_that_saw_one_colour_on_a_long_way_is_named(
     every = np.arange(1, len(records), max(1, len(records) // reads))
     ticks = {"left": every, "right": every[:0]}
     assert find_one_color(records, run.spec, run.open_mat(), ticks) == seen
+
+
+@pytest.mark.parametrize(
+    "levels, has_grey, name",
+    [
+        ((250, 255), True, "white"),
+        ((211, 211), True, "grey"),
+        ((211, 211), False, "white"),
+        ((221, 255), True, ""),
+        ((5, 9), True, "black"),
+    ],
+)
+def test_only_light_near_that_of_white_is_called_white(
+    levels: tuple[int, int], has_grey: bool, name: str
+) -> None:
+    channels = np.array([levels] * 3, float)
+    (sensor, *_), profile = RobotSpec().color_sensors, PROFILES["robolab"]
+    spec = RunSpec(RobotSpec(), WorldSpec(), profile)
+    assert name_only_color(channels, sensor, spec, has_grey=has_grey) == name

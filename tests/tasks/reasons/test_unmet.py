@@ -56,7 +56,7 @@ VAIN = {
     ),
     "read once": (
         f"{DRIVES}from time import sleep\nv = {LIGHT}\nwhile v > 20:\n    sleep(1)\n",
-        "v to be 20 or less, but nothing changes it after line 4",
+        "v to be 20 or less, but nothing changes it after line 4: read it inside the loop",
     ),
     "an endless loop": (
         f"{BANDS}x = 0\nwhile True:\n    x = x + 1\n",

@@ -63,6 +63,11 @@ def drive_and_poll(recorder: Recorder, port: str, mode: str) -> None:
         recorder.drive(100, -100, 10, 6)
 
 
+def read_once_and_drive_on(recorder: Recorder) -> None:
+    recorder.read("in2", "COL-REFLECT", 3)
+    recorder.drive(100, 100, 300, 6)
+
+
 def start_by_button_and_wait(recorder: Recorder) -> None:
     poll(recorder, "buttons", "pressed", line=3, seconds=2)
     poll(recorder, "in1", "TOUCH", line=8)
@@ -140,6 +145,7 @@ WAITS: dict[str, tuple[WorldSpec, Moves, list[tuple[Subject, str, int, str]]]] =
     "a bumper at a box": (AT_BOX, lambda r: poll(r, "in1", "TOUCH"), []),
     "a remote of the world": (WITH_REMOTE, lambda r: poll(r, "in4", "IR-REMOTE"), []),
     "a sleep on purpose": (SPEC.world, sleep_after_reading, []),
+    "a sensor that is read no more": (SPEC.world, read_once_and_drive_on, []),
     "a motor": (SPEC.world, lambda r: poll(r, "outB", "state"), []),
     "nothing": (SPEC.world, lambda r: None, []),
 }

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import COLOR_NAMES
-from tuisim.engine.core.sensors.color import find_color_code
+from tuisim.engine.core.sensors.color import WHITE_CODE, find_color_code, find_response
 from tuisim.engine.runs.sensor_arrays import measure_quiet_color
 from tuisim.programs.facts import LoopEnd
 from tuisim.tasks.reasons.lost_line import is_on_mat
 
 if TYPE_CHECKING:
     from tuisim.engine.core.field import Field
-    from tuisim.engine.core.spec import RunSpec
+    from tuisim.engine.core.spec import ColorSensorSpec, RunSpec
 
     Array = NDArray[Any]
 
@@ -27,6 +27,8 @@ _MIN_WAY_MM = 200.0
 """The least distance that the robot must drive: before, it may not have come to another colour."""
 _SAME_LIGHT = 25
 """A sensor whose channels change by less, of 255, sees the same."""
+_MIN_WHITE_SHARE = 0.9
+"""Darker than this share of white, light without a hue is grey."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,15 +69,33 @@ def find_one_color(
         way_mm = step_mm[ticks[0] : ticks[-1] + 1]
         columns = measure_quiet_color(records[ticks], sensor, spec, mat).values()
         channels = np.array([*columns])
-        if np.ptp(channels, axis=1).max() > _SAME_LIGHT:
+        if not (name := name_only_color(channels, sensor, spec)):
             return None
         drives = (step_mm[ticks] > 0).sum() >= _MIN_READINGS and way_mm.sum() >= _MIN_WAY_MM
         if drives and (first is None or ticks[0] < first.tick):
-            red, green, blue = (int(level) for level in channels.mean(axis=1))
-            name = COLOR_NAMES[find_color_code(red, green, blue)].lower()
             left_tick = int(later[0]) if len(later) else None
             first = OneColor(int(ticks[0]), sensor.name, name, left_tick)
     return first
+
+
+def name_only_color(
+    channels: Array, sensor: ColorSensorSpec, spec: RunSpec, *, has_grey: bool = True
+) -> str:
+    """Return the name of the only colour that a light sensor saw; empty if it saw several.
+
+    Args:
+        channels: Red, green and blue without noise, shape (3, n).
+        sensor: The sensor.
+        spec: The run.
+        has_grey: Whether grey has its own name; a sensor that reads names of colours calls it white.
+    """
+    if np.ptp(channels, axis=1).max() > _SAME_LIGHT:
+        return ""
+    red, green, blue = (int(level) for level in channels.mean(axis=1))
+    code = find_color_code(red, green, blue)
+    white = sum(find_response(sensor, spec.profile))
+    is_grey = code == WHITE_CODE and channels.min() < _MIN_WHITE_SHARE * white
+    return "grey" if has_grey and is_grey else COLOR_NAMES[code].lower()
 
 
 def describe_colors(loop: LoopEnd, device: str, codes: Array, has_codes: bool) -> str:

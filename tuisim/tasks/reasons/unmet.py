@@ -46,6 +46,8 @@ class Unmet:
     line: int
     text: str
     """A text to follow "waited for", or a sentence on a miss; without a full stop."""
+    is_endless: bool = False
+    """Whether what was waited for could never come."""
 
 
 def find_unmet(data: RunData) -> Unmet | None:
@@ -156,9 +158,10 @@ class _Search:
             yield move
         for loop in self._loops:
             stay = self._find_stay(loop)
-            is_inside = stay and stay[1] == len(self._records) and self._is_long(stay[0])
+            is_long = stay and (loop.is_endless or self._is_long(stay[0]))
+            is_inside = stay and is_long and stay[1] == len(self._records)
             if stay and is_inside and (text := self._describe(loop, stay)):
-                yield Unmet(stay[0] / self._hz, loop.line, text)
+                yield Unmet(stay[0] / self._hz, loop.line, text, is_endless=loop.is_endless)
 
     def find_near_misses(self) -> Iterator[Unmet]:
         """Yield finished loops whose limit the light only just missed, or met only between two readings of the loop."""
@@ -281,7 +284,7 @@ class _Search:
         if loop.set_line or loop.is_silent:
             goal = name_goal(loop, str(loop.limit))
             why = (
-                f"but nothing changes it after line {loop.set_line}"
+                f"but nothing changes it after line {loop.set_line}: read it inside the loop"
                 if loop.set_line
                 else "in a loop without a wait"
             )

@@ -16,12 +16,10 @@ from typing import TYPE_CHECKING, Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
 from tuisim.base.source import Program
-from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import NS_PER_S, Library
 from tuisim.engine.core.remote_spec import REMOTE_BY_HAND
 from tuisim.engine.core.sensors import build_mounted_sensor
-from tuisim.engine.core.sensors.color import find_color_code
 from tuisim.engine.core.spec import (
     ColorSensorSpec,
     InfraredSpec,
@@ -70,12 +68,13 @@ _ENDS = frozenset({End.TIME_LIMIT, End.STOPPED})
 """Ends in the middle of a wait."""
 _MIN_WAIT_S = 1.0
 """A run that is stopped after a shorter time has not waited in vain."""
-_SAME_LIGHT = 25
-"""A colour sensor whose channels change by less, of 255, sees the same."""
 _MAX_POSES = 4000
 """Distances are measured again at so many poses."""
 
 
+_MIN_PAUSE_S = 0.1
+_PAUSES = 3
+"""A program that has not read for this time, and for so many of its longest pauses, waits for something else."""
 _MAX_LINES = 64
 _SAME_HEADING_DEG = 2.0
 """A robot that turns less is not turned by hand."""
@@ -298,9 +297,10 @@ class _Search:
             # A menu may ignore buttons until the right one is pressed, so earlier presses were answered.
             rows = self._skip_answered(rows, presses)
         value = self._describe_constant(subject, port, rows, sought, needs_all, limit)
-        if value is None:
-            return None
         times_s = self._rows["time_ns"][rows] / NS_PER_S
+        is_over = subject not in OUTSIDE_SUBJECTS and self._is_read_no_more(times_s)
+        if value is None or is_over:
+            return None
         first, last = map(self._find_pose, rows[[0, -1]])
         return Awaited(
             subject,
@@ -319,6 +319,12 @@ class _Search:
             end=last,
             mode=mode,
         )
+
+    def _is_read_no_more(self, times_s: Array) -> bool:
+        """Return whether the last of some readings is so long ago that the program waits for something else."""
+        pauses_s = times_s[1:] - times_s[:-1]
+        last_s = len(self._records) / self._hz - times_s[-1]
+        return bool(last_s > max(_MIN_PAUSE_S, _PAUSES * pauses_s.max(initial=0.0)))
 
     def _find_presses(self, subject: Subject, port: str) -> tuple[HandPress, ...]:
         names = HANDS.get(subject, KEYS_BY_PORT.get(port, ()))
@@ -381,7 +387,7 @@ class _Search:
             case Subject.TOUCH, TouchSpec():
                 return None if any(value for (value,) in self._measure(sensor, ticks)) else ""
             case Subject.COLOR, ColorSensorSpec():
-                return self._describe_color(sensor, ticks)
+                return self._describe_color(sensor, rows)
             case Subject.DISTANCE, UltrasonicSpec():
                 return self._describe_distance(sensor, ticks, 10, sensor.noise_mm * 2 + 10, limit)
             case Subject.PROXIMITY, InfraredSpec():
@@ -446,20 +452,24 @@ class _Search:
             return None
         return f"{low / per_unit:.0f} {'cm' if per_unit > 1 else '%'}"
 
-    def _describe_color(self, sensor: ColorSensorSpec, ticks: Array) -> str | None:
-        """Return the name of the only colour that a sensor saw; None if it saw several, or if that is not known."""
+    def _describe_color(self, sensor: ColorSensorSpec, rows: Array) -> str | None:
+        """Return the name of the only colour under a sensor from the first of some readings to the recording's end.
+
+        The result is None if there were several colours, or if that is not known.
+        """
         import numpy as np
 
         from tuisim.engine.runs.sensor_arrays import measure_quiet_color
+        from tuisim.tasks.reasons.one_colour import name_only_color
 
         if self._run.spec.world.pen_marks or (mat := self._run.open_mat()) is None:
             return None
-        columns = measure_quiet_color(self._records[ticks], sensor, self._run.spec, mat).values()
-        channels = np.array(list(columns))
-        if np.ptp(channels, axis=1).max() > _SAME_LIGHT:
-            return None
-        red, green, blue = (int(level) for level in channels.mean(axis=1))
-        return COLOR_NAMES[find_color_code(red, green, blue)].lower()
+        records = self._records[self._ticks[rows].min() :]
+        has_grey = READING_MODES[self._rows["mode"][rows[-1]]] != "COL-COLOR"
+        columns = measure_quiet_color(records, sensor, self._run.spec, mat).values()
+        return (
+            name_only_color(np.array([*columns]), sensor, self._run.spec, has_grey=has_grey) or None
+        )
 
 
 def _list_sought(

@@ -70,6 +70,9 @@ def find_waits(data: RunData) -> list[Wait]:
     is_seen = all(awaited.subject in SEEN for awaited in all_awaited)
     unmet = find_unmet(data) if is_seen else None
     verb = "it waited" if run.end else "it waits"
+    if unmet and unmet.is_endless:
+        # What the program reads makes no difference.
+        return [_describe_unmet(verb, unmet)]
     waits = []
     for awaited in all_awaited:
         remedy = name_remedy(awaited, run.spec, run.live)
