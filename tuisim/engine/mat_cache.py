@@ -311,7 +311,10 @@ def _by_age(folder: Path) -> Iterator[tuple[float, Path]]:
 
 
 def _trim(folder: Path, keep: set[Path]) -> None:
-    """Remove the least recently used files beyond MAX_CACHED_FILES, and temporary files of killed processes."""
+    """Remove the least recently used files beyond MAX_CACHED_FILES, and temporary files of killed processes.
+
+    Files in `keep` are never removed.
+    """
     sweep(folder)
     cached = sorted(_by_age(folder))
     surplus = max(0, len(cached) - MAX_CACHED_FILES)

@@ -144,7 +144,7 @@ def background(name: str) -> Background:
 
 
 def is_image_path(name: str) -> bool:
-    """Return whether a word that is not a mat of the catalogue names an image."""
+    """Return whether a name that is not in the catalogue of mats is a path: by its form, or if such a file exists."""
     return os.sep in name or bool(Path(name).suffix) or os.path.isfile(name)
 
 

@@ -158,12 +158,13 @@ def list_ineffective(spec: RunSpec) -> list[str]:
 
 
 def extract_settings(spec: RunSpec) -> dict[str, Any]:
-    """Return the settings by path from which the specification of a run can be built again; presets are given by name.
+    """Return settings, by path, from which `build_run_spec` builds the specification of a run again.
 
-    `solid` is None where it equals the profile's default.
+    The robot, the profile and the obstacles are given by the name of a preset if they equal one. `solid` is None where
+    it equals the profile's default.
 
     Raises:
-        ConfigError: its mat no longer exists.
+        ConfigError: the mat of the run no longer exists.
     """
     world = spec.world
     word, mat = mat_of_spec(world.background)

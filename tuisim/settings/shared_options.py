@@ -45,7 +45,7 @@ def build_shared_options(
 
     Args:
         magic: Whether they are for a magic line, not for the command line.
-        hidden: Groups that are accepted but not listed in the help.
+        hidden: Groups of options that are accepted but not listed in the help.
         names: Returns the names that completion offers for an option, given the path of its setting.
     """
     return [

@@ -217,7 +217,18 @@ def _parse_inputs(world: Mapping[str, Any], location: Location) -> tuple[str, ..
 def _load_base(
     word: str, location: Location, resolve: Resolver, mats: str | None, above: tuple[Path, ...]
 ) -> WorldFile:
-    """Return the world on which another one is based."""
+    """Return the world on which another one is based.
+
+    Args:
+        word: The path of its file, as the other file gives it.
+        location: The location of that path, for errors.
+        resolve: Resolves a path in the other file.
+        mats: A folder of mats if the file names none.
+        above: The files that are based on this one, directly or through others.
+
+    Raises:
+        ConfigError: the file does not exist, is wrong, or is one of `above`.
+    """
     path = Path(resolve(word))
     if any(os.path.normpath(path) == os.path.normpath(other) for other in above):
         raise location.wrong(f"{path} is based on itself")
@@ -278,7 +289,14 @@ def _resolve(folder: Path, referred: list[Path], word: str) -> str:
 def _parse_mat(
     world: Mapping[str, Any], location: Location, resolve: Resolver, mats: str | None
 ) -> dict[str, Any]:
-    """Return the settings of the mat and of the folder of mats."""
+    """Return the settings `background` and `mats` of a world file: the mat, and the folder of the user's mats.
+
+    Args:
+        world: The keys of the file.
+        location: The file, for errors.
+        resolve: Resolves a path in the file.
+        mats: The folder of mats if the file names none.
+    """
     settings: dict[str, Any] = {}
     if "mats" in world:
         settings["mats"] = resolve(world["mats"])

@@ -122,7 +122,10 @@ class BrowserMotor:
         return turned * self.roll_sign + 0.0
 
     def _step_register(self, speed: float, noise_dps: float = 0.0) -> float:
-        """Return the value that the motor's speed register has one tick after the value `speed`."""
+        """Return the value that the motor's speed register has one tick after the value `speed`.
+
+        The value comes closer to the set speed, and has the noise `noise_dps` added.
+        """
         target = self.speed_sp
         step = self._ramp_step
         if speed < target:

@@ -148,9 +148,14 @@ def _leave_out(motors: Iterable[MotorSpec], ports: Iterable[str]) -> tuple[Motor
 
 
 def _add_sensor(robot: RobotSpec, port: str, kind: type[SensorSpec]) -> RobotSpec:
-    """Return a robot with a new sensor on a port, at a free position of the body; it replaces the part on the port.
+    """Return a robot with a new sensor on a port, at a free position of the body.
 
-    A gyro also replaces the gyro that the robot had.
+    It replaces the part on the port. A gyro also replaces the gyro that the robot had.
+
+    Args:
+        robot: The robot.
+        port: The port.
+        kind: The class of the sensor's spec.
     """
     others = [
         sensor

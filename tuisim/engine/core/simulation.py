@@ -286,7 +286,7 @@ class FurtherMotors(Simulation):
     __slots__ = ()
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
-        """Advance the simulation by ticks as `Motion.advance` does, and return how many ticks have been run.
+        """Advance the simulation, and return how many ticks have been run; arguments as for `Motion.advance`.
 
         While a motor that drives no wheel runs, the ticks are run one by one.
         """
@@ -340,5 +340,8 @@ class FurtherMotors(Simulation):
 
 
 def build_simulation(spec: RunSpec, sink: TickSink) -> Simulation:
-    """Return the simulation of a run; a `FurtherMotors` if the robot has motors besides its wheel motors."""
+    """Return the simulation of a run; a `FurtherMotors` if the robot has motors besides its wheel motors.
+
+    `sink` receives the tick records.
+    """
     return FurtherMotors(spec, sink) if spec.robot.extra_motors else Simulation(spec, sink)

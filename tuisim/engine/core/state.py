@@ -87,6 +87,9 @@ class Present:
 
 
 def end_flag(robot: RobotSpec, port: str, end: str) -> int:
-    """Return the flag of a tick record that says that the motor on a port is at one of its `MOTOR_ENDS`."""
+    """Return the flag in a tick record for an end stop: it is set while the motor on a port is there.
+
+    `end` is one of `MOTOR_ENDS`.
+    """
     number = [motor.port for motor in robot.extra_motors].index(port)
     return FLAG_FIRST_END << len(MOTOR_ENDS) * number + MOTOR_ENDS.index(end)

@@ -14,7 +14,7 @@ _Node = TypeVar("_Node")
 
 
 def list_leaves(kind: type) -> Iterator[tuple[str, Value]]:
-    """Yield the path and the description of each value that all specs of a class have.
+    """Yield the path and the description of each value that all specs of the class `kind` have.
 
     Values of sensors are left out, because a robot may lack the sensor. Values that are given together, such as those
     of a `NamedPart`, are one value.

@@ -362,7 +362,10 @@ def _diff_setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str,
 
 
 def _flatten(plain: Any, name: str = "") -> dict[str, Any]:
-    """Return nested data as one flat table, with names such as `world.noise.light`."""
+    """Return nested data as one flat table, with names such as `world.noise.light`.
+
+    Each name in the result begins with `name`, unless that is empty.
+    """
     if isinstance(plain, dict) and plain:
         pairs = [(f"{name}.{key}" if name else str(key), value) for key, value in plain.items()]
     elif isinstance(plain, list | tuple) and plain:

@@ -71,7 +71,7 @@ class DebugHooks(Protocol):
     """The methods of the debugger that the session and the control of the run call."""
 
     def begin(self, options: RunOptions) -> None:
-        """Apply the debugger's options before the program's first line."""
+        """Apply those run options that concern the debugger, before the program's first line."""
 
     def take(self, command: Message) -> None:
         """Process a command of the user to the debugger; the caller handles pausing and resuming."""

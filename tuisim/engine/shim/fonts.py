@@ -182,6 +182,11 @@ def drawn(face: Face) -> ImageFont:
 def _letter(large: FreeTypeFont, letter: str, face: Face) -> tuple[Picture, int, int]:
     """Draw a letter with its baseline `size_px` below the top of the image.
 
+    Args:
+        large: The font from which it is drawn, at a larger size.
+        letter: The letter.
+        face: The size and the style that it gets.
+
     Returns:
         The image, its left edge relative to the pen, and the advance of the pen.
     """

@@ -95,7 +95,8 @@ class Plugs:
 
         A free port is preferred; otherwise it is one whose part the program does not use.
 
-        `part` is a class of `engine.core.plugged`.
+        Args:
+            part: The name of the part's class, such as `ColorSensor`.
         """
         ports = OUTPUT_PORTS if part in MOTOR_PARTS else INPUT_PORTS
         free = [port for port in ports if not self.find_path(port)]
@@ -121,7 +122,7 @@ class Plugs:
         """Plug in a part; return whether the robot has it now.
 
         Args:
-            part: A class of `engine.core.plugged`.
+            part: The name of the part's class, such as `ColorSensor`.
             port: The port that the program names, such as `in1`.
         """
         if self._session.shown_ports is None or not self._can_give_way(port):
@@ -151,7 +152,7 @@ class Plugs:
 
         Args:
             left, right: Their ports.
-            part: Their class.
+            part: The name of their class, such as `LargeMotor`.
         """
         session = self._session
         ports = (left, right)
@@ -184,7 +185,7 @@ class Plugs:
         return not sim.has_driven and not any(map(sim.has_turned, range(first, len(others))))
 
     def _is_there(self, part: str, port: str) -> bool:
-        """Return whether the robot has a motor of this class on a port."""
+        """Return whether the robot has a motor on a port whose class is called `part`."""
         kind = MOTOR_KIND_OF[part]
         return any(
             (motor.port, motor.kind) == (port, kind)

@@ -210,7 +210,10 @@ class Axle:
         return left_ns
 
     def _can_start(self, forwards: bool) -> bool:
-        """Return whether an axle at rest begins to turn: the torque is large enough, and no obstacle is in the way."""
+        """Return whether an axle at rest begins to turn: the torque is large enough, and no obstacle is in the way.
+
+        `forwards` is the direction of the torque.
+        """
         if abs(self.goal_dps) <= self.circuit.breakaway_dps:
             return False
         return self.angle_deg < self.high_deg if forwards else self.angle_deg > self.low_deg

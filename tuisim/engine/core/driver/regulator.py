@@ -250,7 +250,7 @@ class MotorDriver:
             self._roll = None
 
     def _can_regulate(self, step_ns: int) -> bool:
-        """Return whether the next step of the control needs only the speed control.
+        """Return whether the next step of the control, at the time `step_ns`, needs only the speed control.
 
         That is so while the motor turns freely, and is not about to be reported as stalled.
         """
@@ -262,7 +262,10 @@ class MotorDriver:
         )
 
     def _find_arrival_ns(self, step_ns: int) -> int:
-        """Return a time, in ns, before which the motor cannot reach its target."""
+        """Return a time, in ns, before which the motor cannot reach its target.
+
+        `step_ns` is the time of the next step.
+        """
         way = self.target - self.position
         way_deg = (way if self.speed_control.setpoint > 0 else -way) - COUNTED_DEG
         top_dps = max(abs(self.axle.speed_dps), MAX_DUTY * self.axle.circuit.dps_per_percent)
@@ -343,7 +346,7 @@ class MotorDriver:
             self.is_stalled = True
 
     def _slow_down(self, time_ns: int, action: StopAction) -> None:
-        """Lower the speed setpoint before the target, and stop the motor at the target."""
+        """Lower the speed setpoint before the target, and stop the motor with the stop action `action` there."""
         target = self.target
         position = self.position
         speed_dps = self.speed_dps

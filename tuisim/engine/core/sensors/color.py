@@ -239,7 +239,13 @@ def compute_light(x_mm: Any, y_mm: Any, spec: ColorSensorSpec, drift: DriftSpec,
 
 
 def _has_floor(field: Field, diameter: int, corner: tuple[int, int]) -> bool:
-    """Return whether anything is under a box: a part of the mat, or the floor around it."""
+    """Return whether anything is under the square box around a disc: a part of the mat, or the floor around it.
+
+    Args:
+        field: The mat.
+        diameter: The disc's diameter in pixels.
+        corner: Column and row of the box's upper left corner.
+    """
     col, row = corner
     is_on_mat = -diameter <= col < field.width_px and -diameter <= row < field.height_px
     return is_on_mat or field.floor_rgb is not None

@@ -36,7 +36,14 @@ _REM_A_BUTTONS = {"top_left": 16, "bottom_left": 32, "top_right": 64, "bottom_ri
 def _measure_way_mm(
     place: tuple[float, float], angle_deg: float, world: WorldSpec, most_mm: float
 ) -> float:
-    """Return how far infrared light travels from a place before it meets a surface, at most `most_mm`."""
+    """Return how far infrared light travels before it meets a surface, at most `most_mm`.
+
+    Args:
+        place: Where it begins: x and y in mm.
+        angle_deg: Its direction in the world.
+        world: The walls and obstacles.
+        most_mm: The limit.
+    """
     edges = find_surfaces(world)
     angle = math.radians(angle_deg)
     (x_mm, y_mm), cos, sin = place, math.cos(angle), math.sin(angle)

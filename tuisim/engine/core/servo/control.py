@@ -258,7 +258,14 @@ class Controller:
         self._behind_milli = behind_milli
 
     def keep_running(self, now_us: int, measured: Measure) -> None:
-        """Change the move that has just begun so that it runs on at its speed; it is done when it passes its target."""
+        """Let the move that has just begun run on at its speed, instead of stopping at its target.
+
+        The move is done when it passes the target.
+
+        Args:
+            now_us: The present time.
+            measured: Returns where the motion is.
+        """
         assert self.trajectory is not None
         first, even, _, end, _ = self.trajectory
         acceleration = abs(first.acceleration) or self.settings.acceleration
@@ -292,7 +299,11 @@ class Controller:
         )
 
     def _find_start(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
-        """Return where a new trajectory begins, and the present segment if it changes the speed, else None."""
+        """Return where a new trajectory begins, and the segment that is running then, if that changes the speed.
+
+        The new trajectory begins where the running one is now. Without one, or if the robot's wheels have slipped, it
+        begins where `measured` says that the motion is, and the segment is None.
+        """
         if self.trajectory is None or (self._slips and self._behind_milli):
             return measured(now_us), None
         then_us = now_us - self._paused_us

@@ -368,7 +368,7 @@ class ServoMotor:
         return 0 if self.mode == STOPPED else self._quiet
 
     def count_quiet_ticks(self, tick: int) -> int:
-        """Return the number of ticks in which the motor rests, or only follows one segment of its trajectory."""
+        """Return in how many ticks after `tick` the motor rests, or only follows one segment of its trajectory."""
         self._tick, self._quiet = tick, self._count_following_ticks(tick)
         return self._quiet
 

@@ -138,7 +138,7 @@ class Debugger:
         self._looks: list[Message] = []
 
     def begin(self, options: RunOptions) -> None:
-        """Apply the debugger's options before the program's first line."""
+        """Apply those run options that concern the debugger, before the program's first line."""
         self._set_breaks(parse_breakpoints(options.breaks))
         self._trace_from = options.trace_from_tick
         if options.hold_at is not None:

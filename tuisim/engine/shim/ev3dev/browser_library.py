@@ -26,7 +26,13 @@ def round_half_up(number: float) -> int:
 
 
 def speak_as_browser(session: DeviceSession, motor: Any, brick: DeviceFiles) -> None:
-    """Patch `ev3dev2.motor` after its import so that it works like the library of the browser simulator."""
+    """Patch `ev3dev2.motor` after its import so that it works like the library of the browser simulator.
+
+    Args:
+        session: The run.
+        motor: The module.
+        brick: The devices.
+    """
     _patch_properties(motor.Motor, brick)
     motor.Motor.wait = _wait(session, motor.__name__)
     _patch_moves(motor)

@@ -118,7 +118,7 @@ def finish_core(
 
 
 def _look_up(look_up: Callable[..., None], plugs: Plugs) -> Callable[..., None]:
-    """Return the library's constructor of a device, changed so that it plugs in a missing device."""
+    """Return a constructor of a device that plugs in a missing device; `look_up` is the library's own constructor."""
 
     @wraps(look_up)
     def __init__(self: Any, class_name: str, *args: Any, **kwargs: Any) -> None:  # noqa: N807

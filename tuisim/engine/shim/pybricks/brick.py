@@ -126,8 +126,8 @@ class Brick:
         Args:
             part: Its number.
             call: The kind of command.
-            values: NaN is passed for None, which stands for a value that the program does not give; numbers beyond
-                `LARGEST` are cut off.
+            values: The values. None stands for a value that the program does not give, and is passed as NaN; numbers
+                beyond `LARGEST` are cut off.
         """
         numbers = (
             nan if value is None else float(max(-LARGEST, min(LARGEST, value))) for value in values
