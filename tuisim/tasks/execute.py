@@ -106,7 +106,10 @@ def _prepare_field(background_name: str, fit: str, diameters: frozenset[int]) ->
 
 
 def _load_field_files(spec: RunSpec) -> FieldFiles:
-    """Return the prepared mat of a run, from the cache of this process unless the cached files are damaged."""
+    """Return the prepared mat of a run, from the cache of this process.
+
+    If the cached files are damaged, prepare it again.
+    """
     mat = spec.world.background, spec.world.background_fit, find_diameters(spec)
     files = _prepare_field(*mat)
     if not files.are_sound:
@@ -116,7 +119,10 @@ def _load_field_files(spec: RunSpec) -> FieldFiles:
 
 
 def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, Ended]:
-    """Return the run to be judged, and how it ended; if the task is replayed, both come from the commands of the run.
+    """Return the run to be judged, and how it ended.
+
+    If the task demands it, the commands of the run are replayed, and both results come from the replay. If the replay
+    differs from the recording, the run has ended as falsified.
 
     Raises:
         LogError: no program can have given the commands.
@@ -152,7 +158,9 @@ def _is_kept(task: Task, run: StoredRun, ended: Ended, judgements: Sequence[Judg
 
 
 def _keep(temporary: TemporaryRun, ended: Ended) -> str:
-    """Store a run and return its id; return "" if the program has damaged the recording after the run was judged.
+    """Store a finished run and return its id.
+
+    Return "" if the recording was damaged by the program after it was judged.
 
     Raises:
         LogError: the run cannot be stored for a reason of this machine, such as a full disk.

@@ -44,12 +44,12 @@ def count_processors() -> int:
 def run_many(tasks: Iterable[Task], jobs: int = 0) -> Generator[Result]:
     """Execute tasks, and yield their results in the order in which they finish. Each `next` blocks.
 
-    A result does not depend on the number of jobs. Tasks of a worker that has died are executed again. Closing the
-    iterator stops the running tasks.
+    A result does not depend on the number of jobs. If a worker dies, its tasks are executed again. Closing the
+    generator stops the running tasks.
 
     Args:
-        tasks: The tasks; the next ones are taken as workers become free. If the iterator is empty, its `next` is called
-            again after each result.
+        tasks: The tasks; the next ones are taken as workers become free. If this iterator has ended, its `next` is
+            called again after each result.
         jobs: Number of workers; 0 is one for each processor. With 1, the tasks run in this process.
 
     Raises:
@@ -123,9 +123,9 @@ class _Pool:
         self._pending[self._executor.submit(_execute_all, chunk, self._folder)] = chunk
 
     def _start_again(self) -> Iterator[Result]:
-        """Replace all workers and submit unfinished tasks again.
+        """Replace all workers by new ones, and give them the unfinished tasks.
 
-        Yield results of finished tasks and of tasks given up.
+        Yield the results of tasks that have finished, and of tasks that have failed too often.
         """
         unfinished = [
             task
@@ -200,7 +200,7 @@ def _execute_all(tasks: Sequence[Task], folder: Path) -> list[Result]:
 
 
 class _Worker(SpawnProcess):
-    """A worker process that does not import the main module: a script that starts a batch would start another one."""
+    """A worker process that does not import the main module: a script that starts a batch would start another."""
 
     @staticmethod
     def _Popen(process_obj: Any) -> Any:  # noqa: N802 - its name in the library

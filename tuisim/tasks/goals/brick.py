@@ -48,7 +48,7 @@ def resolve_column(condition: ValueCondition, run: RunSpec) -> ValueCondition:
 
 
 def parse_goal_condition(text: str) -> ValueCondition | None:
-    """Parse a condition of a goal; return None if the text is not one.
+    """Return the condition of a goal that a text contains; None if the text is not such a condition.
 
     A condition is one of `parse_run_condition`, or `sound matches REGEX` or `display matches REGEX`.
     """
@@ -81,7 +81,14 @@ def _list_texts(row: OutputRow) -> list[str]:
 def build_brick_column(
     name: str, ticks: int, rows: Iterable[OutputRow], actions: Iterable[UserAction]
 ) -> Array:
-    """Return one of `BRICK_COLUMNS` at every tick, shape (ticks,)."""
+    """Return one of `BRICK_COLUMNS` at every tick of a run, shape (ticks,).
+
+    Args:
+        name: The column.
+        ticks: Number of ticks of the run.
+        rows: The run's output, with what the brick displayed and its lights.
+        actions: The user's actions, with the pressed buttons.
+    """
     import numpy as np
 
     values = np.full(

@@ -28,7 +28,10 @@ if TYPE_CHECKING:
 
 
 def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return the first tick of a span in which all comparisons of a condition are true, or why there is none."""
+    """Return the first tick of a span in which all comparisons of a condition are true.
+
+    If there is none, return why.
+    """
     import numpy as np
 
     ticks = span.ticks
@@ -58,9 +61,9 @@ def _refuse(text: str, comparison: ValueCondition, error: ConfigError | ValueErr
 
 
 def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> str:
-    """Return how near a column came to the number that it is compared with, to end a sentence.
+    """Return which value of a column came nearest to the number of its comparison, and when, to end a sentence.
 
-    The result is empty without a number.
+    The result is empty if the comparison is not one of a column with a number.
     """
     import numpy as np
 
@@ -72,7 +75,10 @@ def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: Evid
 
 
 def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when comparisons of a condition were first false or, with a share, that they were so for too long."""
+    """Return when the comparisons of a condition were first false.
+
+    For a condition with a share of the time, return when they had been false for too long.
+    """
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -136,7 +142,7 @@ def _measure_gaps_mm(records: Array, evidence: Evidence) -> Array:
 
 
 def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when something happened once too often or, at the end of a span, that it happened too seldom."""
+    """Return whether a comparison became true too often or, at the end of a span, too seldom; if so, when."""
     comparison = condition.condition
     try:
         named = resolve_column(comparison, evidence.spec)
@@ -160,9 +166,9 @@ def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceS
 def _find_moments(
     named: ValueCondition, evidence: Evidence, span: EvidenceSpan
 ) -> list[EvidencePoint]:
-    """Return the moments in a span at which a comparison became true.
+    """Return the moments in a span at which a comparison of a column became true.
 
-    For printed lines and samples, these are the moments of all that meet the comparison.
+    For a comparison of printed lines or samples, return the moments of all lines or samples for which it is true.
     """
     import numpy as np
 

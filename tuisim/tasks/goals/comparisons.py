@@ -28,7 +28,7 @@ from tuisim.tasks.goals.condition import (
 
 @dataclass(frozen=True, slots=True)
 class WhenCondition(Condition):
-    """A condition of a goal: comparisons with columns or output of the run are all true in one tick."""
+    """A condition of a goal: several comparisons, with columns or output of the run, are all true in the same tick."""
 
     SHORT: ClassVar[str] = "comparisons"
 
@@ -70,7 +70,7 @@ def _parse_comparison(text: str, key: str) -> ValueCondition:
 
 @dataclass(frozen=True, slots=True)
 class KeepCondition(Condition):
-    """A condition of a goal: comparisons with columns or output of the run stay true, or for a share of the time."""
+    """A condition of a goal: comparisons with columns or output are true all the time, or for a share of it."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
     SHORT: ClassVar[str] = "comparisons"

@@ -287,7 +287,7 @@ class Evidence:
         return EvidencePoint(len(self.records) - 1, len(self.rows), self.end_s)
 
     def find_moment(self, time_s: float) -> EvidencePoint | None:
-        """Return the moment after all ticks and rows up to a time.
+        """Return the moment after all ticks and rows up to a time in simulated seconds, those at the time included.
 
         The result is None if the recording does not go beyond that time.
         """
@@ -298,7 +298,7 @@ class Evidence:
         return EvidencePoint(tick, row, time_s)
 
     def find_earlier_moment(self, time_s: float) -> EvidencePoint | None:
-        """Return the moment just before a time; None if the recording ends before it."""
+        """Return the last moment before a time in simulated seconds; None if the recording does not reach that time."""
         if time_s > self.end_s:
             return None
         tick = bisect_left(self.times_s, time_s) - 1
@@ -357,10 +357,10 @@ class Evidence:
 
 
 def find_ticks(rows: Array, hz: int) -> Array:
-    """Return for each reading the tick in which it was taken.
+    """Return for each reading, or other record with a time, the tick in which it was taken, shape (n,).
 
     Args:
-        rows: Readings.
+        rows: The readings, with their times in the field `time_ns`.
         hz: Ticks per second.
     """
     seconds, rest_ns = divmod(rows["time_ns"], NS_PER_S)
@@ -369,9 +369,13 @@ def find_ticks(rows: Array, hz: int) -> Array:
 
 
 def find_motion_line(records: Array, index: int) -> int:
-    """Return the program's line in the last tick up to an index that moved the robot, else in the first after it.
+    """Return the program's line in the tick in which the robot last moved, up to a tick.
 
-    If the robot never moved, the line is 0.
+    If the robot moved only later, the line is that of its first movement; if it never moved, the line is 0.
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`.
+        index: The tick.
     """
     import numpy as np
 

@@ -66,7 +66,10 @@ class GoalsFile:
 
     @property
     def presses(self) -> Mapping[str, Any]:
-        """The setting `press` of the file, which applies in every world; empty if the file does not set it."""
+        """The setting `press` of the file, under its name; it applies in every world.
+
+        Empty if the file does not set it.
+        """
         return {path: value for path, value in self.settings.items() if path == "press"}
 
     @property
@@ -176,7 +179,10 @@ def list_examples() -> list[Path]:
 
 
 def _find_file(path: Path) -> Path:
-    """Return the goals file of an example, if the path is the example's name and no existing file; else the path."""
+    """Return the path of the example goals file with a name such as `log_greys`.
+
+    If the path names no example, or an existing file, it is returned unchanged.
+    """
     if path.parent != Path() or os.path.exists(path):
         return path
     name = path.name.removesuffix(_EXAMPLE)
@@ -329,7 +335,11 @@ def _parse_condition(
 
 
 def _check_lists(kind: type[Condition], data: object, location: Location) -> None:
-    """Raise ConfigError, with a hint, for a key that must be a list of texts or of ranges and is none."""
+    """Check that the keys of a condition that must be lists of texts or of ranges are such lists.
+
+    Raises:
+        ConfigError: one is not; the error has a hint.
+    """
     for key, value in data.items() if isinstance(data, dict) else ():
         field = kind.__dataclass_fields__.get(key)
         if field is None:
@@ -365,7 +375,11 @@ _UNFIT = {
 
 
 def _check_limits(goal: Goal, location: Location) -> None:
-    """Raise ConfigError for a limit that fits none of the goal's conditions, or is not later than `after`."""
+    """Check the limits of a goal, such as `before` and `within_s`.
+
+    Raises:
+        ConfigError: a limit applies to none of the goal's conditions, or is a time that is not later than `after`.
+    """
     kinds = [part.KIND for part in goal.parts]
     fitting = {limit for kind in kinds for limit in goal.limits(kind)}
     if goal.within_s is not None and not set(kinds) & set(WINDOWED):
@@ -386,7 +400,11 @@ def _check_limits(goal: Goal, location: Location) -> None:
 
 
 def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
-    """Raise ConfigError if two goals have one name, or a goal refers to a missing one or, in a circle, to itself."""
+    """Check that goals have different names, and that the names by which they refer to other goals exist.
+
+    Raises:
+        ConfigError: a name is used twice or is missing, or a goal refers to itself, directly or through other goals.
+    """
     by_name: dict[str, Goal] = {}
     for goal, location in zip(goals, places, strict=True):
         if goal.name in by_name:
@@ -426,13 +444,13 @@ def _find_reference(goal: Goal, name: str, location: Location) -> Location:
 def _find_circle(
     name: str, goals: Mapping[str, Goal], above: tuple[str, ...], checked: set[str]
 ) -> tuple[str, ...]:
-    """Return the names on a circle of references that can be reached from a goal; empty if there is none.
+    """Return the names of goals that refer to each other in a circle, reached from a goal; empty if there is no circle.
 
     Args:
         name: The goal.
         goals: All goals, by name.
-        above: The goals whose references have led to it.
-        checked: Goals from which no circle can be reached; the function adds to it.
+        above: The names of the goals through whose references this goal was reached.
+        checked: Names of goals from which no circle can be reached; the function adds to it.
     """
     if name in above:
         return (*above[above.index(name) :], name)

@@ -93,7 +93,13 @@ def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan)
 
 
 def _sample_strokes(records: Array, pen: PenSpec, condition: DrawCondition) -> tuple[Array, Array]:
-    """Return points of the pen's lines, at most a cell apart: x and y in mm, shape (n, 2), and their ticks."""
+    """Return points of the pen's lines, and the tick in which each was drawn.
+
+    Neighbouring points are at most as far apart as a cell of the comparison with the condition's picture is wide.
+
+    Returns:
+        x and y in mm, shape (n, 2), and the ticks, shape (n,).
+    """
     import numpy as np
 
     down = (records["flags"] & FLAG_PEN_DOWN) != 0
@@ -299,7 +305,7 @@ class _Judge:
         return outcomes[0] if len(outcomes) == 1 else _pick_deciding(outcomes, GoalState.MISSED)
 
     def _judge_part(self, condition: Condition, goal: Goal, start: EvidencePoint) -> _Outcome:
-        """Return the outcome of one condition of a goal, judged on the part of the run after `start`."""
+        """Return the outcome of one condition of a goal, judged from `start` to the goal's limits."""
         if isinstance(condition, AllOf | AnyOf | NoneOf):
             return self._judge_combined(condition, goal)
         stop = self._stop(goal, condition.KIND, start)
@@ -324,11 +330,11 @@ class _Judge:
     def _stop(
         self, goal: Goal, kind: ConditionKind, start: EvidencePoint = START
     ) -> EvidencePoint | None:
-        """Return the earliest reached limit of a goal for conditions of a kind; None if no limit has been reached.
+        """Return the moment of the first limit of a goal that the run has reached; None if it has reached none.
 
         Args:
             goal: The goal, with limits such as `before`.
-            kind: The kind of the conditions.
+            kind: The kind of conditions; only limits that apply to this kind are considered.
             start: The moment from which `within_s` is measured.
         """
         stops = []
@@ -400,7 +406,7 @@ class _Judge:
 
 
 def _invert(name: str, outcome: _Outcome) -> _Outcome:
-    """Return the outcome of a goal in `none`: met if that goal is missed, and missed if it is met."""
+    """Return the outcome for a goal in a condition `none`: met if that goal is missed, missed if it is met."""
     match outcome.state:
         case GoalState.MET:
             return replace(
@@ -417,9 +423,10 @@ def _invert(name: str, outcome: _Outcome) -> _Outcome:
 
 
 def _pick_deciding(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
-    """Return which of several outcomes decides their combination: the earliest with the state `deciding`.
+    """Return the one of several outcomes that decides their combination.
 
-    Without one, return the first open outcome, or else the first unknown one; if all have the other state, the latest.
+    It is the earliest outcome in the state `deciding`; without one, the first open outcome, else the first unknown one.
+    If there is none of these, it is the latest outcome.
     """
     decided = [part for part in parts if part.state is deciding]
     if decided:

@@ -58,14 +58,17 @@ class Judgement:
 
     @property
     def is_good(self) -> bool:
-        """Whether the goal is met or, if it takes points off, not met."""
+        """Whether the goal is met; for a goal with negative points, whether it is not met.
+
+        False if it cannot be judged.
+        """
         if self.state is GoalState.UNKNOWN:
             return False
         return (self.state is GoalState.MET) is (self.goal.points >= 0)
 
     @property
     def event(self) -> Change | None:
-        """When and where the goal was met, or else missed; None while the goal is open."""
+        """When and where the goal was decided as met or missed; None while the goal is open."""
         return self.happened or (self.changes[-1] if self.changes else None)
 
     def at(self, tick: int) -> GoalState:

@@ -59,7 +59,10 @@ class LiveGoals:
         self._open = {each.goal.name for each in self._judge() if not each.is_good}
 
     def judge(self) -> tuple[float, bool]:
-        """Return the points, and whether each goal that was not met at the beginning is now met or lost."""
+        """Return the points of the run so far, and whether all goals open at the beginning are now met or lost.
+
+        The second result is False if no goal was open at the beginning.
+        """
         judgements = self._judge()
         ends = [
             each.is_good or self._is_lost(each)
@@ -74,7 +77,7 @@ class LiveGoals:
 
 
 def check_goals(goals: Sequence[Goal]) -> None:
-    """Check that goals can be judged without a program.
+    """Check that no goal is about a program, as in a simulation without one.
 
     Raises:
         ConfigError: a goal is about a program.

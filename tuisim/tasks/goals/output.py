@@ -115,7 +115,16 @@ def _check_once(
     span: EvidenceSpan,
     evidence: Evidence,
 ) -> Finding | None:
-    """Return why lines that must be printed only once do not meet the condition so far; None if they do."""
+    """Return why the lines that must be printed only once do not meet the condition so far; None if they do.
+
+    While lines may still be printed again, the result is a finding without a moment, so that the goal stays open.
+
+    Args:
+        condition: The condition, with the patterns of the lines.
+        rows: The printed lines, each with the index of its row.
+        span: The part of the run in which they were printed.
+        evidence: The recording.
+    """
     searches = list(map(evidence.search, condition.lines))
     fits = [(row, sum(search(row.text) for search in searches)) for _, row in rows]
     if several := [row for row, count in fits if count > 1]:
@@ -133,7 +142,7 @@ def _check_once(
 def _find_repeated_line(
     condition: PrintCondition, rows: list[OutputRow], evidence: Evidence
 ) -> Finding:
-    """Return that a line was printed twice: the first of the rows that matches the same pattern as an earlier row."""
+    """Return the finding that a line was printed again: the first row with the same pattern as an earlier row."""
     seen: set[str] = set()
     for row in rows:
         pattern = next(pattern for pattern in condition.lines if evidence.search(pattern)(row.text))
@@ -154,13 +163,13 @@ def _explain_fault(
 ) -> str:
     """Return in a sentence why a line that matches its pattern is not accepted; empty if it is accepted.
 
-    A reason is that the robot was in a wrong place.
+    For example, the robot was in a wrong place, or was still moving.
 
     Args:
         condition: The condition with the patterns.
-        count: Index of the pattern.
+        count: Index of the pattern that the line matches.
         row: The line.
-        since: Tick at which the line for the pattern before was printed; -1 if there is none.
+        since: Tick at which the line for the previous pattern was printed; -1 if there is none.
         evidence: The recording.
     """
     when = f"{_quote(row.text)} was printed at {row.time_ns / NS_PER_S:.2f} s"
@@ -180,7 +189,10 @@ def _explain_fault(
 
 
 def _speed_mm_s(tick: int, evidence: Evidence) -> float:
-    """Return the lowest speed of the robot in mm/s in the `_STOP_TICKS` ticks from a tick on, which a stop may take."""
+    """Return the lowest speed of the robot in mm/s in the `_STOP_TICKS` ticks that begin with `tick`.
+
+    A robot that brakes when a line is printed may take so long to stop.
+    """
     ticks = range(max(0, tick), min(tick + _STOP_TICKS, len(evidence.records)))
     return min(
         (_measure_speed_mm_s(first, then, evidence) for first, then in pairwise(ticks)), default=0.0
@@ -195,9 +207,13 @@ def _measure_speed_mm_s(first: int, then: int, evidence: Evidence) -> float:
 def _describe_wrong_place(
     condition: PrintCondition | LogCondition, count: int, tick: int, evidence: Evidence
 ) -> str:
-    """Return where the robot was at a tick and where it must be, to end a sentence.
+    """Return where the robot was at a tick and where it must be, to end a sentence; empty if it was in the right place.
 
-    The result is empty if it was in the right place.
+    Args:
+        condition: The condition with the places.
+        count: Index of the line or level for which the place is needed.
+        tick: The tick.
+        evidence: The recording.
     """
     place = select_place(condition, count)
     x_mm, y_mm = evidence.place_mm(tick)
@@ -279,7 +295,12 @@ def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan)
 def _report_printed(moment: EvidencePoint, line: int, once: bool, evidence: Evidence) -> Finding:
     """Return the finding that a program has printed all lines of a goal.
 
-    With `once`, the result counts only at the end of the run, as the program may print a line again.
+    Args:
+        moment: When the last of them was printed.
+        line: The program's line that printed it.
+        once: Whether each line must be printed only once. The goal is then met only at the end of the recording, as the
+            program may print a line again before.
+        evidence: The recording.
     """
     return (
         Finding(evidence.last, line=line, happened=moment) if once else Finding(moment, line=line)
@@ -287,7 +308,10 @@ def _report_printed(moment: EvidencePoint, line: int, once: bool, evidence: Evid
 
 
 def _find_gap(condition: LogCondition, samples: list[Sample], evidence: Evidence) -> Finding | None:
-    """Return the first two samples between which the robot drove too far; None if there are no such samples."""
+    """Return a finding on the first two successive samples between which the robot drove too far.
+
+    None if there are none.
+    """
     for before, after in pairwise(samples):
         way_mm = math.dist(evidence.place_mm(before.tick), evidence.place_mm(after.tick))
         if way_mm > condition.apart_mm:
@@ -302,7 +326,16 @@ def _find_gap(condition: LogCondition, samples: list[Sample], evidence: Evidence
 def _explain_unmeasured(
     condition: LogCondition, count: int, sample: Sample, evidence: Evidence
 ) -> str:
-    """Return in a sentence why a sample near its level is not accepted; empty if it is accepted."""
+    """Return in a sentence why a sample near its level is not accepted, such as a missing reading.
+
+    Empty if it is accepted.
+
+    Args:
+        condition: The condition with the levels.
+        count: Index of the level.
+        sample: The sample.
+        evidence: The recording.
+    """
     value = f"{sample.name}: {sample.value:.6g} was printed at {sample.time_ns / NS_PER_S:.2f} s"
     if condition.counts:
         printed = bisect_right(evidence.list_sample_ticks(condition.counts), sample.tick)
@@ -400,9 +433,9 @@ def _explain_missing_level(
 
 
 def _explain_form_fault(name: str, evidence: Evidence) -> str:
-    """Return why a printed line with the name and a number is not a sample, to follow a sentence.
+    """Return, to follow a sentence, why a printed line is not a sample though it has the variable's name and a number.
 
-    The result is empty without such a line.
+    The result is empty if no such line was printed.
     """
     like = re.compile(rf"(?:.*\W)?{re.escape(name)}\s*(?:[:=]\s*)?[+-]?\.?\d").match
     row = next(

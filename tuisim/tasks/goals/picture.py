@@ -107,7 +107,7 @@ def compute_cell_mm(within_mm: float) -> float:
 
 
 def _count_cells(within_mm: float) -> tuple[int, int]:
-    """Return the number of columns and rows of the field's cells, for a tolerance."""
+    """Return the number of columns and of rows of cells into which the field is divided, for a tolerance in mm."""
     side = compute_cell_mm(within_mm)
     return math.ceil(FIELD_WIDTH_MM / side), math.ceil(FIELD_HEIGHT_MM / side)
 
@@ -122,7 +122,7 @@ def _number_cells(points: Array, within_mm: float) -> Array:
 
 
 def list_cells(condition: DrawCondition) -> Array:
-    """Return the indices of the cells with the picture's lines, ascending, shape (n,)."""
+    """Return the indices of the field's cells that contain lines of the condition's picture, ascending, shape (n,)."""
     import numpy as np
 
     return np.frombuffer(condition.picture, "<i4")

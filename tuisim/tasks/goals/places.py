@@ -74,9 +74,9 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
 
 
 def _find_arrivals(there: Array) -> Array:
-    """Return for each tick at the place the index of the tick at which the robot arrived.
+    """Return for each tick the index of the tick at which the robot had arrived at the place where it is.
 
-    The index is 0 if the robot was there from the start. The values at other ticks have no meaning.
+    The index is 0 if the robot was there from the start. At ticks at which it is elsewhere, the value has no meaning.
 
     Args:
         there: Whether the robot is at the place, at each tick, shape (n,).
@@ -120,7 +120,10 @@ def _describe_miss(
 
 
 def _describe_side(condition: ReachCondition, record: Any) -> str:
-    """Return the side of a condition's place on which the robot is, such as `left of` a line; `from` for a point."""
+    """Return on which side of a condition's line the robot is in a record, such as `left of`.
+
+    `from` if it is a point.
+    """
     if condition.x_mm is None:
         return "below" if record["y_mm"] < condition.y_mm else "above"
     if condition.y_mm is None:
@@ -166,7 +169,7 @@ def find_pass(condition: PassCondition, evidence: Evidence, span: EvidenceSpan) 
 
 
 def _measure_way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
-    """Return the least distance in mm of the robot from a place during each tick."""
+    """Return the least distance in mm between the robot and a point during each tick, shape (n,)."""
     import numpy as np
 
     x, y = records["x_mm"] - x_mm, records["y_mm"] - y_mm

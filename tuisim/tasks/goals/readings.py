@@ -46,7 +46,11 @@ _NOISE_SHARE = 0.1
 
 
 def describe_ranges(place: Mapping[str, Range]) -> str:
-    """Return the ranges of `select_place` in words, such as `x from 100 to 200 mm`."""
+    """Return ranges of the robot's position as text, such as `x from 100 to 200 mm and y from 0 to 50 mm`.
+
+    Args:
+        place: The ranges in mm by `x_mm` and `y_mm`, from `select_place`.
+    """
     return " and ".join(
         f"{key[0]} from {low:g} to {high:g} mm" for key, (low, high) in place.items()
     )
@@ -82,7 +86,7 @@ def _find_readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
 
 
 def filter_ticks(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
-    """Return the ticks, among some, at which the robot was in the ranges of `select_place`."""
+    """Return those of the ticks at which the robot was in the ranges that `select_place` gave."""
     for key, (low, high) in place.items():
         values = evidence.records[key][ticks]
         ticks = ticks[(values >= low) & (values <= high)]
@@ -96,10 +100,10 @@ def describe_place(tick: int, place: Mapping[str, Range], evidence: Evidence) ->
 
 
 def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
-    """Return whether a level of light equals what a colour sensor measured in any of some ticks.
+    """Return whether a level of light equals what a colour sensor measured in at least one of some ticks.
 
     Args:
-        value: The level: of red or of all channels in percent, or of red from 0 to 255.
+        value: The level: percent of red, percent of all channels together, or red from 0 to 255.
         ticks: Ticks in which the program read a colour sensor, from `read_ticks`.
         evidence: The recording.
     """
@@ -114,7 +118,10 @@ def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
 
 
 def _compute_light(records: Array, evidence: Evidence) -> Array:
-    """Return the levels of light that each colour sensor would give without noise, shape (levels, ticks)."""
+    """Return three levels of light for each colour sensor, without noise, shape (levels, ticks).
+
+    They are the percentage of red, the percentage of all channels together, and red from 0 to 255.
+    """
     import numpy as np
 
     from tuisim.engine.runs.sensor_arrays import measure_quiet_color

@@ -488,5 +488,5 @@ class Goal:
         )
 
     def limits(self, kind: ConditionKind) -> tuple[str, ...]:
-        """Return which of the keys `before`, `after` and `until` the goal sets and conditions of a kind use."""
+        """Return those of the keys `before`, `after` and `until` that the goal sets and that apply to a kind."""
         return tuple(limit for limit in LIMITS[kind] if getattr(self, limit) is not None)

@@ -54,7 +54,7 @@ class TrialWorld:
 
     @property
     def answers(self) -> tuple[str, ...]:
-        """The answers to `input()`: the answers of the dialogues in `own_goals`, in order, or else `inputs`."""
+        """The answers that `input()` returns: those of the dialogues in `own_goals`, in order, else `inputs`."""
         dialogues = (
             part
             for goal in self.own_goals
@@ -75,7 +75,7 @@ class TrialWorld:
         return (*(own.pop(goal.name, goal) for goal in goals), *own.values())
 
     def beside(self, first: TrialWorld) -> TrialWorld:
-        """Return this world with the settings, goals and inputs of the first world where it has none of its own."""
+        """Return a copy of this world that also has the settings, goals and inputs of the first world that it lacks."""
         return replace(
             self,
             settings={**first.settings, **self.settings},
@@ -97,11 +97,12 @@ def parse_other_worlds(
 
     Args:
         data: The list of tables.
-        goals: Names of the goals that count in a world whose table names none; in a lesson, only if it defines none.
-        location: The place of the list in the file.
+        goals: Names of the goals that count in a world whose table names none. In a lesson, they count only if the
+            table does not define goals either.
+        location: Where the list is in the file, for errors.
         path: The file; names of files in a world are relative to it.
         read_goals: Reads the goals of a table.
-        of_task: Whether the worlds are those of a task, which may be hidden, not of a lesson.
+        of_task: Whether the worlds belong to a task and may be hidden; otherwise they belong to a lesson.
 
     Raises:
         ConfigError: a table is wrong; the error names its key.

@@ -149,7 +149,7 @@ _TEXTS = Path(__file__).resolve().parent / "texts"
 
 
 def find_shipped_paths() -> dict[str, Path]:
-    """Return the files of tuisim's own lessons by name, in the order of the list."""
+    """Return the files of the lessons that tuisim contains, by lesson name, in the order of the lessons."""
     return _find_folder_paths(_TEXTS)
 
 
@@ -219,10 +219,15 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
 
 
 def find_telling(lesson: Path, library: Library, folder: Path | str | None = None) -> Path:
-    """Return the file of the version of a lesson for a library; `folder` is as for `find_lesson_paths`.
+    """Return the file of the version of a lesson that is for a library; this may be the lesson's own file.
+
+    Args:
+        lesson: The lesson's file.
+        library: The library.
+        folder: As for `find_lesson_paths`.
 
     Raises:
-        ConfigError: there is no such version.
+        ConfigError: there is no version for that library.
     """
     paths = find_lesson_paths(folder)
     name = get_lesson_name(lesson)

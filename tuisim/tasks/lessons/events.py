@@ -23,7 +23,7 @@ from tuisim.tasks.lessons.spec import (
 
 @dataclass(frozen=True, slots=True)
 class JudgedRun:
-    """Event: a run has met goals. The event comes again when the run has met more."""
+    """Event: a run has met goals of the lesson. When it meets further goals, another event follows."""
 
     run_id: str
     seed: int
@@ -46,7 +46,10 @@ class TriedElsewhere:
 
 @dataclass(frozen=True, slots=True)
 class Typed:
-    """Event: a student has typed an answer. With default values, everything that the question requires is fulfilled."""
+    """Event: a student has typed an answer.
+
+    If an attribute has its default value, whatever the question requires of it counts as fulfilled.
+    """
 
     text: str
     x_mm: float | None = None
@@ -123,7 +126,12 @@ _OTHER_LENGTHS = frozenset({"m", "dm", "cm", "in", "inch", "inches"})
 
 
 def is_met(check: Check, events: Sequence[Event]) -> bool:
-    """Return whether the events since a step of a lesson began pass the step's check."""
+    """Return whether a step is passed by the events since it began.
+
+    Args:
+        check: The check of the step.
+        events: The events, in order.
+    """
     match check:
         case RunCheck():
             return count_good_runs(check, events) >= check.times
@@ -161,7 +169,10 @@ def is_met(check: Check, events: Sequence[Event]) -> bool:
 
 
 def count_good_runs(check: RunCheck, events: Sequence[Event]) -> int:
-    """Return how many runs have passed a check so far, including its other worlds."""
+    """Return how many runs have met the goals of a check, in the lesson's world and in the other worlds of the check.
+
+    If the check demands different seeds, return with how many different seeds.
+    """
     passed = {
         (event.run_id, other.where)
         for event in events
@@ -220,12 +231,12 @@ def explain_unready(question: QuestionCheck, event: Typed) -> str:
 
 
 def explain_wrong(question: QuestionCheck, wrong: Mapping[str, str], text: str) -> str:
-    """Return in words why a typed answer is wrong: the lesson's reason, else whether a number is too small or large.
+    """Return why a typed answer is wrong: the lesson's reason, else whether a number is too small or large.
 
     Args:
         question: The question.
-        wrong: Wrong answers with their reasons.
-        text: The answer, which is wrong and has the form that the question needs.
+        wrong: Reasons by wrong answer, from the lesson's file.
+        text: The typed answer, which is wrong and has the form that the question needs.
     """
     right = question.answer if isinstance(question.answer, int | float) else None
     for answer, reason in wrong.items():
@@ -269,7 +280,7 @@ def _resolve_choice(question: QuestionCheck, text: str) -> str:
 
 
 def _is_same(text: str, answer: str) -> bool:
-    """Compare two texts without regard to case, spaces, quotes around them and a full stop at the end."""
+    """Return whether two texts are equal apart from case, spaces, quotes around them and a full stop at the end."""
     return _normalize(text) == _normalize(answer)
 
 

@@ -147,7 +147,11 @@ def _split_front_matter(lines: Sequence[str], path: Path) -> tuple[str, int]:
 def _merge_told_lesson(data: Any, path: Path) -> Any:
     """Return the parsed TOML of a lesson.
 
-    If the lesson is a version of another one for another library, its TOML is merged with that lesson's.
+    A lesson for another library is completed with the TOML of its original lesson.
+
+    Args:
+        data: The parsed TOML of the lesson's own file.
+        path: The file.
     """
     if TELLS not in data:
         return data
@@ -244,7 +248,11 @@ def _parse_role(info: str, location: Location) -> Role | None:
 
 
 def _parse_way(word: str, role: Role, location: Location) -> Way | None:
-    """Return the `Way` that a word above a block of wrong code names; None if there is no word."""
+    """Return the kind of wrong program that a word above a block of code names; None if the word is empty.
+
+    Raises:
+        ConfigError: the word names none, or the block is no wrong program.
+    """
     if not word:
         return None
     if role is not Role.WRONG:
@@ -433,9 +441,12 @@ def _check_models(step: LessonStep, location: Location) -> None:
 
 
 def _add_answers(steps: Sequence[LessonStep], location: Location) -> tuple[LessonStep, ...]:
-    """Return the steps, in which each step that runs a program has a model answer.
+    """Return the steps, completed so that each step that checks runs has a model answer.
 
-    This is the step's own answer, or else that of the next step with one.
+    A step without its own answer gets the answer of the next step that has one.
+
+    Raises:
+        ConfigError: there is no such step.
     """
     answer = ""
     completed = []

@@ -54,7 +54,7 @@ class LessonProgress:
     """When it was last opened, in ISO 8601; empty if never."""
 
     def of(self, step: str) -> StepProgress:
-        """Return the progress on a step, given by its name; if there is none, return the progress on a new step."""
+        """Return the progress on a step, given by its name; for a step without progress, that of a new step."""
         return self.steps.get(step, StepProgress())
 
     def update_step(self, step: str, **changes: Any) -> LessonProgress:
@@ -172,8 +172,7 @@ def prepare_program(lesson: Lesson, anew: bool = False) -> Path:
 
     Args:
         lesson: The lesson.
-        anew: Whether to replace an existing program by the program to complete; the old one is renamed to
-            `NAME.old.py`.
+        anew: Whether to rename an existing program to `NAME.old.py` and write a new file.
 
     Raises:
         ConfigError: the file cannot be written.

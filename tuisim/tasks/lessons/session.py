@@ -149,9 +149,9 @@ class LessonSession:
     Attributes:
         lesson: The lesson.
         progress: The student's progress; `save` stores it.
-        done: The step before, if it was done and not skipped; otherwise None.
+        done: The previous step if it was done; None if it was skipped, or if there is none.
         attempt: What has happened since the present step began.
-        story: What happened in the run that passed the last step; empty if the step was not about a run.
+        story: What happened in the run that passed the previous step; empty if that step was not about a run.
     """
 
     def __init__(self, lesson: Lesson) -> None:
@@ -211,7 +211,7 @@ class LessonSession:
 
     @property
     def step_before(self) -> LessonStep | None:
-        """The step before the step to do; at the end of the lesson, its last step; None at the first step."""
+        """The previous step; after the end of the lesson, its last step. None at the first step."""
         index = len(self.lesson.steps) if self.at is None else self.at
         return self.lesson.steps[index - 1] if index else None
 
@@ -229,10 +229,10 @@ class LessonSession:
         return count_good_runs(step.check, self.attempt.events)
 
     def describe_elsewhere(self, pose: Pose, *, in_run: bool) -> str:
-        """Return why the last run does not count for the step, in a sentence, and what to do; empty if it counts.
+        """Return why the last run does not count for the step, and what to do, as sentences; empty if it counts.
 
         Args:
-            pose: The robot's pose.
+            pose: The robot's present pose.
             in_run: Whether a run is going on.
         """
         elsewhere = self.attempt.elsewhere
@@ -413,7 +413,7 @@ class LessonSession:
         return Change.SHOW if is_new else Change.NONE
 
     def _take(self, event: Event) -> bool:
-        """Add an event to the attempt; return whether the present step is done now."""
+        """Add an event to the student's attempt at the present step; return whether the step is done now."""
         step = self.step
         events = self.attempt.events
         if step is None or event in events:
@@ -444,9 +444,9 @@ def _list_met(judgements: Sequence[Judgement]) -> frozenset[str]:
 
 
 def _list_world(spec: RunSpec) -> tuple[object, ...]:
-    """Return the values that a run's world must share with the lesson's: the place, the noise and the drift.
+    """Return the values that a run's world must share with the lesson's.
 
-    Otherwise the run does not count for the step.
+    They are mat, start, obstacles, noise and drift. A run with other values does not count for the step.
     """
     return (*_list_place(spec.world), spec.world.noise, spec.world.drift)
 
@@ -471,7 +471,9 @@ def _tell_start(other: TrialWorld) -> str:
 
 
 def _read_notes(folder: Path) -> Iterator[Noted]:
-    """Yield an event for each note on a run, with the mean of the samples that the note is about.
+    """Yield an event for each note on a stored run, with the mean of the samples in the note's band.
+
+    None without samples.
 
     Raises:
         LogError: the notes or the recording are damaged.

@@ -40,7 +40,7 @@ def _check_panel(panel: str, key: str, known: tuple[str, ...] = SHOWABLE) -> Non
 
 
 class Way(StrEnum):
-    """A kind of wrong program or answer with which a student could try to pass a step."""
+    """A kind of wrong program or answer that might pass a step by mistake, such as one without a measurement."""
 
     LITERAL = "literal answer"
     """The program contains the answer instead of finding it out."""
@@ -320,7 +320,7 @@ class LessonStep:
     """The wrong ways that are impossible in this step, each with the reason."""
 
     def find_missing_ways(self) -> tuple[Way, ...]:
-        """Return the wrong ways that the step neither tries with a wrong program nor excludes with a reason."""
+        """Return the kinds of wrong programs that the step neither has as an example nor excludes with a reason."""
         covered = {
             *self.excludes,
             *self.check.EXCLUDES,

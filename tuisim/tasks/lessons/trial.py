@@ -44,7 +44,10 @@ class Trial:
 
 
 def list_trials(lesson: Lesson) -> list[Trial]:
-    """Return a lesson's programs to try: each model answer as often as its step requires, each wrong program once."""
+    """Return the programs of a lesson that are to be tried on its steps.
+
+    Each model answer is tried as often as its step requires runs, with different seeds; each wrong program once.
+    """
     trials_to_run = []
     seed = build_run_spec(merge_settings(lesson.settings)).seed
     for step in lesson.steps:
@@ -87,7 +90,7 @@ def build_task(
 def try_elsewhere(
     lesson: Lesson, check: RunCheck, run: StoredRun
 ) -> list[tuple[TrialWorld, tuple[Judgement, ...]]]:
-    """Run the program of a run in the other worlds of a check; block meanwhile; return each world with its judgements.
+    """Run the program of a run in the other worlds of a check; return each world with its judgements. This blocks.
 
     Raises:
         ConfigError: the program's magic line is wrong in another world.
@@ -144,7 +147,10 @@ def find_faults(lesson: Lesson) -> list[str]:
 
 
 def _list_worlds(trial: Trial) -> list[tuple[_Key, TrialWorld | None]]:
-    """Return the worlds in which a trial runs, each with the key of its result; the lesson's own world is None."""
+    """Return the worlds in which a program is tried, each after the key of its result.
+
+    None stands for the lesson's own world.
+    """
     check = trial.step.check
     assert isinstance(check, RunCheck)
     others = [

@@ -124,9 +124,9 @@ def _read_tokens(texts: Iterable[str]) -> list[Token]:
 
 
 def _compute_prints(tokens: Sequence[Token]) -> _Prints:
-    """Return the fingerprints of a program, each with its lines.
+    """Return the fingerprints of a program, each with the lines of the tokens that it covers.
 
-    A fingerprint is the least hash in a window of hashes; if several are equal, the last of them.
+    A fingerprint is the smallest hash in a window of hashes; of several equal ones, the last is taken.
     """
     kinds = [token.kind for token in tokens]
     hashes = [

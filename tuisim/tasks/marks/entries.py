@@ -83,9 +83,10 @@ def _build_entry(
 def _resolve_settings(
     student: Student, world: TrialWorld, options: Mapping[str, Any]
 ) -> ProgramSettings:
-    """Return the settings of a student's program: from the task's world if it has values, else from the magic line.
+    """Return the settings with which a student's program runs.
 
-    If the task names no profile, it follows from the program's library.
+    The magic line counts only if the task's world has no values. Without a profile, the program's library decides on
+    it.
 
     Raises:
         ConfigError: the magic line, or a file that it names, is wrong.

@@ -102,7 +102,11 @@ def _describe_frequency(row: SheetRow) -> list[str]:
 
 
 def _describe_hidden(cells: Sequence[tuple[Goal, Cell]]) -> list[str]:
-    """Return the lines of the feedback with the sum of the hidden goals' points; empty without hidden goals."""
+    """Return lines for the feedback with the points of all hidden goals together; empty if there are none.
+
+    Args:
+        cells: The hidden goals, each with the student's result.
+    """
     max_points = math.fsum(max(column.points, 0.0) for column, _ in cells)
     points = math.fsum(cell.points for _, cell in cells)
     return (

@@ -89,7 +89,13 @@ def copy_file(source: Path, target: Path) -> None:
 
 
 def _find_data(file: BinaryIO, place: int, size: int) -> tuple[int, int]:
-    """Return the start and end of the next data after a position in a file, which may be sparse."""
+    """Return the start and the end of the next data in a file that may have holes; both are `size` if none follow.
+
+    Args:
+        file: The file.
+        place: The position from which to search.
+        size: The size of the file in bytes.
+    """
     try:
         start = os.lseek(file.fileno(), place, os.SEEK_DATA)
         return start, min(os.lseek(file.fileno(), start, os.SEEK_HOLE), size)

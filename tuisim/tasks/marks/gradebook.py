@@ -169,9 +169,9 @@ def write_gradebook(
 def _choose_heads(
     kind: GradebookKind, sheet: Sheet, roster: Roster
 ) -> tuple[Sequence[str], str, str]:
-    """Return the headings of the columns that identify a student, the heading of the total, and that of the feedback.
+    """Return the headings of a gradebook: those that identify a student, the total's and the feedback's.
 
-    The total's heading is empty if it is the title of the task.
+    The total's heading is empty if the title of the task stands there.
     """
     has_numbers = kind is GradebookKind.MOODLE and any(kind in row.ids for row in sheet.rows)
     if has_numbers and not roster.people:

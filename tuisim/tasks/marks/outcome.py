@@ -94,14 +94,15 @@ class Outcome:
 
     @property
     def is_in_doubt(self) -> bool:
-        """Whether the run does not count, but the program may have caused that to avoid a result."""
+        """Whether the run could not be judged for a reason that the program may have caused to avoid a result."""
         return self.end == End.DISK_FULL or (not self.end and self.failure.startswith(UNJUDGED))
 
     @property
     def gave_up(self) -> bool:
         """Whether the program hung, flooded or died without meeting a goal, so that further runs would only cost time.
 
-        False if it has met a goal that gives points: it must then meet the goal in the other runs, too.
+        The result is False if it has met a goal that gives points, since the other runs show whether it meets that goal
+        again.
         """
         return self.end in _GIVEN_UP and not any(
             goal.met and not goal.is_penalty for goal in self.goals
@@ -220,9 +221,13 @@ def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
 
 
 def _is_weightier(goal: GoalOutcome, before: GoalOutcome | None) -> bool:
-    """Return whether a goal's outcome in a world replaces its outcome in the worlds before.
+    """Return whether a goal's outcome in one world replaces its outcome in the worlds before, when these are merged.
 
-    A good outcome is replaced by any other, an unknown outcome only by a miss.
+    A good outcome is always replaced, an unknown one only by a miss, and a miss never.
+
+    Args:
+        goal: The outcome in this world.
+        before: The merged outcome of the worlds before; None if there is none.
     """
     if before is None or before.is_good:
         return True
@@ -254,9 +259,9 @@ def make_portable(text: str, folder: Path | str) -> str:
 
 
 def _find_cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgement:
-    """Return the judgement with the reason for a missed goal.
+    """Return the judgement whose reason explains a missed goal.
 
-    This is the goal's own judgement or, for a goal with `all`, the judgement of the first of those goals that is not
+    This is the goal's own judgement or, for a goal with `all`, the judgement of the first goal in `all` that is not
     met.
     """
     if isinstance(judgement.goal.condition, AllOf):

@@ -129,7 +129,7 @@ def _mark(cell: Cell, column: Goal, runs: int) -> _Mark:
 
 
 def _find_reports(row: SheetRow, links: Links) -> dict[str, list[tuple[str, str]]]:
-    """Return the reports of a student's runs by world: the path of each, and the seeds of its runs in words."""
+    """Return the reports of a student's runs, by world: for each report its path, and the seeds of its runs as text."""
     seeds: dict[str, dict[str, list[int]]] = {}
     for outcome in row.outcomes:
         if path := links.get((row.name, outcome.world, outcome.seed)):
@@ -154,7 +154,7 @@ def _format_ranges(seeds: Sequence[int]) -> str:
 
 
 def _tabulate(similar: Similar) -> Mapping[str, object]:
-    """Return tables of similar programs, by the names that the page's template uses."""
+    """Return tables of similar programs, and figures about them, by the names that the page's template uses."""
     heads = ("", "equal except for names, numbers and texts", "of these exactly equal")
     groups = [
         (

@@ -172,7 +172,15 @@ def _find_misses(
     outcome: Outcome,
     run: StoredRun,
 ) -> tuple[Miss, ...]:
-    """Return the goals that a run missed, and where: where the goal was decided, else at the robot's last position."""
+    """Return the goals that a run missed, each with the place where it was decided, or else the robot's last position.
+
+    Args:
+        student: The student's name.
+        columns: The goals that are shown.
+        judged: When and where goals were decided, from `_judge_goals`.
+        outcome: The outcome of the run.
+        run: The run.
+    """
     last = run.telemetry.last()
     missed = {goal.name: goal for goal in outcome.goals if not goal.is_good}
     misses = []
@@ -231,7 +239,11 @@ def _list_verdicts(
 
 
 def _judge_goals(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str, Change]:
-    """Return when and where a run met or missed goals, by name, without goals that only the program's text decides."""
+    """Return when and where goals were met or missed in a run, by their names.
+
+    Goals that the program's text alone decides are left out. The result is empty if the recording is falsified or
+    damaged.
+    """
     if outcome.end == End.FALSIFIED:
         return {}
     # Imported on demand: judging is slow to import, and most runs are judged already.

@@ -64,7 +64,7 @@ class RunEntry:
 
 @dataclass(frozen=True, slots=True)
 class _Turn:
-    """One run of one student."""
+    """One planned run of one student's program."""
 
     entry: RunEntry
     seed: int
@@ -202,7 +202,14 @@ def _build_tasks(
     workspace: Path,
     uncopied: list[tuple[str, Outcome]],
 ) -> Iterator[Task]:
-    """Yield a task for each run; if the student's files cannot be copied, add an outcome to `uncopied` instead."""
+    """Yield a task for each planned run, with a copy of the student's files.
+
+    Args:
+        turns: The runs.
+        plan: How the programs are run.
+        workspace: The folder for the copies.
+        uncopied: Receives name and outcome of each student whose files cannot be copied; there is no task for the run.
+    """
     for index, turn in enumerate(turns):
         student = turn.entry.student
         try:

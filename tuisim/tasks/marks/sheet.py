@@ -118,10 +118,11 @@ class Sheet:
         )
 
     def tabulate(self, max_name: int = 40, max_goal: int = 60) -> tuple[list[str], list[list[str]]]:
-        """Return the headings and the rows of the sheet as a table of texts; the last column is the reason.
+        """Return the sheet as texts: the list of headings, and the rows; the last column is the reason.
 
         Args:
-            max_name, max_goal: Characters of the names of students and goals; the middle of a longer name is left out.
+            max_name, max_goal: Maximum characters of the names of students and of goals; of a longer name, the middle
+                is left out.
         """
         goals = [_cut_middle(column.name, max_goal) for column in self.columns]
         heads = ["student", "points", "robustness", *goals, "reason"]
@@ -164,7 +165,10 @@ class Sheet:
 
 
 def list_columns(goals: Sequence[Goal]) -> list[Goal]:
-    """Return the goals that have points or words, which a sheet shows; the others are only parts of these."""
+    """Return the goals that a sheet shows: those with points or with a sentence (`say`).
+
+    Others only serve these goals.
+    """
     return [replace(goal, say=goal.say or goal.name) for goal in goals if goal.points or goal.say]
 
 
@@ -245,7 +249,10 @@ def build_row(
 def _build_empty_row(
     student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome]
 ) -> SheetRow:
-    """Return the row of a student of whom no run counts: its points are NaN, or 0 if the hand-in is at fault."""
+    """Return the row of a student none of whose runs counts.
+
+    Its points are 0 if the hand-in is at fault, and NaN if this machine is.
+    """
     failed = next(
         (
             outcome

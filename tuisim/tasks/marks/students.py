@@ -88,7 +88,11 @@ class _Search:
     places: int = 0
 
     def build_place(self, name: str) -> Path:
-        """Return the path of a new folder for unpacked files; a name such as `..` is replaced."""
+        """Return the path for a student's unpacked files, in a new folder; it does not exist yet.
+
+        Args:
+            name: The last part of the path; a name of dots only, such as `..`, is replaced.
+        """
         assert self.unpacked is not None
         self.places += 1
         place = self.unpacked / str(self.places)
@@ -266,7 +270,9 @@ def _read_student(path: Path, search: _Search) -> Student:
 
 
 def _enter_folder(path: Path, search: _Search) -> Path:
-    """Return the folder with a student's files: if a folder contains only another folder, or a zip, that is entered.
+    """Return the folder with a student's files.
+
+    If a folder contains nothing but one other folder or one zip, the result is that folder, or the unpacked zip.
 
     Raises:
         ConfigError: a zip cannot be unpacked.

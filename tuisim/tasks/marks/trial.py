@@ -49,7 +49,10 @@ _LETTERS = "a1 .:-AZ_"
 
 
 def answer_lines(goals: Sequence[Goal]) -> list[str]:
-    """Return lines of output that meet the goals, in an order that their `after` allows; `ASK` marks a question."""
+    """Return lines of output that meet the goals, in an order that the goals' key `after` allows.
+
+    In place of a question of the program there is `ASK`.
+    """
     by_name = {goal.name: goal for goal in goals}
     ordered: dict[str, Goal] = {}
 
@@ -101,7 +104,10 @@ def _build_line(condition: ValueCondition) -> str:
 
 
 def build_matching_line(pattern: str) -> str:
-    """Return a line that a regular expression matches; if none is easy to find, the words in the expression."""
+    """Return a line that a regular expression matches.
+
+    If none is easy to find, return the expression without its special characters.
+    """
     plain = re.sub(r"[\\^$.|?*+(){}\[\]]", "", pattern)
     with suppress(re.error, RecursionError, IndexError, OverflowError, UnjudgedError):
         line = _build_text(_parser.parse(pattern), {})

@@ -24,9 +24,9 @@ _MAX_LINES = 64
 
 
 def describe_blank_mat(run: StoredRun) -> str:
-    """Return in words that the mat is plain white and how to get a line, if a finished program steered by light on it.
+    """Return as text that the mat of a run is plain white, and how to get a line.
 
-    Otherwise the text is empty.
+    The result is empty unless the run has ended by itself, the robot has moved, and the program decided by light.
     """
     world = run.spec.world
     is_blank = world.background == EMPTY_MAT and not world.pen_marks

@@ -55,7 +55,7 @@ _MIN_MOVE_S = 0.3
 
 @dataclass(frozen=True, slots=True)
 class _Move:
-    """A command that moves a motor or a drive base, and the next command to the same part."""
+    """A command that moves a motor or a drive base, and the next command to the same motor or drive base."""
 
     tick: int
     end: int
@@ -67,10 +67,9 @@ class _Move:
 
 
 def find_cut_move(data: RunData) -> Unmet | None:
-    """Return the first move that the next command to the same part, or the end of the program, cut off; else None.
+    """Return the first move that the next command to the same part, or the end of the program, cut off.
 
-    Args:
-        data: The run.
+    A part is a motor or a drive base. The result is None if there is none.
     """
     unwaited = data.facts.unwaited_moves
     if not unwaited or not len(data.records):
@@ -91,13 +90,13 @@ def find_cut_move(data: RunData) -> Unmet | None:
 
 
 def _list_moves(data: RunData, calls: Set[Call]) -> Iterator[_Move]:
-    """Yield the commands of some kinds that the next command to the same part, or the end of the program, has ended.
+    """Yield moves that were ended by the next command to the same motor or drive base, or by the end of the program.
 
-    The commands are in the order of their ends.
+    The moves are in the order of their ends.
 
     Args:
         data: The run.
-        calls: The kinds of commands.
+        calls: The kinds of commands to consider.
     """
     aims = [call for call, words in CALL_WORDS.items() if words.aim is not Aim.NONE]
     is_aim = np.isin(data.commands["call"], aims)
@@ -118,12 +117,14 @@ def _list_moves(data: RunData, calls: Set[Call]) -> Iterator[_Move]:
 
 
 def _find_call(data: RunData, move: _Move, fitting: list[UnwaitedMove]) -> UnwaitedMove | None:
-    """Return the call in the text that gave a command; None if it is not clear, or if the cut may be intended.
+    """Return the call in the program's text that gave the command of a move.
+
+    The result is None if several calls come into question, or if the program may have cut the move off on purpose.
 
     Args:
         data: The run.
-        move: The command.
-        fitting: The calls that give such commands and do not wait.
+        move: The move.
+        fitting: The calls of this kind in the text that do not wait for the end of the move.
     """
     if move.next_call is None:
         ending = [each for each in fitting if not each.next_line]
@@ -141,7 +142,7 @@ def _find_call(data: RunData, move: _Move, fitting: list[UnwaitedMove]) -> Unwai
 
 
 def _turns_as_asked(data: RunData, move: _Move, call: UnwaitedMove) -> bool:
-    """Return whether a call in the text turns the motor by the same angle as a command."""
+    """Return whether a call in the text turns a motor by the same angle as a move."""
     turns = data.facts.find_turns(call.line)
     unit_deg = 360.0 if turns and turns[1] == "rotations" else 1.0
     return turns is not None and abs(turns[0]) * unit_deg == abs(move.values[1])
@@ -156,7 +157,10 @@ def _has_looked(data: RunData, move: _Move) -> bool:
 
 
 def _describe_share(data: RunData, move: _Move) -> str:
-    """Return how much of a move was done when it was cut off; empty for most of it, for short moves, or if unknown."""
+    """Return how much of a move was done when it was cut off, such as `of which 90 of 360 degrees were done`.
+
+    The result is empty if most of it was done, if the move was short, or if its length is unknown.
+    """
     values = move.values
     way = data.records[move.tick : move.end + 1]
     match move.call:

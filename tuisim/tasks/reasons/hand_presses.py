@@ -22,13 +22,13 @@ class HandPress:
 def find_presses(
     actions: Iterable[UserAction], names: Sequence[str], hz: int, ticks: int
 ) -> tuple[HandPress, ...]:
-    """Return the presses of buttons and touch sensors with some names, in the order in which they end.
+    """Return when buttons and touch sensors were pressed by hand, in the order in which the presses end.
 
     Args:
         actions: The user's actions in a run.
-        names: Some of `PRESSABLE`.
+        names: The names of the buttons and sensors to consider, from `PRESSABLE`.
         hz: Ticks per second.
-        ticks: Length of the run; a press that goes on ends there.
+        ticks: Length of the run in ticks; a press that goes on at the end ends there.
     """
     since: dict[str, int] = {}
     presses: list[HandPress] = []
@@ -43,7 +43,7 @@ def find_presses(
 
 
 def find_hits(presses: Iterable[HandPress], names: Sequence[str]) -> list[HandPress]:
-    """Return the presses of buttons or sensors with some names, including presses of all touch sensors together.
+    """Return those of the presses that are of buttons or sensors with some names, or of all touch sensors together.
 
     Args:
         presses: The presses.

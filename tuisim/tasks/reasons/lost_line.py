@@ -106,7 +106,9 @@ def find_lost_lines(
 def _name_loss(
     dark: Mapping[str, Bools], watched: Collection[str], left: int, hz: int, is_black: bool
 ) -> LostLine:
-    """Return a loss of the line with the sensor that saw the line last; a sensor that the program reads is preferred.
+    """Return a loss of the line, with the sensor that saw the line last.
+
+    Of several, one that the program reads is preferred.
 
     Args:
         dark: For each sensor, by name, whether it saw the line at each tick.
@@ -130,7 +132,7 @@ def _turns_away(
     dark: Mapping[str, Bools],
     watched: Collection[str],
 ) -> bool:
-    """Return whether a robot turned away from the line most of the time at which one of two sensors saw it.
+    """Return whether a robot with two light sensors mostly turned away from the line while one of them saw it.
 
     Args:
         records: Telemetry up to the loss of the line.
@@ -170,7 +172,7 @@ def compute_reflected_percent(
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """When the line was under some points: under each sensor, and under points between sensors."""
+    """At which ticks the line was under each of several sensors, real or imagined."""
 
     is_dark: list[Bools]
     """Whether at least its edge was under each, at each tick."""
@@ -180,7 +182,7 @@ class _Seen:
 
 
 def _find_points(eyes: Sequence[ColorSensorSpec]) -> list[ColorSensorSpec]:
-    """Return the sensors, with additional points between them so that a line cannot be in a gap unseen."""
+    """Return the sensors, and imagined sensors between neighbours, so close that a line is always under one of them."""
     points = [*eyes]
     for eye, other in pairwise(eyes):
         apart_mm = np.hypot(other.x_mm - eye.x_mm, other.y_mm - eye.y_mm)
@@ -195,7 +197,10 @@ def _find_points(eyes: Sequence[ColorSensorSpec]) -> list[ColorSensorSpec]:
 def _see_line(
     records: Array, spec: RunSpec, mat: Field, points: Sequence[ColorSensorSpec]
 ) -> _Seen | None:
-    """Return when the line was under each point; None if the points saw too little contrast on the mat."""
+    """Return at which ticks the line was under each point.
+
+    None if all that the points saw of the mat is about equally bright.
+    """
     on = [is_on_mat(records, point) for point in points]
     light = [compute_reflected_percent(records, point, spec, mat) for point in points]
     there = np.concatenate([percent[is_on] for percent, is_on in zip(light, on, strict=True)])
@@ -234,7 +239,11 @@ class _Way:
         self._last_tick = len(records) - 1
 
     def find_long_gaps(self, hz: int) -> list[int]:
-        """Return the indices of the dark stretches after which the gap is long enough for a loss of the line."""
+        """Return the indices of the dark stretches followed by a gap so long that the line may have been lost.
+
+        Args:
+            hz: Ticks per second.
+        """
         gaps = self._next - self._ends
         longest = np.maximum.accumulate(np.append(0, gaps[:-1]))
         long_enough = (gaps >= _MIN_GAP_S * hz) & (gaps > _LONGER * longest)
@@ -252,7 +261,9 @@ class _Way:
         return number >= _MIN_RETURNS or bool(share >= _MIN_DARK_SHARE)
 
     def is_steered(self, is_dark: Bools, hz: int) -> bool:
-        """Return whether the robot changed its turning soon after most changes between line and ground under a sensor.
+        """Return whether the robot steered by a sensor.
+
+        It did if its turning mostly changed soon after the sensor came to the line or left it.
 
         Args:
             is_dark: Whether the sensor was over the line, at each tick.

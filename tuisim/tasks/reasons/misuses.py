@@ -40,7 +40,7 @@ _MIN_TURN_DEG = 10.0
 
 
 def find_misuses(data: RunData) -> Iterator[Unmet]:
-    """Yield the first misuse of each kind in a run: of a reading, of a test, and of a name.
+    """Yield the first misuse of each kind in a run: a reading used too long, a test made only once, and a value lost.
 
     Args:
         data: The run.
@@ -59,7 +59,7 @@ def find_misuses(data: RunData) -> Iterator[Unmet]:
 
 
 def _find_stale_reads(data: RunData) -> Iterator[Unmet]:
-    """Yield readings that a loop used again and again, while the sensor saw something else."""
+    """Yield a misuse for each reading that a loop still used when the sensor saw something else."""
     known = {end.line for end in data.facts.loop_ends if end.set_line}
     for use in data.facts.stale_reads:
         if use.line in known and _was_in_vain(data, use):
@@ -70,20 +70,29 @@ def _find_stale_reads(data: RunData) -> Iterator[Unmet]:
 
 
 def _list_ticks(data: RunData, line: int) -> list[int]:
-    """Return the first ticks at which a line read something, in ascending order."""
+    """Return the ticks at which a line of the program read a sensor or motor, ascending, at most `_MAX_READINGS`."""
     ticks: list[int] = np.unique(data.reading_ticks[data.readings["line"] == line]).tolist()
     return ticks[:_MAX_READINGS]
 
 
 def _was_in_vain(data: RunData, use: LoopEnd) -> bool:
-    """Return whether the run was ended in the loop of a use: another reason then tells that it waited in vain."""
+    """Return whether the run was ended from outside while the program was in the loop that uses a reading.
+
+    Another reason then says what the program waited for in vain.
+    """
     line = data.records["line"][-1]
     is_over = data.run.end is not None and data.run.end.end is End.FINISHED
     return use.first_line <= line <= use.last_line and not is_over
 
 
 def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
-    """Return the first use of a reading after the sensor saw something else; None if the reading stayed right."""
+    """Return the first use of a reading after the sensor saw something else; None if it saw the same all the time.
+
+    Args:
+        data: The run.
+        use: The loop that uses the reading.
+        read_tick: The tick of the reading.
+    """
     lines = data.records["line"]
     until = _find_next_reading(data, use.read_line, read_tick)
     is_inside = (lines >= use.first_line) & (lines <= use.last_line)
@@ -114,7 +123,14 @@ def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
 
 
 def _compare(use: LoopEnd, series: Series) -> Array:
-    """Return the results of a comparison for some values; all are false if it compares what is never equal."""
+    """Return for each value whether a comparison is true, shape (n,).
+
+    All False if it compares a value with a wrong type.
+
+    Args:
+        use: The comparison.
+        series: The values.
+    """
     if not isinstance(use.limit, str):
         return np.asarray(COMPARE[use.operator](series.values, use.limit))
     if series.column != "color" or (use.attribute == "color") is not use.limit.isupper():
@@ -124,7 +140,10 @@ def _compare(use: LoopEnd, series: Series) -> Array:
 
 
 def _find_next_reading(data: RunData, line: int, tick: int) -> int:
-    """Return the tick of the next reading of a port that a line reads; without one, the number of ticks."""
+    """Return the tick of the next reading after `tick` of a port that the line reads.
+
+    Without one, the number of ticks.
+    """
     ports = np.unique(data.readings["port"][data.readings["line"] == line])
     ticks = data.reading_ticks[np.isin(data.readings["port"], ports)]
     later = ticks[ticks > tick]
@@ -141,7 +160,7 @@ def _name(series: Series, value: float) -> str:
 
 
 def _find_lone_stops(data: RunData) -> Iterator[Unmet]:
-    """Yield each stop that never came, since the program tested only once, and too early."""
+    """Yield a misuse for each stop that never came, because the program tested only once, and too early."""
     for stop in data.facts.lone_stops:
         read_ticks = _list_ticks(data, stop.read_line)
         if np.diff(read_ticks).min(initial=data.hz) < _APART_S * data.hz:
@@ -155,7 +174,13 @@ def _find_lone_stops(data: RunData) -> Iterator[Unmet]:
 
 
 def _is_unstopped(data: RunData, stop: LoneStop, tick: int) -> bool:
-    """Return whether the robot drove on after a reading that should have stopped it, without another reading."""
+    """Return whether the robot drove on after the reading on which a stop depends, without another reading or a stop.
+
+    Args:
+        data: The run.
+        stop: The stop, with the line of its reading.
+        tick: The tick of the reading.
+    """
     soon = min(tick + round(_SOON_S * data.hz), len(data.records) - 1)
     next_tick = _find_next_reading(data, stop.read_line, tick)
     stops = data.command_ticks[select_stops(data)]
@@ -212,7 +237,7 @@ def _describe_lone(data: RunData, stop: LoneStop, tick: int) -> str:
 
 
 def _find_lost_values(data: RunData) -> Iterator[Unmet]:
-    """Yield the values that a function of the program assigned to local names by mistake, if the function ran."""
+    """Yield a misuse for each value that a function which ran has assigned to a local name instead of a global one."""
     for lost in data.facts.lost_values:
         tick = _find_tick(data, *lost.lines)
         if tick is None and lost.call_line:
@@ -229,7 +254,10 @@ def _find_lost_values(data: RunData) -> Iterator[Unmet]:
 
 
 def _find_tick(data: RunData, first_line: int, last_line: int) -> int | None:
-    """Return the first tick at which the program was in some lines, or read something there; None if there is none."""
+    """Return the first tick at which the program ran one of the lines, or read a sensor or motor there.
+
+    None if it did not.
+    """
     ticks = []
     for lines, when in (
         (data.records["line"], np.arange(len(data.records))),

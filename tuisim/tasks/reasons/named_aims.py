@@ -41,7 +41,7 @@ _MAX_SPOT_MM = 20.0
 
 
 def find_missed_aims(data: RunData) -> Iterator[Unmet]:
-    """Yield the first instant of each kind at which a run did something else than the words of its program say.
+    """Yield the first instant of each kind at which a run did not do what comments and names in its program say.
 
     Args:
         data: The run.
@@ -57,7 +57,7 @@ def find_missed_aims(data: RunData) -> Iterator[Unmet]:
 
 
 def _find_wrong_bands(data: RunData) -> Iterator[Unmet]:
-    """Yield each loop that, by its words, waits for black or white, but was ended by another band before."""
+    """Yield a fault for each loop that should wait for black or white, but was ended by another band."""
     places = [(loop.first_line, loop.last_line) for loop in data.facts.loop_ends]
     for loop in data.facts.loop_ends:
         place = loop.first_line, loop.last_line
@@ -98,7 +98,7 @@ def _measure_light(data: RunData, loop: LoopEnd, records: Array) -> Array:
 
 
 def _extend_way(record: Array) -> Array:
-    """Return records of a robot that drives straight on from its pose in a record."""
+    """Return records of a robot that drives straight on from its pose in a record, one every `_STEP_MM` mm."""
     way_mm = np.arange(_STEP_MM, _AHEAD_MM, _STEP_MM)
     records = np.repeat(record[None], len(way_mm))
     heading = np.deg2rad(record["heading_deg"])
@@ -108,7 +108,7 @@ def _extend_way(record: Array) -> Array:
 
 
 def _find_late_stops(data: RunData) -> Iterator[Unmet]:
-    """Yield each stop at the end of a run that came long after the light for which the program had waited."""
+    """Yield a fault for each stop near the end of a run that came long after the awaited light."""
     loops = {loop.first_line: loop for loop in data.facts.loop_ends}
     for loop_line, sleep_line, stop_line in data.facts.late_stops:
         loop = loops.get(loop_line)
@@ -133,7 +133,7 @@ def _find_late_stops(data: RunData) -> Iterator[Unmet]:
 
 
 def _find_spins(data: RunData) -> Iterator[Unmet]:
-    """Yield turns on the spot where the program says that it drives straight on."""
+    """Yield a fault for each turn on the spot at a place where the program says that it drives straight on."""
     lines = data.records["line"]
     for spin in data.facts.spins:
         # The line after those that start motors is the one that waits.
@@ -162,7 +162,7 @@ def _find_wrong_units(data: RunData) -> Iterator[Unmet]:
 
 
 def _has_moved(records: Array) -> bool:
-    """Return whether a wheel turned on, and did not just come to rest."""
+    """Return whether a wheel turned further than a wheel does that only comes to rest."""
     return any(
         np.ptp(records[name]) > _MIN_ON_DEG for name in ("left_position_deg", "right_position_deg")
     )

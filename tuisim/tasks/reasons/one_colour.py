@@ -33,7 +33,7 @@ _MIN_WHITE_SHARE = 0.9
 
 @dataclass(frozen=True, slots=True)
 class OneColor:
-    """The only colour that the program's light sensors saw."""
+    """The only colour that all light sensors that the program reads have seen in a run."""
 
     tick: int
     """When the program read the first of these sensors."""
@@ -47,9 +47,9 @@ class OneColor:
 def find_one_color(
     records: Array, spec: RunSpec, mat: Field, read_ticks: Mapping[str, Array]
 ) -> OneColor | None:
-    """Return the only colour that every light sensor of the program saw while the robot drove far.
+    """Return the only colour that all light sensors that the program reads have seen while the robot drove far.
 
-    The result is None if the sensors saw more colours, the program read too seldom, or the robot did not drive far.
+    The result is None if they saw more colours, if the program read too seldom, or if the robot did not drive far.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
@@ -99,9 +99,7 @@ def name_only_color(
 
 
 def describe_colors(loop: LoopEnd, device: str, codes: Array, has_codes: bool) -> str:
-    """Return the colour that a loop waited for and the colours that it read.
-
-    The result is empty if the loop read the colour that it waited for.
+    """Return as text which colour a loop waited for and which it read instead; empty if it read the right colour.
 
     Args:
         loop: The loop.
@@ -128,7 +126,7 @@ def _is_text(loop: LoopEnd) -> bool:
 
 
 def name_seen(loop: LoopEnd, codes: Array, has_codes: bool) -> list[str]:
-    """Return the colours of some codes in words or, if the loop compares with a text, as the program reads them.
+    """Return the names of colours, sorted: in words or, if the loop compares with a text, as the program reads them.
 
     Args:
         loop: The loop.

@@ -85,14 +85,12 @@ def find_reasons(
     earlier: Recording | None = None,
     mat: Field | None = None,
 ) -> tuple[Reason, ...]:
-    """Return every reason why a run went wrong, most important first; reasons of one kind are in order of time.
-
-    Missed goals and lost lines are of one kind in this order. What may have caused a later reason comes before it.
+    """Return every reason why a run went wrong, in the order of `sort_by_cause`.
 
     Args:
         run: The run; it may still be running.
-        judgements: The judgements of the goals of its task. For a run that met them all, obstacles and lost lines are
-            no reasons.
+        judgements: The judgements of the goals of its task. If all goals are met, only errors, and a difference from
+            the earlier run, are reasons.
         earlier: The run to compare with, if this one repeats it; None for none.
         mat: The mat of the run; None opens it.
 
@@ -113,7 +111,7 @@ def find_reasons(
 
 
 def describe_reasons(run: StoredRun) -> list[str]:
-    """Return the reasons of `find_reasons` as sentences with their instants; none if the mat no longer exists."""
+    """Return the reasons of `find_reasons` as sentences with time and line; empty if the mat no longer exists."""
     try:
         return [reason.words for reason in find_reasons(run)]
     except LogError:
@@ -125,7 +123,10 @@ _EFFECTS = frozenset({ReasonKind.BLOCKED, ReasonKind.LOST, ReasonKind.MISSED, Re
 
 
 def sort_by_cause(reasons: Sequence[Reason]) -> tuple[Reason, ...]:
-    """Return reasons of a run in the order of `find_reasons`."""
+    """Return reasons of a run, sorted by rank, and within a rank by time.
+
+    The rank of a reason is its kind. If it may have caused a more important reason, it gets that reason's rank.
+    """
     return tuple(sorted(reasons, key=lambda reason: (_rank(reason, reasons), reason.time_s)))
 
 
@@ -190,7 +191,12 @@ def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
 
 
 def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]:
-    """Yield a reason for an obstacle that stopped or pushed the robot, and for each wait of the program in vain."""
+    """Yield a reason for each obstacle that stopped or pushed the robot, and for each wait.
+
+    Args:
+        run: The run.
+        all_waits: What the program waited for in vain.
+    """
     for contact in (
         find_standstill(run.telemetry, run.spec),
         find_push(run.telemetry, run.spec),
@@ -213,11 +219,12 @@ def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
 
 
 def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
-    """Yield a reason for each loss of the line, and if light just missed a limit or sensors saw only one colour.
+    """Yield a reason for each loss of the line, for light that a loop just missed, and for seeing one colour only.
 
     Args:
         data: The run.
-        has_waited: Whether the program waited for a light sensor in vain: one colour only is then no further reason.
+        has_waited: Whether the program waited for a light sensor in vain. That it saw only one colour is then no
+            further reason.
     """
     run = data.run
     if not run.spec.robot.color_sensors or run.telemetry.count < 2:
@@ -269,7 +276,7 @@ def _find_mistaken(data: RunData) -> Iterator[Reason]:
 
 
 def _find_ended(data: RunData) -> Iterator[Reason]:
-    """Yield a reason if the program ended too early or did not stop its motors, and for lines that do nothing."""
+    """Yield a reason if the program ended too early or left motors turning, and for each line that does nothing."""
     run = data.run
     for line, text in data.facts.slips if run.end else ():
         yield Reason(ReasonKind.ENDED, run.time_s, line, text)
@@ -281,10 +288,11 @@ def _find_ended(data: RunData) -> Iterator[Reason]:
 
 
 def describe_end(run: StoredRun) -> str:
-    """Return what went wrong at the end of a run, in a sentence without its full stop; empty if nothing did.
+    """Return in a sentence, without its full stop, what went wrong at the end of a run; empty if nothing did.
 
-    It says where a robot lost its line for good, if a limit or the user ended the run; where light just missed what the
-    program waited for, or came between two reads; why the program was over too early; or that the mat is blank.
+    The sentence says the first of these that applies: where the robot lost its line for good, if a limit or the user
+    ended the run; where light just missed what the program waited for; which line the author probably did not mean so;
+    why the program was over too early; that the mat is blank.
     """
     if run.end is None:
         return ""
@@ -311,7 +319,7 @@ def _explain_lost(run: StoredRun, tick: int, text: str) -> Reason:
 
 
 def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
-    """Return the reason that a sensor lost the line; if a sensor saw the line again, the reason says when."""
+    """Return the reason for a loss of the line; it says when a sensor saw the line again, if one did."""
     text = f"the {lost.sensor} sensor left the {'black' if lost.is_black else 'dark'}"
     if lost.seen_again is None:
         text += ", and did not see it again"

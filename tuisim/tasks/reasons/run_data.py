@@ -145,14 +145,15 @@ class RunData:
     def measure(
         self, loop: LoopEnd, stay: tuple[int, int], *, is_between: bool = False
     ) -> Series | None:
-        """Return the values that a loop read; with `is_between` the values that it would have read at every tick.
+        """Return the values that a loop has read or, with `is_between`, would have read at every tick.
 
         The result is None if they are not known, or if noise or the pen's marks would make the computation slow.
 
         Args:
             loop: The loop, or another comparison.
-            stay: The first tick to read, and the tick after the last one.
-            is_between: Whether to measure from the first reading to the last at every tick.
+            stay: The first tick to consider, and the tick after the last one.
+            is_between: Whether to measure at every tick from the first reading to the last one, not only at the
+                readings.
         """
         import numpy as np
 
@@ -164,7 +165,7 @@ class RunData:
         return self.measure_ticks(loop, ticks)
 
     def measure_ticks(self, loop: LoopEnd, ticks: Array) -> Series | None:
-        """Return the values that a comparison would read at some ticks; None as in `measure`.
+        """Return the values that a comparison would read at some ticks; None as for `measure`.
 
         Args:
             loop: The loop, or another comparison, whose sensor or motor the program read at least once.
@@ -205,9 +206,16 @@ class RunData:
     def _measure_wheel(
         self, loop: LoopEnd, wheel: str, port: str, records: Array, ticks: Array
     ) -> Series | None:
-        """Return the position in degrees of a wheel's motor in some records.
+        """Return what a loop would read of a wheel's motor in some records.
 
-        The result is None if the loop reads another attribute of the motor.
+        None if it reads neither its position nor its speed.
+
+        Args:
+            loop: The loop, or another comparison.
+            wheel: `left` or `right`.
+            port: The motor's port.
+            records: The records, structured as `TICK_FIELDS`.
+            ticks: The ticks of the records.
         """
         if loop.attribute not in TURN_COLUMNS:
             return None

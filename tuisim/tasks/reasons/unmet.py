@@ -51,9 +51,10 @@ class Unmet:
 
 
 def find_unmet(data: RunData) -> Unmet | None:
-    """Return what a program waited for in its last loop or move, if its run goes on, or a limit or the user ended it.
+    """Return what the program waited for in its last loop or move.
 
-    The result is None for any other run, if the program waited for nothing, or if that is not known.
+    The result is None unless the run still goes on or was ended by a limit or the user. It is also None if the program
+    waited for nothing, or if that is not known.
 
     Args:
         data: The run.
@@ -63,10 +64,9 @@ def find_unmet(data: RunData) -> Unmet | None:
 
 
 def find_near_miss(data: RunData) -> Unmet | None:
-    """Return where a finished loop just missed the light that it waited for.
+    """Return where a loop that has ended just missed the light that it waited for; None if no loop did, or if unknown.
 
-    No reading quite reached the light, or the light was there only between two readings. The result is None if no loop
-    missed light in this way, or if that is not known.
+    Either no reading quite reached the light, or the light was there only between two readings.
 
     Args:
         data: The run.
@@ -164,7 +164,10 @@ class _Search:
                 yield Unmet(stay[0] / self._hz, loop.line, text, is_endless=loop.is_endless)
 
     def find_near_misses(self) -> Iterator[Unmet]:
-        """Yield finished loops whose limit the light only just missed, or met only between two readings of the loop."""
+        """Yield a fault for each loop that has ended and just missed the light that it waited for.
+
+        Either the light came near its limit, or it passed the limit only between two readings of the loop.
+        """
         is_finished = self._run.end is not None and self._run.end.end is End.FINISHED
         for loop in self._loops:
             stay = self._find_stay(loop)
@@ -180,7 +183,7 @@ class _Search:
                 yield Unmet(tick / self._hz, loop.line, text)
 
     def find_met(self) -> Iterator[Unmet]:
-        """Yield the loops whose first reading was already what they waited for."""
+        """Yield a fault for each loop that ended at once, because its first reading already was what it waited for."""
         for loop in self._loops:
             series = self._data.measure(loop, (0, len(self._records)))
             if series is None:
@@ -221,7 +224,7 @@ class _Search:
                 yield Unmet(series.ticks[stale[0]] / self._hz, loop.line, text)
 
     def find_recounts(self) -> Iterator[Unmet]:
-        """Yield lines of the program that counted two readings in a row of the same band while the robot moved."""
+        """Yield a fault for each line that counted one band twice, in successive readings of a moving robot."""
         for line, test in self._data.facts.counts:
             series = self._data.measure(test, (0, len(self._records)))
             if series is None or series.column not in LIGHT_COLUMNS or isinstance(test.limit, str):
@@ -240,7 +243,7 @@ class _Search:
                 yield Unmet(next_s, line, text)
 
     def _is_long(self, tick: int) -> bool:
-        """Return whether the program has waited long enough since a tick."""
+        """Return whether the time from a tick to the end of the recording is long enough for a wait."""
         return len(self._records) - tick >= _MIN_STAY_S * self._hz
 
     def _find_move(self) -> Unmet | None:
@@ -275,9 +278,13 @@ class _Search:
         return (stays[0][0], stays[0][1]) if len(stays) == 1 else None
 
     def _describe(self, loop: LoopEnd, stay: tuple[int, int]) -> str:
-        """Return what a loop waited for, and what it read.
+        """Return as text what a loop waited for and what it read.
 
-        The result is empty if the loop's condition was met, or if that is not known.
+        Empty if its condition was met, or if that is not known.
+
+        Args:
+            loop: The loop.
+            stay: The first tick in the loop, and the tick after its last one.
         """
         if loop.is_silent and not loop.name:
             return "its endless loop to end, in which nothing waits, reads or breaks"
@@ -302,9 +309,9 @@ class _Search:
         return f"{series.device} to read {goal}: {came}"
 
     def _name_nearest(self, loop: LoopEnd, series: Series) -> str:
-        """Return which value came nearest to the limit of a loop.
+        """Return as text which of the values came nearest to the limit of a loop, and when.
 
-        If that was the first value, return how the values changed after it.
+        If the first or the last value came nearest, the text says from which value to which they went.
         """
         values = series.values
         nearest = int(abs(values - loop.limit).argmin())
@@ -344,7 +351,12 @@ class _Search:
     ) -> tuple[int, str] | None:
         """Return the first tick at which the light met a loop's condition between two readings, and a description.
 
-        Otherwise the result is None.
+        The result is None if there is no such tick.
+
+        Args:
+            loop: The loop.
+            stay: The first tick in the loop, and the tick after its last one.
+            reads: The readings of the loop.
         """
         import numpy as np
 

@@ -45,16 +45,19 @@ class MistakenTurn:
 
 
 def find_mistaken_turn(data: RunData) -> MistakenTurn | None:
-    """Return the first turn on the spot in which the wheels, but not the robot, turned by the program's angle.
+    """Return the first turn on the spot by the program's angle of the wheels, but not of the robot.
 
-    Otherwise the result is None.
+    The result is None if there is no such turn.
     """
     turns = [_measure_turns(data.records, turn) for turn in data.facts.wheel_turns]
     return min((turn for turn in turns if turn), key=lambda turn: turn.tick, default=None)
 
 
 def _measure_turns(records: Array, turn: WheelTurn) -> MistakenTurn | None:
-    """Return by which angle a call turned the robot the first time it ran; None if that angle seems to be intended."""
+    """Return a call as a mistaken turn, with the angle by which it turned the robot the first time it ran.
+
+    The result is None if it never ran, or if that angle seems to be intended.
+    """
     lines = records["line"]
     is_on = (lines >= turn.first_line) & (lines <= turn.last_line)
     spans = find_spans(is_on).tolist()
@@ -106,7 +109,7 @@ class Unwatched:
 def find_unwatched(
     program: Program, records: Array, spec: RunSpec, mat: Field, read_ticks: Mapping[str, Array]
 ) -> Unwatched | None:
-    """Return the first light between two readings for which the program would have acted differently.
+    """Return the first light between two readings on which the program would have acted differently.
 
     The result is None if there is none.
 
@@ -137,7 +140,16 @@ def _list_passes(
     threshold: ProgramThreshold,
     ticks: Array,
 ) -> Iterator[Unwatched]:
-    """Yield the first light between two readings for which a comparison has another result than at both readings."""
+    """Yield each light between two readings for which a comparison has another result than at both readings.
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`.
+        spec: The run.
+        sensor: The light sensor.
+        mat: The mat of the run.
+        threshold: The comparison.
+        ticks: The ticks at which the program read the sensor.
+    """
     hz = spec.profile.tick_hz
     long = np.flatnonzero(np.diff(ticks) >= _MIN_PAUSE_S * hz)
     if not len(long):

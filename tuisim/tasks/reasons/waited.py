@@ -143,7 +143,14 @@ def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
 
 
 def find_at_end(run: Recorded, end: End) -> tuple[Awaited, ...]:
-    """Return what a run waited for, if it was stopped or its robot stood still at the end; else an empty tuple."""
+    """Return what a run waited for, if it was cut off, or if the program finished while the robot stood still.
+
+    Else empty.
+
+    Args:
+        run: The recording.
+        end: How the run ended.
+    """
     is_over = end is End.FINISHED and is_standing(run.telemetry, run.spec)
     is_cut_off = end in _ENDS and not (
         end is End.STOPPED and run.telemetry.count <= _MIN_WAIT_S * run.spec.profile.tick_hz
@@ -240,7 +247,7 @@ class _Search:
         return is_meant
 
     def _has_seen(self, subject: Subject, port: str, presses: Iterable[HandPress]) -> bool:
-        """Return whether the program has read a subject, on any line, during one of some presses."""
+        """Return whether the program has read a subject, on any line, during one of some presses by hand."""
         times_s = self._ticks[self._select(subject, port)] / self._hz
         return any(
             ((times_s >= press.from_s) & (times_s < press.until_s)).any() for press in presses
@@ -250,7 +257,7 @@ class _Search:
         return read_facts(self._run.program).find_question(line) if self._asks_text else Question()
 
     def _is_asking(self, subject: Subject, line: int) -> bool:
-        """Return whether the program can wait for a subject on a line: the reading there decides what happens next."""
+        """Return whether the program may wait for a subject on a line: the reading there decides what happens next."""
         question = self._ask(line)
         if subject in OUTSIDE_SUBJECTS:
             return True
@@ -267,7 +274,7 @@ class _Search:
 
     @cached_property
     def _blocking_line(self) -> int | None:
-        """The line of the call in which the program is now, if the program has readings there; None otherwise."""
+        """The line that alone was running in the last seconds, if the program has readings there; None otherwise."""
         import numpy as np
 
         lines = np.unique(self._records["line"][self._first + 1 :])
@@ -284,7 +291,15 @@ class _Search:
         return any(dps for _, dps in face.turns)
 
     def _describe(self, subject: Subject, port: str, rows: Array) -> Awaited | None:
-        """Return what the program waits for at a subject; None if the subject changed or the awaited value came."""
+        """Return what the program waits for, as found from its readings.
+
+        None if what they read changed, or if the value came.
+
+        Args:
+            subject: The kind of sensor, or other source.
+            port: Its port.
+            rows: The indices of its readings.
+        """
         import numpy as np
 
         mode = READING_MODES[self._rows["mode"][rows[-1]]]
@@ -331,7 +346,14 @@ class _Search:
         return find_presses(self._run.actions, names, self._hz, len(self._records))
 
     def _skip_answered(self, rows: Array, presses: Sequence[HandPress]) -> Array:
-        """Return the readings after the last press if they go on for at least `WINDOW_S` seconds, else all readings."""
+        """Return those readings that came after the last press, if they go on for at least `WINDOW_S` seconds.
+
+        Otherwise return all of them.
+
+        Args:
+            rows: The indices of the readings.
+            presses: The presses by hand.
+        """
         import numpy as np
 
         if not presses:
@@ -366,7 +388,16 @@ class _Search:
         needs_all: bool,
         limit: float | None,
     ) -> str | None:
-        """Return in words what was read each time; None if it changed, or if the awaited value came."""
+        """Return as text what all readings had in common; None if they differ, or if the awaited value came.
+
+        Args:
+            subject: The kind of sensor, or other source.
+            port: Its port.
+            rows: The indices of its readings.
+            sought: Names of the values that the program waits for.
+            needs_all: Whether it waits for all of these together.
+            limit: The distance that the program compares with; None if there is none.
+        """
         import numpy as np
 
         if subject in OUTSIDE_SUBJECTS:
@@ -398,7 +429,13 @@ class _Search:
         return None
 
     def _is_pressed(self, ticks: Array, names: Sequence[str], needs_all: bool) -> bool:
-        """Return whether any button, or with `needs_all` all together, was pressed by hand at one of some ticks."""
+        """Return whether one of some buttons was pressed by hand in at least one of some ticks.
+
+        Args:
+            ticks: The ticks.
+            names: The buttons.
+            needs_all: Whether all of them must have been pressed together.
+        """
         import numpy as np
 
         enough = len(names) if needs_all else 1
@@ -442,8 +479,12 @@ class _Search:
     ) -> str | None:
         """Return the smallest distance that was measured, such as `12 cm`; None if the awaited distance came.
 
-        With a `limit`, that is a distance that is not larger; without one, distances that differ by more than
-        `tolerance`.
+        Args:
+            sensor: The sensor.
+            ticks: The ticks of the readings.
+            per_unit: Measured units per unit of the text: more than 1 for cm, 1 for %.
+            tolerance: Without a limit, the awaited distance has come if the measured ones differ by more than this.
+            limit: The awaited distance has come if a measured one is not larger than this; None for no limit.
         """
         low, high = math.inf, -math.inf
         for value, *_ in self._measure(sensor, ticks):
@@ -475,7 +516,10 @@ class _Search:
 def _list_sought(
     subject: Subject, port: str, mode: str, questions: Iterable[Question]
 ) -> tuple[str, ...]:
-    """Return the names of the values that a program waits for on several lines, in their order; empty for any value."""
+    """Return the names of the values that a program waits for on several lines; empty for any value.
+
+    They are in the order of the lines, except that Backspace and the beacon come last.
+    """
     names = dict.fromkeys(
         name for question in questions for name in _find_sought(subject, port, mode, question)
     )

@@ -107,7 +107,7 @@ def describe_wait_with_keys(awaited: Iterable[Awaited], spec: RunSpec) -> str:
 
 
 def describe_awaited(awaited: Awaited) -> str:
-    """Return in words what a program read in vain, such as `gyro on in4 was never turned`."""
+    """Return as text what a program read without seeing what it waited for, such as `gyro on in4 was never turned`."""
     port = awaited.port
     value = awaited.value
     match awaited.subject:
@@ -146,7 +146,7 @@ def describe_awaited(awaited: Awaited) -> str:
 
 
 def _name_choice(awaited: Awaited) -> str:
-    """Return the buttons of which the program needs any one, with a blank in front; empty otherwise."""
+    """Return the buttons as text, with a blank in front, if any one of several would do; else an empty text."""
     has_choice = len(awaited.sought) > 1 and not awaited.needs_all
     return f" {', '.join(awaited.sought[:-1])} and {awaited.sought[-1]}" if has_choice else ""
 
@@ -271,7 +271,10 @@ def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
 
 
 def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
-    """Return what an ultrasonic sensor reads at a wall, if the program waits for a smaller distance; else empty."""
+    """Return as text what an ultrasonic sensor reads with the robot at a wall, if the program waits for less.
+
+    Else empty.
+    """
     for sensor in spec.robot.sensors:
         if sensor.port == awaited.port and isinstance(sensor, UltrasonicSpec):
             nearest_mm = find_nearest(sensor, spec)
@@ -281,9 +284,9 @@ def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
 
 
 def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
-    """Return the app's key that gives a program what it waited for, as an action id in braces.
+    """Return as text which key of the app gives a program what it waited for, with the key's action id in braces.
 
-    If no key does, return the option.
+    If no key does, return the option of the command line, as `name_remedy` does.
     """
     names = awaited.sought if awaited.needs_all else awaited.sought[:1]
     brick = "hub" if awaited.port in (HUB_BUTTONS_PORT, *HUB_PORTS) else "brick"
@@ -319,7 +322,9 @@ def find_nearest(sensor: UltrasonicSpec, spec: RunSpec) -> float:
 def find_obstacle(
     sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, pose: Pose, limit: float | None
 ) -> str:
-    """Return the options that put one of `OBSTACLES` in front of a sensor; empty if no obstacle is near enough there.
+    """Return the options that put one of the sets in `OBSTACLES` on the mat, so that a sensor sees an obstacle.
+
+    The result is empty if no set has such an obstacle.
 
     Args:
         sensor: The sensor.
