@@ -33,10 +33,10 @@ def open_regular(path: Path, follow_links: bool = False) -> BinaryIO:
 
 
 def read_regular(path: Path, most_bytes: int, follow_links: bool = False) -> bytes:
-    """Return the contents of a regular file, which is opened as by `open_regular`.
+    """Return the contents of a regular file; `follow_links` is as for `open_regular`.
 
     Raises:
-        OSError: it cannot be read; EFBIG if it is longer than `most_bytes`.
+        OSError: it cannot be opened or read; EFBIG if it is longer than `most_bytes`.
     """
     with open_regular(path, follow_links) as handle:
         content = bytearray()

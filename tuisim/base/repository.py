@@ -42,7 +42,7 @@ def _root_of(folder: str) -> str:
 
 
 def _folders_in(root: str) -> Iterator[str]:
-    """Yield a folder and its subfolders, level by level from the top; hidden folders and links are left out."""
+    """Yield the folder `root` and its subfolders, level by level; hidden folders and links are left out."""
     level = [root]
     seen = 0
     for _ in range(_MAX_DEPTH):

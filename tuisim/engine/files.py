@@ -83,7 +83,10 @@ def read_named(
     Args:
         word: What the user gave: it is not one of the names `known`.
         what: What it should name, for errors.
+        known: The names of the presets, for errors.
+        error: The class of errors.
         key: The option to blame in errors.
+        kinds: The suffixes that the file may have.
 
     Raises:
         ConfigError: of the class `error`: the word names no file, or `read_file` cannot read the file.
@@ -117,7 +120,12 @@ def with_location(error: ConfigError, file: str, key: str) -> ConfigError:
 
 @contextmanager
 def errors_at(file: str, prefix: str = "") -> Iterator[None]:
-    """In a `with` block, add a file and the key of a table to each ConfigError that names no file."""
+    """In a `with` block, add a file and the key of a table to each ConfigError that names no file.
+
+    Args:
+        file: The file.
+        prefix: The key of the table, which is put before the key in the error; empty for the whole file.
+    """
     try:
         yield
     except ConfigError as error:
@@ -523,7 +531,12 @@ def toml_value(value: Scalar) -> str:
 def toml_lines(
     values: Mapping[str, Scalar], comments: Mapping[str, str] = MappingProxyType({})
 ) -> list[str]:
-    """Return the lines of one table, with aligned comments."""
+    """Return the lines of one table, with aligned comments.
+
+    Args:
+        values: The values by key.
+        comments: The comments by key; a key without one gets none.
+    """
     pairs = [
         (f"{toml_key(key)} = {toml_value(value)}", comments.get(key, ""))
         for key, value in values.items()
@@ -533,7 +546,10 @@ def toml_lines(
 
 
 def value_lines(part: Spec, keys: Iterable[str]) -> list[str]:
-    """Return the lines of some values of a spec, with their help as comments."""
+    """Return the TOML lines of some values of a spec, with their help as comments; values that are None are left out.
+
+    `keys` are the names of the values.
+    """
     values = list_values(type(part))
     part_values = {key: getattr(part, key) for key in keys}
     shown_values = {

@@ -263,7 +263,10 @@ def _make(files: FieldFiles, missing: list[tuple[int, Path]], pixels: NDArray[np
 
 
 def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
-    """Return the sums over every disc, shape (height + d, width + d, 3); see `engine.core.field.Field`."""
+    """Return the sums of red, green and blue over the disc at every position, shape (height + d, width + d, 3).
+
+    Here d is the diameter. `Field.sums` describes which position has which index.
+    """
     import numpy as np
 
     height, width, _ = pixels.shape

@@ -192,7 +192,10 @@ def _on_white(picture: Image) -> Image:
 
 
 def _in_eight_bits(picture: Image) -> Image:
-    """Return an image with eight bits per channel, in RGB, for a grey one with more bits; its values become 0 … 255."""
+    """Return a grey image that has more than eight bits per pixel as an RGB image with eight bits per channel.
+
+    Values of 16 bits, or of 0 to 1, are scaled to 0 … 255; all other values stay.
+    """
     import numpy as np
     from PIL import Image
 

@@ -294,7 +294,10 @@ def import_originals(source: Path) -> tuple[list[Taken], list[str]]:
 
 
 def _places(folder: str | None) -> list[Path]:
-    """Return the existing folders of the user's mats, in order of precedence; `folder` is that of `mats`."""
+    """Return the existing folders of the user's mats, in order of precedence.
+
+    `folder` is one that the user has named, which comes first; None for none.
+    """
     named = [] if folder is None else [_named(folder)]
     own = own_folder()
     return [*named, own] if os.path.exists(own) else named
@@ -326,7 +329,7 @@ def _pictures(folder: Path) -> list[Path]:
 def _in_folder(folder: Path, known: Mapping[str, Background]) -> dict[str, Background]:
     """Return a mat for each image in a folder, by name.
 
-    An image with the name of a mat of the catalogue replaces that mat's image.
+    An image with the name of a mat in `known` replaces that mat's image; any other image is a mat of its own.
     """
     by_original = {mat.original.lower(): mat for mat in known.values() if mat.original}
     by_name = {name.lower(): mat for name, mat in known.items()}
@@ -349,6 +352,10 @@ def _of_path(path: str, known: Mapping[str, Background]) -> Background | None:
     """Return the mat whose image has this path; None if there is none.
 
     It is one of the user's mats, or a mat of the catalogue whose image the user has replaced by another one.
+
+    Args:
+        path: The path.
+        known: All mats by name.
     """
     for mat in (mat for mat in known.values() if mat.is_own):
         if str(mat.image) == path:

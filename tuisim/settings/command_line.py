@@ -73,6 +73,10 @@ def _add_files(completions: list[CompletionItem], incomplete: str) -> list[Compl
     """Return the completions of a word, and after them the paths of the files that begin with the word.
 
     If there are no completions, return one that makes the shell complete files itself, with quotes where needed.
+
+    Args:
+        completions: The completions that are not files.
+        incomplete: The word, as far as it has been typed.
     """
     if not completions:
         return [CompletionItem(incomplete, type="file")]
@@ -252,7 +256,10 @@ class Command(click.Command):
         return rest
 
     def _collect_settings(self, ctx: click.Context) -> dict[str, Any]:
-        """Remove the shared options from Click's parameters; return those that the user gave, by path."""
+        """Remove the shared options from Click's parameters.
+
+        Return the values of those that the user gave, by the path of the setting.
+        """
         settings: dict[str, Any] = {}
         for name in [name for name in ctx.params if name in self._shared]:
             value = ctx.params.pop(name)

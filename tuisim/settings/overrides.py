@@ -77,9 +77,16 @@ def resolve_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dic
 
 
 def _nest(values: Mapping[str, Any], location: Location) -> dict[str, Any]:
-    """Return keys with dots as nested tables.
+    """Return keys with dots, such as `noise.light`, as nested tables.
 
     If both `robot` (or `profile`) and keys such as `robot.name` are given, the value of `robot` is under `robot=`.
+
+    Args:
+        values: The values, by key with dots.
+        location: The file, for errors.
+
+    Raises:
+        ConfigError: a key is inside another one that has a value.
     """
     table: dict[str, Any] = {}
     for key, value in values.items():

@@ -163,7 +163,7 @@ def load_robot(word: str, key: str = "") -> RobotSpec:
 
 
 def choose_robot(word: str, key: str = "") -> RobotChoice:
-    """Return a robot as `load_robot` does, but together with the other settings in its file.
+    """Return a robot together with the other settings in its file; arguments as for `load_robot`.
 
     Raises:
         RobotError: the name is unknown, or the file is wrong.
@@ -213,7 +213,15 @@ def parse_robot(
 
 
 def _parse_motors(robot: Mapping[str, Any], base: RobotSpec, location: Location) -> dict[str, Any]:
-    """Return the motors of a robot's table as fields of `RobotSpec`; `false` removes a motor of the base robot."""
+    """Return the motors of a robot's table as fields of `RobotSpec`.
+
+    The motors of the base robot stay, unless the table changes them, or removes them by `false`.
+
+    Args:
+        robot: The robot's table.
+        base: The base robot.
+        location: The location of the table, for errors.
+    """
     wheels = {robot.get(key, getattr(base, key)): key for key in ("left_port", "right_port")}
     motors = {motor.port: motor for motor in base.extra_motors}
     fields: dict[str, Any] = {}
@@ -240,7 +248,13 @@ def _parse_motors(robot: Mapping[str, Any], base: RobotSpec, location: Location)
 
 
 def _parse_motor(data: object, base: MotorSpec, location: Location) -> MotorSpec:
-    """Return the motor that a text names by its kind, or that a table describes."""
+    """Return a motor with the changes that a file gives.
+
+    Args:
+        data: The motor's kind, or a table of its values.
+        base: The motor before the changes.
+        location: The location of the data, for errors.
+    """
     if not isinstance(data, dict):
         return replace(base, kind=files.one_of(data, location, MOTOR_KINDS))
     return files.read_part(data, base, location, port=base.port)
@@ -401,7 +415,12 @@ def _parse_json_part(
 ) -> dict[str, object] | bool:
     """Return a sensor or the pen of the browser simulator's file with the keys of a TOML table.
 
-    The result is False if it is disabled.
+    The result is False for a sensor that is disabled.
+
+    Args:
+        part: The sensor or the pen in the file.
+        keys: The key of the TOML table for each key in the file; other keys are left out.
+        location: The location of the part, for errors.
     """
     if location.key != "pen" and not files.convert(
         part.get("enabled", True), bool, location.at("enabled")

@@ -419,7 +419,15 @@ def _change(text: str, setting: Setting, value: Scalar | None) -> str:
 
 
 def _uncomment(text: str, setting: Setting, value: Scalar) -> str:
-    """Return the text of `config.toml` with a setting in place of its comment, unless the table has the setting."""
+    """Return the text of `config.toml` with a setting in place of its comment.
+
+    If the setting is in its table already, the text is unchanged.
+
+    Args:
+        text: The text.
+        setting: The setting.
+        value: The value that it gets.
+    """
     head, header, rest = text.partition(f"[{setting.section}]\n")
     body, next_header, after = rest.partition("\n[")
     if re.search(rf"^{setting.name}\b", body, re.MULTILINE):

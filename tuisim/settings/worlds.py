@@ -239,7 +239,15 @@ def _load_base(
 
 
 def _split_table(data: object, location: Location) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the values of a run in a world file by path, and the table's other keys."""
+    """Return the values of a run in a world file by path, and the file's other keys.
+
+    Args:
+        data: The contents of the file.
+        location: The file, for errors.
+
+    Raises:
+        ConfigError: a key is unknown, or a value is wrong.
+    """
     world = files.table(data, location, (*_World.__struct_fields__, *_TABLES))
     others = files.convert(
         {key: value for key, value in world.items() if key not in _TABLES}, _World, location
@@ -272,6 +280,11 @@ def _find_program(word: str, folder: Path, resolve: Resolver) -> str:
     """Return the program that a world file names: the name of an example, or else a resolved path.
 
     A file of that name in the world file's folder takes precedence over an example.
+
+    Args:
+        word: The name or the path in the file.
+        folder: The folder of the file.
+        resolve: Resolves a path in the file.
     """
     known = os.sep not in word and not os.path.exists(folder / word)
     if known and any(os.path.isfile(programs_folder() / name) for name in (word, f"{word}.py")):
@@ -280,7 +293,13 @@ def _find_program(word: str, folder: Path, resolve: Resolver) -> str:
 
 
 def _resolve(folder: Path, referred: list[Path], word: str) -> str:
-    """Return a path in a world file, resolved relative to its folder, and append it to `referred`."""
+    """Return a path in a world file, resolved relative to the file's folder.
+
+    Args:
+        folder: The folder of the file.
+        referred: A list to which the result is appended.
+        word: The path in the file.
+    """
     resolved = Path(os.path.normpath(folder / user_path(word)))
     referred.append(resolved)
     return str(resolved)
@@ -317,9 +336,16 @@ def _parse_mat(
 def _resolve_name(
     word: str, location: Location, resolve: Resolver, load: Callable[[str], object]
 ) -> str:
-    """Return a name unchanged; for the path of a file, return it resolved.
+    """Check that a preset or a file exists and is right, and return the name or the resolved path.
 
-    `load` is called once, so that its errors name the file and key of `location`.
+    Args:
+        word: The name of the preset, or the path of the file.
+        location: The key that gives the word; errors name it.
+        resolve: Resolves a path in the world file.
+        load: Loads the preset or the file, or raises ConfigError.
+
+    Raises:
+        ConfigError: `load` raises it.
     """
     if files.means_file(word):
         word = resolve(word)

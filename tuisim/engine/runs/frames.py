@@ -204,7 +204,7 @@ def build_telemetry_columns(
     Args:
         run: The run.
         field: The mat; by default that of the run.
-        names: `line`, and names of columns from `list_columns`, which replace all columns after `time`.
+        names: The columns to return after `time`: names of `list_columns`, or `line`. If it is empty, all of the above.
 
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.

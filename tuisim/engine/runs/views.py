@@ -542,7 +542,10 @@ class OutputView(_View):
         return list(self.rows())
 
     def read_rows(self, position: int) -> Iterator[tuple[OutputRow, int]]:
-        """Yield the rows from a position on, which is 0 or was yielded before, each with the position after it."""
+        """Yield the rows from a byte position on, each with the position after it.
+
+        `position` is 0, or a position that was yielded before.
+        """
         data, end = self._look()
         if not self._dropped:
             return iterate_rows(data, position, end)
