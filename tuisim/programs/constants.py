@@ -18,15 +18,15 @@ _EVALUATED = ("ClassVar", "InitVar", "KW_ONLY")
 
 
 def set_constants(source: ProgramSource, values: Mapping[str, object]) -> ProgramSource:
-    """Return a program with other values of some of its constants; its lines keep their numbers.
+    """Return a program in which some constants have other values; its lines keep their numbers.
 
     Args:
         source: The program.
         values: The new values, by the name of the constant.
 
     Raises:
-        ConfigError: the program has no such constant, assigns several values to it, has already computed another
-            constant from it, or is not Python; or a value cannot be written in a program.
+        ConfigError: the program is not Python, lacks such a constant or assigns it several values; or another constant
+            has already been computed from it; or a value cannot be written in a program.
     """
     if not values:
         return source

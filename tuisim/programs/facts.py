@@ -96,7 +96,7 @@ def list_wheel_turns(tree: ast.Module) -> Iterator[WheelTurn]:
 
 
 def _list_pairs(tree: ast.Module) -> Iterator[tuple[ast.Call, ast.Call]]:
-    """Yield each pair of calls that are consecutive statements of a block."""
+    """Yield each two calls that follow each other as statements of the same block."""
     for node in ast.walk(tree):
         for block in (getattr(node, name, None) for name in ("body", "orelse")):
             for pair in pairwise(block if isinstance(block, list) else ()):
@@ -155,7 +155,10 @@ def _list_nodes(tree: ast.Module, *kinds: type[ast.AST]) -> list[ast.AST]:
 
 
 def _is_dead(node: ast.AST) -> bool:
-    """Return whether a loop or a branch does nothing: its body is empty, or its condition is never true."""
+    """Return whether a loop, branch or function does nothing: its body has no effect, or its condition is never true.
+
+    A `while` with an empty body is not dead, because it waits.
+    """
     if (
         isinstance(node, ast.While | ast.If)
         and isinstance(node.test, ast.Constant)
@@ -207,7 +210,7 @@ def _list_span(statement: ast.stmt) -> Iterator[int]:
 
 
 def _measure_depth(node: ast.AST) -> int:
-    """Return the depth of the most deeply nested block in a node."""
+    """Return how many blocks are nested in each other at the deepest place of a syntax tree, itself included."""
     inner = max(map(_measure_depth, ast.iter_child_nodes(node)), default=0)
     return inner + isinstance(node, _BLOCKS)
 
@@ -266,7 +269,7 @@ class ProgramFacts:
 
     @cached_property
     def fault(self) -> tuple[str, int] | None:
-        """Why the program does not compile, with the line's number or 0 without one; None if it compiles."""
+        """Why the program does not compile, and the number of the faulty line, or 0 if unknown; None if it compiles."""
         return find_fault(self._program.text)
 
     def count_structure(self, name: str) -> int:
@@ -316,22 +319,22 @@ class ProgramFacts:
 
     @cached_property
     def stale_reads(self) -> tuple[LoopEnd, ...]:
-        """The uses, in loops, of readings that were taken before the loop."""
+        """The places in loops that use a reading which was taken before the loop."""
         return tuple(list_stale_reads(self._short_tree, self._constants))
 
     @cached_property
     def lone_stops(self) -> tuple[LoneStop, ...]:
-        """The stops of motors that depend on one reading after their start."""
+        """The `if` statements that stop motors after a single reading; see `list_lone_stops`."""
         return tuple(list_lone_stops(self._short_tree, self._constants))
 
     @cached_property
     def lost_values(self) -> tuple[LostValue, ...]:
-        """The values that functions give to names of their own instead of to those of the program."""
+        """The values that functions assign to local names, although a global name is probably meant."""
         return tuple(list_lost_values(self._short_tree))
 
     @cached_property
     def unwaited_moves(self) -> tuple[UnwaitedMove, ...]:
-        """The moves with an end for which the program does not wait."""
+        """The calls that begin a move of limited length, such as a turn by an angle, without waiting for its end."""
         return tuple(list_unwaited_moves(self._short_tree))
 
     @cached_property
@@ -346,18 +349,18 @@ class ProgramFacts:
 
     @cached_property
     def wrong_units(self) -> tuple[WrongUnit, ...]:
-        """The calls with numbers in a unit that is probably not meant."""
+        """The calls whose numbers are probably meant in another unit or in another order."""
         return tuple(list_wrong_units(self._short_tree, self.remarks))
 
     @cached_property
     def late_stops(self) -> tuple[tuple[int, int, int], ...]:
-        """The lines of loops that end at a band, of the sleep after each, and of the stop after that."""
+        """The lines of loop, sleep and stop, for each loop that ends at a band before a sleep and a stop."""
         return tuple(list_late_stops(self._short_tree, self.remarks))
 
     def find_turns(self, line: int) -> tuple[float, str] | None:
-        """Return by how much a call on a line turns a motor or both wheels, and the unit.
+        """Return by how much a call on a line turns a motor or both wheels, and the unit: `rotations` or `degrees`.
 
-        The result is None if the line has no call that turns them.
+        The result is None if the line has no such call.
         """
         return find_turns(self._short_tree, self._constants, line)
 
@@ -399,18 +402,21 @@ class ProgramFacts:
         return places
 
     def find_place(self, line: int) -> tuple[int, range]:
-        """Return the first line of the function around a line, and the lines of the loop around that line.
+        """Return the first line of the function that contains a line, and the lines of the loop that contains it.
 
-        Outside functions, the first line is 0; outside loops, the lines are those of the statement.
+        Outside functions, the first result is 0. Outside loops, the second is the range of the statement's lines.
         """
         return self._places.get(line, (0, range(0)))
 
     def find_light_reads(self, robot: RobotSpec) -> Mapping[str, LightRead]:
-        """Return which reading of each colour sensor the program compares first, else reads first, by sensor name."""
+        """Return which kind of reading of each colour sensor the program compares first, by the sensor's name.
+
+        For a sensor without a comparison, it is the kind that the program reads first.
+        """
         return find_light_reads(self._program, robot)
 
     def find_thresholds(self, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:
-        """Return the values with which the program compares each colour sensor, in order of lines, by sensor name."""
+        """Return the values with which the program compares each colour sensor, by sensor name, in order of lines."""
         return find_thresholds(self._program, robot)
 
 
@@ -489,7 +495,7 @@ def _build_prelude_scope(prelude: str) -> Scope:
 
 
 def _name_prelude(name: str, prelude: str) -> str:
-    """Return the full name of what a prelude defines for a name; the name itself if the prelude does not define it."""
+    """Return the full name of the object that a prelude defines for a name; without a definition, the name itself."""
     names = _Names(_build_prelude_scope(prelude))
     return next(iter(names.list_meanings(ast.Name(name), names.prelude)))
 

@@ -79,7 +79,7 @@ class _Block(NamedTuple):
 
     @property
     def is_evaluated(self) -> bool:
-        """Whether the definition itself uses other names, such as a class or a function with default values."""
+        """Whether running the definition reads other names, as for a class or for default values."""
         node = parse_module("\n".join(self.lines)).body[0]
         return not isinstance(node, ast.FunctionDef) or bool(
             node.decorator_list or node.args.defaults or node.args.kw_defaults
@@ -169,7 +169,14 @@ class _Reader:
             self._add_block(_Block(own, function.__code__.co_filename, first, lines), around, own)
 
     def _add_class(self, name: str, kind: type, around: Surroundings, user: str) -> None:
-        """Add a class and everything that it uses; `user` is what uses it, for errors."""
+        """Add a class and everything that it uses.
+
+        Args:
+            name: The name of the class in the program.
+            kind: The class.
+            around: The names around the code that uses it.
+            user: What uses it, for errors.
+        """
         own = kind.__name__
         if kind.__module__ != around.values.get("__name__"):
             around = Surroundings.read_module(sys.modules[kind.__module__])
@@ -197,7 +204,14 @@ class _Reader:
         self._blocks.append(block._replace(lines=text.split("\n")))
 
     def _add_module(self, name: str, module: ModuleType, names: set[str], user: str) -> None:
-        """Add the names that are used of a user's own module, and a `SimpleNamespace` of these in its place."""
+        """Add what code uses of a user's own module, and a `SimpleNamespace` with it in place of the module.
+
+        Args:
+            name: The name of the module in the program.
+            module: The module.
+            names: The names that are used of it.
+            user: What uses it, for errors.
+        """
         self._claim(name, id(module), user)
         around = Surroundings.read_module(module)
         self._attributes.setdefault(name, set()).update(names)
@@ -208,7 +222,13 @@ class _Reader:
         self._blocks.append(_Block(name, "", 0, [f"{name} = SimpleNamespace({values})"]))
 
     def _claim_own(self, name: str, own: str, user: str) -> bool:
-        """Register the original name of a function or class that is used by another name; return whether it is new."""
+        """Register the definition's own name of a function or class; return whether it must still be added.
+
+        Args:
+            name: The name by which the code uses it; if it is another one, it becomes an alias.
+            own: Its own name.
+            user: What uses it, for errors.
+        """
         if name == own:
             return True
         self._aliases.append(f"{name} = {own}")
@@ -258,7 +278,13 @@ class _Reader:
         return True
 
     def _add_value(self, name: str, around: Surroundings, user: str) -> None:
-        """Add a value: its text if that still gives the same value, else an expression for the value."""
+        """Add the assignment of a value: as in its file if that gives the same value, else with an expression.
+
+        Args:
+            name: The name of the value.
+            around: The names around the code that uses it.
+            user: What uses it, for errors.
+        """
         origin, source = around.find_origin(name)
         if origin == name:
             around = source
@@ -295,7 +321,12 @@ class _Reader:
         return text
 
     def _add_names(self, around: Surroundings, user: str) -> None:
-        """Add the classes and functions that the expressions for values use."""
+        """Add the classes and functions that the expressions written so far use.
+
+        Args:
+            around: The names around the code with these expressions.
+            user: What uses them, for errors.
+        """
         for name, value in [*self._writer.names.items()]:
             self._add_named(name, value, around, user)
 

@@ -63,12 +63,12 @@ def _find_function(tree: ast.Module, frame: FrameState) -> _Function | None:
 def _find_values(
     scope: ast.Module | _Function, frame: FrameState | None, variables: Sequence[Variable]
 ) -> dict[int, tuple[Variable, ...]]:
-    """Return the variables that each line of a scope has assigned, by line.
+    """Return the variables that each line of a scope has assigned, by line number.
 
     Args:
         scope: The program or a function.
         frame: The frame that runs the scope; None if it has ended.
-        variables: The variables of the scope.
+        variables: The variables of the scope, with their present values.
     """
     by_name = {variable.name: variable for variable in variables}
     here = frame.line if frame else 0
@@ -89,7 +89,11 @@ def _find_values(
             lines_of.setdefault(name, []).append(line)
 
     def rank_age(line: int) -> tuple[int, int]:
-        """Return a sort key for when a line ran: in this iteration of the loop, in the previous one, or earlier."""
+        """Return a sort key of a line, smaller for a line that ran later.
+
+        Lines of this iteration of the loop come first, then those of the previous iteration, then lines outside the
+        loop.
+        """
         if not first <= line <= last:
             return 2, -line
         return (0 if line < here else 1), -line

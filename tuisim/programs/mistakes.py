@@ -94,7 +94,7 @@ def _find_equal_branches(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _is_opposite(first: ast.stmt, second: ast.stmt) -> bool:
-    """Return whether two `if` statements do the same, one below a limit and the other above it."""
+    """Return whether two `if` statements have the same body, one below a limit and the other above it."""
     match first, second:
         case (
             ast.If(test=ast.Compare(ops=[way]) as test, orelse=[]),
@@ -151,7 +151,10 @@ def _describe_idle(test: ast.Compare, function: str) -> str:
 
 
 def _find_missing_return(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first condition that asks a function without a result, and a description; None if there is none."""
+    """Return the first condition that calls a function which returns nothing, and a description.
+
+    None if there is none.
+    """
     empty = {
         node.name: node.lineno
         for node in tree.body
@@ -195,9 +198,9 @@ _STOPS = ("stop", "brake", "hold")
 
 
 def _find_short_wait(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line that waits a few ms between start and stop of a motor, and a description; None without one.
+    """Return the first `wait` of so few ms that seconds were probably meant, and a description; None if there is none.
 
-    The number of ms is so small that it was probably meant in seconds.
+    Only a `wait` between the start and the stop of a motor is considered.
     """
     for node in ast.walk(tree):
         block = getattr(node, "body", [])

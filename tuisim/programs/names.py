@@ -114,7 +114,7 @@ def _find_uses(tree: ast.Module) -> Iterator[tuple[ast.Attribute, ast.Name]]:
 
 
 def _list_bound_names(tree: ast.Module) -> Iterator[str]:
-    """Yield each name once for each place that assigns or defines it, in any scope."""
+    """Yield the names that the program assigns or defines, in any scope, once for each place."""
     for node in ast.walk(tree):
         match node:
             case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
@@ -183,7 +183,7 @@ class UnknownName:
 
 @dataclass(slots=True)
 class _SeenNames:
-    """The global names that a program's code reads and defines."""
+    """The global names that the code of a program reads, and those that it defines."""
 
     loaded: dict[tuple[int, int, int], str] = field(default_factory=dict)
     """Globals that are read, by line, first and last byte."""
@@ -263,7 +263,12 @@ def parse_readable(text: str) -> tuple[ast.Module | None, set[str]]:
 
 
 def _replace_line(lines: Sequence[str], index: int) -> str:
-    """Return a statement that replaces a line with a syntax error: the head of a block if a block follows."""
+    """Return a statement in place of a line with a syntax error: `if True:` if an indented block follows, else `pass`.
+
+    Args:
+        lines: All lines.
+        index: Index of the faulty line.
+    """
     indent = _read_indent(lines[index])
     below = next((line for line in lines[index + 1 :] if line.strip()), "")
     return indent + ("if True:" if len(_read_indent(below)) > len(indent) else "pass")
@@ -312,7 +317,12 @@ def _search(code: types.CodeType, seen: _SeenNames, is_module: bool = True) -> N
 
 
 def count_column(line: str, byte: int | None) -> int:
-    """Return a column in characters from one in bytes of UTF-8, as Python's errors have it."""
+    """Return the index of a character in a line.
+
+    Args:
+        line: The line.
+        byte: The index of its first byte in UTF-8, as in Python's errors; None for the end of the line.
+    """
     return len(line.encode()[:byte].decode(errors="ignore"))
 
 
@@ -322,7 +332,7 @@ def _list_prelude_names(prelude: str) -> frozenset[str]:
 
 
 def _build_hint(name: str, follows: str, own: set[str], within: Mapping[str, str]) -> str:
-    """Return a hint for a name that is not defined.
+    """Return a hint on what to write for a name that is not defined, such as an import or a similar name.
 
     Args:
         name: The name.

@@ -42,7 +42,7 @@ class NotebookProgram:
 
 @dataclass(frozen=True, slots=True)
 class _Words:
-    """A magic line of a notebook, without the options that contain the notebook's variables."""
+    """A magic line of a notebook: its settings, and the notebook variables in its other options."""
 
     magic: re.Match[str]
     settings: Mapping[str, Any]
@@ -133,7 +133,7 @@ def _parse_magics(text: str, where: str) -> Iterator[_Words]:
 
 
 def _drop_variables(words: str) -> tuple[str, str]:
-    """Return a magic line without the options that contain variables, and those variables."""
+    """Return a magic line without the options whose values contain notebook variables, and these variables as text."""
     unknown = ", ".join(_VARIABLE.findall(words))
     constant: list[str] = []
     # The pattern keeps a variable in braces, which may contain blanks, in one word.

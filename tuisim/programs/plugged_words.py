@@ -33,7 +33,10 @@ def _name_remedy(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
 
 
 def describe_newest(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
-    """Return in words which part was plugged in last; empty for a left wheel, whose words come with the right one."""
+    """Return a sentence about the part that was plugged in last.
+
+    For a left wheel, it is empty: the sentence about the right wheel names both.
+    """
     last = parts[-2:] if parts[-1].role == RIGHT else parts[-1:]
     words = f"{list_parts(last)}{_name_remedy(last, spec)}"
     return "" if parts[-1].role == LEFT else f"— plugged in, because the program opened it: {words}"

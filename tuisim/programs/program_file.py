@@ -206,7 +206,10 @@ def list_programs() -> list[ProgramFile]:
 
 
 def _read_head(lines: list[str]) -> Iterator[tuple[int, str]]:
-    """Yield number and text of each line before the first statement, without the docstring."""
+    """Yield the numbers and texts of the blank and comment lines, and of magic lines, before the first statement.
+
+    The docstring is skipped.
+    """
     closing = ""
     for number, raw in enumerate(lines, start=1):
         line = raw.strip()
@@ -223,7 +226,12 @@ def _read_head(lines: list[str]) -> Iterator[tuple[int, str]]:
 
 
 def resolve_files(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the options of a magic line, with file names resolved in the folder of the program or notebook."""
+    """Return the options of a magic line, in which names of files are paths in a folder.
+
+    Args:
+        folder: The folder of the program or notebook.
+        options: The options.
+    """
     resolved = dict(options)
     for field_name in FILE_FIELDS & resolved.keys():
         word = resolved[field_name]
@@ -233,7 +241,7 @@ def resolve_files(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def is_file_name(word: str) -> bool:
-    """Return whether the value of one of `FILE_FIELDS` is a path, and not the name of something built in."""
+    """Return whether a word is a path, and not the name of something built in: it has a suffix or a slash."""
     return os.sep in word or bool(Path(word).suffix)
 
 

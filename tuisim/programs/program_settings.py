@@ -90,7 +90,10 @@ class SourceFacts:
 
     @property
     def brick_profile(self) -> str:
-        """The profile of the real brick for which the program is; the program must import a library."""
+        """The name of the profile of the real brick that runs such a program.
+
+        The program must import a library for a brick.
+        """
         assert self.library is not None
         return PYBRICKS_4.name if self.version_4_name else PROFILES_BY_LIBRARY[self.library]
 
@@ -276,7 +279,10 @@ def build_program_settings(
 
 
 def find_free_paths(settings: Settings) -> frozenset[str]:
-    """Return the paths among `PROGRAM_PATHS` that the user has not chosen; who chooses the floor chooses the walls."""
+    """Return the paths among `PROGRAM_PATHS` that the user has not chosen.
+
+    If the user has chosen the floor, the walls count as chosen, too.
+    """
     free = {path for path in PROGRAM_PATHS if settings.given.get(path) is None}
     return frozenset(free if "floor" in free else free - {*GROUND_PATHS})
 
@@ -331,7 +337,12 @@ def has_brick_rules(profile: str | ProfileSpec) -> bool:
 
 
 def _decide_ground(facts: SourceFacts, free: Collection[str]) -> dict[str, bool]:
-    """Return the settings `floor` and `walls` for a program of a real brick, unless the user has chosen them."""
+    """Return the settings `floor` and `walls` for a program of a real brick, without those that the user has chosen.
+
+    Args:
+        facts: The facts in the source of the program.
+        free: The paths that the user has not chosen.
+    """
     ground = {"floor": True, "walls": facts.senses_walls} if "floor" in free else {}
     return {path: value for path, value in ground.items() if path in free}
 
@@ -347,12 +358,23 @@ def _find_refused(facts: SourceFacts, profile: str | ProfileSpec) -> tuple[Refus
 
 
 def _find_shown(facts: SourceFacts, free: Collection[str]) -> tuple[str, ...] | None:
-    """Return the ports that the text of the program shows, see `Decided.shown_ports`; None if a robot was chosen."""
+    """Return the ports whose parts the text of the program shows, see `Decided.shown_ports`.
+
+    The result is None if the user has chosen a robot.
+
+    Args:
+        facts: The facts in the source of the program.
+        free: The paths that the user has not chosen.
+    """
     return facts.shown_ports if "robot" in free else None
 
 
 def _check_prelude(program: Program) -> None:
-    """Raise an error if a program with a prelude, which uses ev3dev2, imports Pybricks itself."""
+    """Check that a program with a prelude, which uses ev3dev2, does not import Pybricks.
+
+    Raises:
+        ProfileError: it does.
+    """
     if Library.PYBRICKS in program.text and find_library(read_modules(program)) is Library.PYBRICKS:
         raise ProfileError(
             f"{program.name} uses {Library.PYBRICKS}, and its predefined names are of {Library.EV3DEV2}",
@@ -362,9 +384,9 @@ def _check_prelude(program: Program) -> None:
 
 
 def _find_law(named: str | ProfileSpec) -> MotorLaw | None:
-    """Return the motor law of a profile or of the profile with a name.
+    """Return the motor law of a profile, or of the profile with this name.
 
-    The result is None if there is no such profile, which is reported later.
+    The result is None if there is no such profile; another function reports that.
     """
     try:
         return _load_profile(named).motor_law
@@ -373,9 +395,9 @@ def _find_law(named: str | ProfileSpec) -> MotorLaw | None:
 
 
 def _is_fitting(settings: Settings, facts: SourceFacts) -> bool:
-    """Return whether the chosen profile is for a program.
+    """Return whether the chosen profile is for the program's library and hub.
 
-    The result is True if the profile does not exist, which is reported later.
+    The result is True if the profile does not exist; another function reports that.
     """
     law = _find_law(settings["profile"])
     if law is None:
@@ -384,7 +406,7 @@ def _is_fitting(settings: Settings, facts: SourceFacts) -> bool:
 
 
 def _can_move(law: MotorLaw, library: Library, is_for_hub: bool) -> bool:
-    """Return whether a motor law is for a library; if the program is for a hub, the law must also be for hubs."""
+    """Return whether a motor law is for a library and, if the program is for a hub, also for hubs."""
     return law.library is library and (law is MotorLaw.PYBRICKS_4 or not is_for_hub)
 
 
@@ -434,9 +456,9 @@ def choose_robot(source: ProgramSource, name: str) -> ProgramRobot:
 def _read_run_facts(source: ProgramSource) -> SourceFacts:
     """Return the facts in the source of a program that apply to its run.
 
-    If a program of the course has the parts of the default robot on the same ports, it gets the default robot; its own
-    sizes, sides and mountings are ignored. These apply only in programs with the rules of a brick, and in all for
-    Pybricks.
+    A program for the course that uses the default robot's parts on the same ports has no robot of its own: other sizes,
+    sides and mountings in its text are ignored. They apply only for Pybricks, and for programs with the rules of a
+    brick.
     """
     facts = read_source_facts(source.program)
     brings_rules = facts.library is Library.PYBRICKS or _has_brick_rules(source, facts)

@@ -31,7 +31,14 @@ _ENDINGS = _RECORDERS | {
 
 
 def _list_key_words(port: str, keys: Sequence[str]) -> dict[Word, str]:
-    """Return the keys of a controller by the words for them; a word for several keys has the first of these keys."""
+    """Return the keys of a controller, by the words by which programs name them, such as `up`.
+
+    A word that means several keys stands for the first of these.
+
+    Args:
+        port: The port of the controller.
+        keys: Its keys, in order.
+    """
     names = [(key.removeprefix(f"{port}."), key) for key in keys]
     parts = [(name.rpartition("_")[0], key) for name, key in reversed(names) if "_" in name]
     return dict[Word, str]([*parts, *names])
@@ -85,7 +92,7 @@ class Question:
     """Whether several of them must be true together."""
 
     def find_buttons(self, port: str = BUTTONS_PORT) -> tuple[str, ...]:
-        """Return the buttons that the program tests, in its order; empty for any button.
+        """Return the buttons that the program tests, in the order of its text; empty if it accepts any button.
 
         Args:
             port: The port of the buttons, one of `KEYS_BY_PORT`.
@@ -116,7 +123,10 @@ class Question:
 
 
 def shorten(word: Word) -> Word:
-    """Return a library's word as in the tables of words: in lower case, without a prefix such as `on_` or `color_`."""
+    """Return a word of a library in the form of the tables of words: in lower case, without prefixes such as `color_`.
+
+    A number is returned unchanged.
+    """
     return _PREFIX.sub("", word.lower(), count=1) if isinstance(word, str) else word
 
 
@@ -156,7 +166,7 @@ class QuestionReader:
                         self._users.setdefault(name, []).append(step)
 
     def _add_lines(self, step: ast.stmt) -> None:
-        """Record on which lines a step may read a sensor or motor."""
+        """Add a step to the steps of each line on which it may read a sensor or motor."""
         lines = {
             line
             for head in _list_heads(step)
@@ -191,7 +201,7 @@ class QuestionReader:
         )
 
     def _find_flow(self, steps: Iterable[ast.stmt]) -> list[ast.stmt]:
-        """Return some steps, and all steps that use their values or run depending on them."""
+        """Return the given steps, and all steps that depend on their values or run only because of them."""
         flow = dict.fromkeys(steps)
         queue = [*flow]
         followed = set[str]()
@@ -219,7 +229,7 @@ class QuestionReader:
         return not isinstance(step, ast.Pass)
 
     def _list_words(self, head: ast.AST) -> Iterator[Word]:
-        """Yield the attributes, texts and numbers in an expression in their order, without numbers in calculations."""
+        """Yield the attributes, texts and numbers in an expression, in order, except for numbers in calculations."""
         nodes = [
             node
             for node in ast.walk(head)
@@ -270,7 +280,7 @@ class QuestionReader:
         return all(_name_function(call.func) in _ENDINGS for call in calls)
 
     def _find_names(self, step: ast.stmt) -> set[str]:
-        """Return the names that contain the value of a step after it; names of attributes begin with a dot."""
+        """Return the names that contain the value of a step once it has run; names of attributes begin with a dot."""
         match step:
             case ast.Assign(targets=targets):
                 return {name for target in targets for name in _list_names(target)}
@@ -331,9 +341,13 @@ def _is_test(step: ast.stmt) -> bool:
 
 
 def _is_noted(step: ast.stmt, compared: Set[str]) -> bool:
-    """Return whether a step only prints a value, or stores the value in a variable that it is compared with.
+    """Return whether a step does nothing but print a value, or store it in a variable with which the value is compared.
 
-    Such a variable has, for example, the maximum.
+    Such a variable has, for example, the maximum so far.
+
+    Args:
+        step: The step.
+        compared: The variables with which the value is compared.
     """
     match step:
         case ast.Assign(targets=targets):

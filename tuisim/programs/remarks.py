@@ -66,7 +66,10 @@ class Remarks:
         return colors[0] if len(colors) == 1 and not _OTHERS.search(text) else ""
 
     def names_band(self, first_line: int, last_line: int) -> bool:
-        """Return whether some lines name a band of the mat, and none around them says that the robot drives on."""
+        """Return whether some lines name a band of the mat.
+
+        The result is False if these lines, or those around them, also say that the robot drives on beyond it.
+        """
         around = self._list_lines(first_line - _AROUND_LINES, last_line + 1)
         is_beyond = _BEYOND.search(" ".join(around))
         text = " ".join(self._list_lines(first_line, last_line))
@@ -79,7 +82,7 @@ class Remarks:
         return (is_forwards(text) or bool(_STRAIGHT.search(text))) and not _TURNS.search(text)
 
     def has_centimetres(self, line: int, number: int) -> bool:
-        """Return whether a line, or the line above it, has a number with the unit cm."""
+        """Return whether a line, or the line above it, contains this number with the unit cm."""
         text = " ".join(self._list_lines(line - 1, line))
         return bool(number) and bool(re.search(rf"\b{number}\b\W{{0,6}}cm\b", text))
 
@@ -225,9 +228,9 @@ def _describe_order(numbers: Sequence[list[float]]) -> str:
 
 
 def list_late_stops(tree: ast.Module, remarks: Remarks) -> Iterator[tuple[int, int, int]]:
-    """Yield the lines of a `while` loop, of the sleep after the loop, and of the stop of the motors after the sleep.
+    """Yield the lines of `while` loop, sleep and stop for each stop of motors after a sleep after a loop.
 
-    Only loops are yielded between whose end and whose sleep a band is named.
+    Only loops are included after which a comment names a band before the sleep.
     """
     for node in ast.walk(tree):
         block = getattr(node, "body", None)

@@ -95,13 +95,16 @@ class Surroundings:
             raise ConfigError(message, "import it again", file=self.file)
 
     def get_owner(self, name: str) -> int:
-        """Return an id of the scope with the variable of a name, by which variables of the same name differ."""
+        """Return an id of the scope that has the variable of a name.
+
+        Variables with the same name in other scopes have other ids.
+        """
         return id(self._cells.get(name, self._globals))
 
     def find(self, name: str) -> tuple[ast.stmt, str]:
-        """Return the last statement that assigns a name, and the text that contains it.
+        """Return the last statement that assigns a global name, and the text of the file or cell that contains it.
 
-        If there is none, the statement is `pass`.
+        If there is none, the statement is `pass`, and the text empty.
         """
         if name not in self._cells:
             for statements, text in self._texts:
@@ -111,7 +114,10 @@ class Surroundings:
         return _UNKNOWN, ""
 
     def name_file(self, text: str) -> str:
-        """Return the file that contains a text returned by `find`; empty for another cell of a notebook."""
+        """Return the file of these surroundings if a text that `find` returned is its text.
+
+        Empty for another cell's text.
+        """
         return self.file if text.rstrip() == self._text.rstrip() else ""
 
     def find_expression(self, name: str) -> ast.expr | None:
@@ -218,7 +224,10 @@ def _is_pure(value: object) -> bool:
 
 
 def _parse(text: str) -> list[ast.stmt]:
-    """Return the statements of a text outside functions and classes; those in a block come after its own statement."""
+    """Return the statements of a text outside functions and classes, those in blocks included.
+
+    Empty if it is not Python.
+    """
     try:
         return [*_list_statements(parse_module(text).body)]
     except NOT_PYTHON:

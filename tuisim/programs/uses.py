@@ -29,10 +29,10 @@ _SPEEDS = "Speed"
 
 
 def list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoopEnd]:
-    """Yield each use in a loop of a reading that was taken before the loop and that nothing in the loop renews.
+    """Yield each use in a loop of a reading that was taken before the loop and that nothing in the loop reads again.
 
-    A use is a comparison with a constant or, without an operator, another test or a move. Its lines are those of the
-    loop.
+    A use is a comparison with a constant. Another test, or a move, is yielded without an operator. Its lines are those
+    of the loop.
 
     Args:
         tree: The program.
@@ -58,7 +58,9 @@ def _list_scopes(tree: ast.Module) -> Iterator[ast.Module | _Function]:
 
 
 def _list_reads_before(loop: _Loop, nodes: list[ast.AST]) -> dict[str, ast.Assign]:
-    """Return the last assignment of each name before a loop that does not assign the name, if it reads an attribute.
+    """Return the assignments before a loop that read an attribute, by name: the last one of each name.
+
+    Names that the loop assigns itself are left out.
 
     Args:
         loop: The loop.
@@ -81,7 +83,7 @@ def _list_reads_before(loop: _Loop, nodes: list[ast.AST]) -> dict[str, ast.Assig
 
 
 def _is_reaction(node: ast.AST) -> bool:
-    """Return whether a node starts or stops motors at once, or leaves a loop: what a program does that looks ahead."""
+    """Return whether a node only starts or stops motors, or leaves a loop; it thus may be a reaction to a reading."""
     is_call = isinstance(node, ast.Expr) and bool(_find_call(node, (*STARTS, *STOPS)))
     return is_call or isinstance(node, ast.Break)
 
@@ -97,7 +99,14 @@ def _list_stored(node: ast.AST) -> set[str]:
 def _list_uses(
     loop: _Loop, name: str, read: ast.Assign, constants: Mapping[str, Word]
 ) -> Iterator[LoopEnd]:
-    """Yield the comparisons and moves in a loop that depend on a reading, and on nothing that changes in the loop."""
+    """Yield the comparisons and moves in a loop that depend only on a reading before the loop, and on constants.
+
+    Args:
+        loop: The loop.
+        name: The variable with the reading.
+        read: The assignment that reads it.
+        constants: Values of names in the program; see `list_constants`.
+    """
     stale = _find_derived(loop, name)
     fresh = _list_stored(loop) - stale
     last_line = loop.end_lineno or loop.lineno
@@ -143,7 +152,7 @@ def _find_derived(loop: _Loop, name: str) -> set[str]:
 
 
 def _depends(node: ast.expr, stale: set[str], fresh: set[str]) -> bool:
-    """Return whether an expression depends on a stale name, but on no fresh name and no further reading."""
+    """Return whether an expression uses a name in `stale`, but none in `fresh`, and reads nothing itself."""
     names = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
     reads = any(
         isinstance(part, ast.Attribute) or (isinstance(part, ast.Call) and not _is_pure(part))
@@ -298,11 +307,13 @@ def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
 def _is_meant(
     name: str, call_line: int, outside: list[ast.AST], functions: list[_Function]
 ) -> bool:
-    """Return whether a program uses a global name after the first call of a function, in a loop, or in functions.
+    """Return whether a program uses a global name where it needs the value that a function should have assigned.
+
+    It does if it uses the name after the call, in a loop, or in another function.
 
     Args:
         name: The name.
-        call_line: The line of the call; 0 for none.
+        call_line: The line of the first call of the function; 0 for none.
         outside: The nodes of the program outside of functions.
         functions: The functions.
     """
@@ -314,7 +325,7 @@ def _is_meant(
 
 
 def _walk_used(node: ast.AST, *, has_result: bool) -> Iterator[ast.AST]:
-    """Yield the nodes of a function without those that it prints and, without `has_result`, those that it returns."""
+    """Yield the nodes in a function, except for those in `print` and, without `has_result`, those that it returns."""
     for part in ast.iter_child_nodes(node):
         is_returned = isinstance(part, ast.Return) and not has_result
         if not is_returned and not _is_call(part, "print"):
@@ -345,7 +356,7 @@ def _is_loaded(name: str, nodes: Iterable[ast.AST]) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class UnwaitedMove:
-    """A call that begins a move with an end, for which the program does not wait."""
+    """A call that begins a move of limited length, such as a turn by an angle, without waiting for its end."""
 
     line: int
     last_line: int
@@ -393,9 +404,13 @@ def _find_option(statement: ast.stmt) -> str:
 
 
 def _find_next_move(move: ast.Call, rest: list[ast.stmt]) -> int:
-    """Return the line of the next move or stop of the same object or, without one, of any object, after a move.
+    """Return the line of the next move or stop after a move, preferably one of the same object; 0 without one.
 
-    The line is 0 if there is none, or if anything but calls comes before it.
+    Only calls directly after the move are considered, up to the first other statement or call that waits.
+
+    Args:
+        move: The call.
+        rest: The statements after it.
     """
     owner = _name_object(move.func)
     lines: list[tuple[bool, int]] = []

@@ -39,8 +39,9 @@ class ValueWriter:
         """Return an expression with a given value; a NumPy number becomes a Python number.
 
         Raises:
-            ConfigError: it is no constant, member of an Enum, function or class of the user's or of Python, container
-                of these, or object that they make up; or the same object would be created twice.
+            ConfigError: the same object would be created twice, or the value is of a kind that cannot be written. These
+                can: constants, members of an Enum, functions and classes of the user or of Python, containers, and
+                objects that consist of them.
         """
         if getattr(value, "shape", None) == ():
             value = value.item()
@@ -127,9 +128,9 @@ def is_plain(value: object) -> bool:
 
 
 def list_parts(kind: type) -> Sequence[str]:
-    """Return the field names of a NamedTuple or dataclass whose constructor takes exactly these.
+    """Return the field names of a NamedTuple or dataclass that is created from exactly these values.
 
-    The result is empty for other classes.
+    Else an empty list.
     """
     if not is_dataclass(kind):
         return getattr(kind, "_fields", ()) if issubclass(kind, tuple) else ()

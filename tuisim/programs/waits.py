@@ -18,7 +18,7 @@ _Loop = ast.For | ast.While
 
 @dataclass(frozen=True, slots=True)
 class LoopEnd:
-    """The end of a loop in a program by a comparison of a value with a constant, as in `while light > 20`."""
+    """A comparison of a value with a constant that ends a loop, as in `while light > 20`."""
 
     line: int
     """The line of the comparison."""
@@ -66,7 +66,7 @@ def list_loop_ends(tree: ast.Module, constants: Mapping[str, Word]) -> tuple[Loo
 def list_counts(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[tuple[int, LoopEnd]]:
     """Yield each line in a loop that adds 1 to a variable when a value passes a constant, with that comparison.
 
-    Nothing else may change the variable after its first value, and no division may use it.
+    The variable is assigned nowhere else except for its first value, and no division uses it.
 
     Args:
         tree: The program.
@@ -112,7 +112,7 @@ def _is_only_counted(name: str, tree: ast.Module) -> bool:
 def find_turns(
     tree: ast.Module, constants: Mapping[str, Word], line: int
 ) -> tuple[float, str] | None:
-    """Return by how much a call on a line turns a motor or both wheels, and `rotations` or `degrees`; else None.
+    """Return by how much a call on a line turns a motor or both wheels, and `rotations` or `degrees`; None without one.
 
     Args:
         tree: The program.
@@ -226,7 +226,15 @@ def _find_end(
 def read_comparison(
     test: ast.expr, constants: Mapping[str, Word], *, is_break: bool
 ) -> tuple[ast.expr, str, Word] | None:
-    """Return the compared expression, the operator with which the loop ends, and the constant; None for other tests."""
+    """Return the compared expression, the operator and the constant of a comparison that ends a loop.
+
+    None for other tests.
+
+    Args:
+        test: The comparison.
+        constants: Values of names in the program; see `list_constants`.
+        is_break: Whether the loop ends if it is true; otherwise the operator is reversed.
+    """
     match test:
         case ast.Compare(left=left, ops=[operator], comparators=[right]):
             sign = SIGNS.get(type(operator), "")
@@ -242,7 +250,17 @@ def read_comparison(
 def _split_sum(
     value: ast.expr, ending: str, limit: Word, constants: Mapping[str, Word]
 ) -> tuple[ast.expr, str, Word]:
-    """Return a comparison without the numbers added to its value, which are subtracted from the limit instead."""
+    """Return a comparison in which numbers added to the value are subtracted from the limit instead.
+
+    Args:
+        value: The compared expression.
+        ending: The operator.
+        limit: The constant.
+        constants: Values of names in the program.
+
+    Returns:
+        The expression without these numbers, the operator, and the new limit.
+    """
     while isinstance(limit, int | float):
         match value:
             case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
@@ -279,7 +297,10 @@ def _find_last_line(node: ast.stmt) -> int:
 
 
 def list_constants(tree: ast.Module) -> dict[str, Word]:
-    """Return the values, texts and numbers, of names that are assigned once, and of parameters equal in all calls."""
+    """Return the texts and numbers that names in a program always have, by name.
+
+    These are names that are assigned once, and parameters that have the same value in all calls.
+    """
     nodes = [*ast.walk(tree)]
     functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
     times_set = Counter(
@@ -336,7 +357,10 @@ def find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None:
 
 
 def find_attribute(node: ast.expr) -> str:
-    """Return the attribute or method that an expression reads, without an argument or with 0; empty for others."""
+    """Return the attribute that an expression reads, or the method that it calls without an argument or with 0.
+
+    The result is empty for other expressions.
+    """
     match node:
         case (
             ast.Attribute(attr=attr)
@@ -347,7 +371,7 @@ def find_attribute(node: ast.expr) -> str:
 
 
 def _find_values(name: str, tree: ast.Module) -> list[tuple[int, ast.expr]]:
-    """Return the lines that assign a variable, each with the assigned expression or, if unknown, the variable's node.
+    """Return the lines that assign a variable, each with the assigned expression, or the name's node if unknown.
 
     The result is empty if several functions share the variable, since their order is not known.
     """

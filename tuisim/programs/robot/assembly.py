@@ -60,7 +60,7 @@ _MAX_NAME = 80
 
 @dataclass(frozen=True, slots=True)
 class RobotPart:
-    """A part of the robot that differs from the default robot's, or that a line of the program creates."""
+    """A part of a robot, with the line of the program that needs it, for a list of the parts."""
 
     what: str
     """The part in words, such as `medium motor on outA`."""
@@ -74,7 +74,7 @@ class RobotPart:
 
 @dataclass(frozen=True, slots=True)
 class BuiltRobot:
-    """The robot that was built for a program, with its parts and doubts."""
+    """The robot that was built for a program, with its parts, and sentences on what is in doubt."""
 
     choice: RobotChoice
     parts: tuple[RobotPart, ...]
@@ -117,7 +117,10 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
 
 
 def find_shown_ports(mentions: Mentions, robot: RobotSpec) -> tuple[str, ...]:
-    """Return the ports of a robot whose parts a program's text shows, even if the text does not show the ports."""
+    """Return the ports of a robot whose parts a program's text shows.
+
+    A part also counts as shown if the program creates its kind of device without a port.
+    """
     pairs = [port for pair in mentions.pairs for port in (pair.left, pair.right)]
     ports = {device.port for device in mentions.devices} | {*pairs}
     taken_anywhere = {device.kind for device in mentions.devices if device.is_any}
@@ -216,9 +219,9 @@ class _Builder:
         return {f"{side}_reversed": True for side in sides}
 
     def _find_gears(self, wheels: WheelMotors) -> dict[str, float]:
-        """Return the robot's field for the gears of the wheels.
+        """Return the robot's field for the gear ratio of the wheels.
 
-        The result is empty if they are as usual, or differ between the sides.
+        The result is empty if the ratio is the usual one, or differs between the two wheels.
         """
         motors = [
             motor
@@ -240,7 +243,11 @@ class _Builder:
         return {"gear_ratio": ratio}
 
     def add_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
-        """Return the robot's changed fields with the touch sensors that motors press at their end stops."""
+        """Return the robot's fields, with the motors that press touch sensors at their end stops.
+
+        Args:
+            changes: The robot's fields, among them its motors and touch sensors.
+        """
         motors = {motor.port: motor for motor in changes["extra_motors"]}
         touches = list(changes["touch_sensors"])
         for press in self.mechanics.presses:
@@ -321,7 +328,7 @@ class _Builder:
         }
 
     def _list_exact(self) -> Iterator[str]:
-        """Yield the field names of the sizes that a `DriveBase` gives, even if these are the usual sizes."""
+        """Yield the names of the size fields that the program sets by a `DriveBase`, even if to the usual sizes."""
         for pair in self.mentions.pairs:
             if PAIRS[pair.class_name].takes_motors:
                 yield from ["wheel_diameter_mm"] if pair.wheel_mm else []

@@ -68,7 +68,13 @@ class Call:
 
 
 def find_argument_node(call: Call, name: str, position: int | None) -> ast.expr | None:
-    """Return the expression that a call gives for a parameter; None if it gives none, or only by `*`."""
+    """Return the expression that a call passes for a parameter; None if it passes none, or only by `*` or `**`.
+
+    Args:
+        call: The call.
+        name: The name of the parameter.
+        position: Its index among the positional parameters; None if it is keyword-only.
+    """
     for keyword in call.node.keywords:
         if keyword.arg == name:
             return keyword.value
@@ -83,7 +89,7 @@ def find_argument_node(call: Call, name: str, position: int | None) -> ast.expr 
 
 
 def find_default(function: Function, name: str) -> ast.expr | None:
-    """Return the default of a parameter; None if it has none."""
+    """Return the default value of a function's parameter as an expression; None if it has none."""
     arguments = function.args
     usual = [*arguments.posonlyargs, *arguments.args]
     pairs = [
@@ -94,5 +100,5 @@ def find_default(function: Function, name: str) -> ast.expr | None:
 
 
 def is_negated(nodes: Sequence[ast.expr]) -> bool:
-    """Return whether one of some arguments is written with a minus sign."""
+    """Return whether at least one of some arguments begins with a minus sign."""
     return any(isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) for node in nodes)

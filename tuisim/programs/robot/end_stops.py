@@ -97,18 +97,23 @@ class Mechanics:
         return max(back_deg, -_MAX_REACH_DEG) - _MARGIN_DEG, far
 
     def note_turn(self, port: str, turn: Target) -> None:
-        """Add a turn of a motor to the range that it needs: several turns may have the same direction."""
+        """Record that the program turns a motor by an angle, which extends the range that the motor needs.
+
+        Several such turns are added up, because they may have the same direction.
+        """
         self.reach_deg[port] = self.reach_deg.get(port, 0.0) + turn.deg
         self.turns.setdefault(port, []).append(turn)
 
     def note_targets(self, port: str, targets: Sequence[Target], places: Collection[float]) -> None:
-        """Extend the range that a motor needs by its target positions; all its turns must have been added before.
+        """Extend the range that a motor needs by the positions to which the program turns it.
+
+        All turns by angles must have been recorded before with `note_turn`.
 
         Args:
             port: The motor's port.
-            targets: The target positions.
-            places: Positions that the program sets for the motor, for example at an end stop: targets then are measured
-                from the end stop.
+            targets: The positions.
+            places: Values to which the program sets the motor's position, for example at an end stop, from which the
+                targets are then measured.
         """
         far = max(
             (abs(target.deg - place) for target in targets for place in places or (0.0,)), default=0
@@ -132,7 +137,7 @@ class Mechanics:
         return before < driven
 
     def turn_motor(self, port: str, gear_ratio: float, *, is_turned: bool) -> None:
-        """Convert the recorded angles of a motor from the program's angles to the angles of the motor itself.
+        """Convert the recorded range of a motor from the program's angles to angles of the motor itself.
 
         Args:
             port: The motor's port.

@@ -220,7 +220,7 @@ class Evaluation:
                     yield from self.attribute(base, name)
 
     def bases(self, scope: Scope) -> list[Value]:
-        """Return the base classes of a class, which is given by its scope."""
+        """Return the possible values of the base classes of a class, which is given by its scope."""
         assert isinstance(scope.node, ast.ClassDef) and scope.outer is not None
         bases: list[Value] = []
         for base in scope.node.bases:
@@ -229,9 +229,10 @@ class Evaluation:
         return bases
 
     def method(self, scope: Scope, name: str) -> OwnFunction | LibraryClass | None:
-        """Return the method that a class has or inherits; the library's class if that may define it.
+        """Return the method of a class: its own, or the one that it inherits.
 
-        The result is None if it has none.
+        If a base class is one of a library, which may define the method, return that class. The result is None without
+        one.
 
         Args:
             scope: The scope of the class.
@@ -412,7 +413,7 @@ class Evaluation:
 
 
 def _add_call(call: ast.Call | None, values: Iterable[Value]) -> Iterator[Value]:
-    """Yield values, with `call` added to instances that do not yet have the call through which they were created."""
+    """Yield values, in which instances that lack the call through which they were created get `call` as this call."""
     for value in values:
         yield (
             replace(value, via=call) if isinstance(value, Instance) and value.via is None else value

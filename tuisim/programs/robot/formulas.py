@@ -41,7 +41,10 @@ def find_formula_size(node: ast.AST) -> tuple[str, float] | None:
 
 
 def read_girth(product: ast.expr) -> tuple[str, float] | None:
-    """Return the diameter in π · d, or the radius in 2 · π · r, with its name; None for any other product."""
+    """Return what is multiplied by π in a product: `diameter` or `radius` as text, and the number.
+
+    The result is None if the product is not π · d or 2 · π · r.
+    """
     factors = [*_list_factors(product)]
     numbers = [
         float(factor.value)

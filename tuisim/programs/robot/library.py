@@ -35,7 +35,7 @@ class DeviceKind(StrEnum):
 
     @property
     def is_motor(self) -> bool:
-        """Whether the device is connected to an output port."""
+        """Whether the device is a motor, which is connected to an output port."""
         return self in (DeviceKind.LARGE, DeviceKind.MEDIUM, DeviceKind.MOTOR)
 
 
@@ -267,7 +267,7 @@ def parse_port(text: object) -> str:
 
 
 def find_driver_kind(text: object) -> DeviceKind | None:
-    """Return the kind of device of a driver's name; None if it is not simulated."""
+    """Return the kind of device for a driver's name in ev3dev, such as `lego-ev3-us`; None if it is not simulated."""
     return _DRIVERS.get(text) if isinstance(text, str) else None
 
 

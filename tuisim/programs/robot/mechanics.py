@@ -144,7 +144,7 @@ class _MechanicsReader:
             self.places.setdefault(port, set()).update(self._find_numbers(value, scope))
 
     def _read_forwards(self, scope: Scope) -> None:
-        """Record the motors that a function for driving forwards, by its name, turns only backwards."""
+        """Record each motor that a function for driving forwards, by its name, only turns backwards."""
         speeds: dict[str, list[float]] = {}
         where: dict[str, Where] = {}
         for node in scope.body:
@@ -212,7 +212,8 @@ class _MechanicsReader:
             base: The expression for the motor.
             scope: The scope that contains it.
             node: The call or test that shows the end stop.
-            ways: For each run of a call, whether it moves the motor forwards; None to use the motor's other moves.
+            ways: For each execution of a call, whether it moves the motor forwards; None to take this from the motor's
+                other moves.
         """
         if ways is None and scope.prints(node):
             return
@@ -261,7 +262,13 @@ class _MechanicsReader:
     def _find_ways(
         self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope
     ) -> Iterator[bool]:
-        """Yield for each endless move of motors in some nodes whether it is forwards."""
+        """Yield for each endless move of some motors in some nodes whether it is forwards.
+
+        Args:
+            nodes: The nodes of the syntax tree.
+            ports: The ports of the motors.
+            scope: The scope that contains the nodes.
+        """
         ports = [*ports]
         for call in self._find_calls(nodes, ports, self.moves.endless, scope):
             named = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.speeds]
@@ -303,7 +310,10 @@ class _MechanicsReader:
     # Touch sensors
 
     def _read_press(self, statements: list[ast.stmt], scope: Scope) -> None:
-        """Record a motor that runs until a touch sensor is pressed, if no other motor moves before."""
+        """Record that a motor runs until a touch sensor is pressed, if the last of some statements waits for that.
+
+        It is recorded only if no other motor moves in these statements.
+        """
         last = statements[-1]
         base = find_awaited_touch(last)
         if base is None:

@@ -34,7 +34,7 @@ _MAX_WAYS = 40
 
 @dataclass(frozen=True, slots=True)
 class Where:
-    """A line of a program, with its file."""
+    """The place of something in a program: a file and a line number."""
 
     file: str
     line: int
@@ -193,10 +193,9 @@ class _Reader:
     def _list_ways(
         self, name: str, call: Call, whole: Evaluation
     ) -> Iterator[tuple[Evaluation, Call | None]]:
-        """Yield an evaluation for each call of the function in which a device is created, with that call.
+        """Yield an evaluation for each call of the function in which a device is created, and that call.
 
-        If the function has only one call or none, or too many calls, yield only the evaluation of the whole program,
-        and None.
+        If the function is called at most once, or too often, yield only the evaluation of the whole program, and None.
 
         Args:
             name: The library class of the device.
@@ -221,7 +220,12 @@ class _Reader:
     # Calls
 
     def _sort(self, call: Call, calls: dict[Function, list[Call]]) -> None:
-        """Record the callee of a call: a function or class of the program, or a class of the library."""
+        """Record a call under the function or class of the program, or the class of the library, that it calls.
+
+        Args:
+            call: The call.
+            calls: The calls of each function of the program, to which the call is added.
+        """
         match call.node.func:
             case ast.Attribute(value=base, attr="__init__"):
                 for value in self.evaluation.values(base, call.scope):
@@ -237,7 +241,13 @@ class _Reader:
                     calls.setdefault(node, []).append(replace(call, is_bound=is_bound))
 
     def _sort_init(self, value: Value, call: Call, calls: dict[Function, list[Call]]) -> None:
-        """Record the class whose `__init__` a call such as `super().__init__` or `Base.__init__` runs."""
+        """Record a call such as `super().__init__()` or `Base.__init__(self)` as a call of the class.
+
+        Args:
+            value: The object before `.__init__`.
+            call: The call.
+            calls: The calls of each function of the program, to which the call is added.
+        """
         match value:
             case Parent(of=scope):
                 for base in self.evaluation.bases(scope):
@@ -361,14 +371,17 @@ class _Reader:
             yield self._mount(placed, call) if kind.is_motor else placed
 
     def _mount(self, motor: Mention, call: Call) -> Mention:
-        """Return a motor with the direction and the gears from the call that creates it."""
+        """Return a motor with the direction and the gear ratio that the call which creates it gives."""
         is_turned = library.INVERSED in (
             self.evaluation.find_argument(call, library.DIRECTION, 1) or ()
         )
         return replace(motor, is_turned=is_turned, gear_ratio=self._read_gears(call))
 
     def _read_gears(self, call: Call) -> float:
-        """Return a motor's turns per turn of the axle that it drives, from a list of gears, or a list of lists."""
+        """Return a motor's turns per turn of the axle that it drives, from the list of gears in a call.
+
+        1.0 without gears.
+        """
         parts = [*self._flatten(self.evaluation.find_argument(call, library.GEARS, 2) or ())]
         trains = [
             [*self._flatten([part])] for part in parts if isinstance(part, SourceCollection)
@@ -395,7 +408,14 @@ class _Reader:
     def _find_ports(
         self, call: Call, name: str, position: int, names: tuple[str, ...]
     ) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """Yield the ports that an argument can be, each with the program's names for the device."""
+        """Yield the ports that an argument of a call can be, each with the program's names for the device there.
+
+        Args:
+            call: The call that creates the device.
+            name: The name of the parameter.
+            position: Its index.
+            names: The names for the object that the call creates.
+        """
         node = find_argument_node(call, name, position)
         if node is None:
             values: Iterable[Value] = self.evaluation.find_argument(call, name, position) or ()
@@ -512,7 +532,14 @@ class _Reader:
     def _find_ends(
         self, known: PairClass, call: Call, names: tuple[str, ...], devices: Sequence[Mention]
     ) -> Iterable[tuple[str, str]]:
-        """Return the ports of the left and the right motor of each pair that a call can create."""
+        """Return the ports of the left and the right motor of each pair that a call can create.
+
+        Args:
+            known: The library class of the pair.
+            call: The call.
+            names: The program's names for the pair.
+            devices: The devices that the program creates.
+        """
         if known.takes_motors:
             left, right = (
                 self._find_driven(call, known.left, 0, devices),
@@ -633,7 +660,10 @@ def _needs_motors(name: str) -> bool:
 
 
 def _is_maker(call: ast.Call | None, owner: Scope | None, value: Instance) -> bool:
-    """Return whether a call creates an instance: it is the instance's call, or calls `__init__` of class `owner`."""
+    """Return whether a call creates an instance.
+
+    It does if it is the instance's own call, or if it calls `__init__` in the class whose scope is `owner`.
+    """
     if value.call is not None and value.call is call:
         return True
     from_init = (

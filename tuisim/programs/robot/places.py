@@ -25,7 +25,10 @@ _ROW = (Side.LEFT, Side.MIDDLE, Side.RIGHT)
 
 
 def add_sides(mentions: Sequence[Mention]) -> list[Mention]:
-    """Return mentions, in which three colour sensors that one line creates without sides are left, centre and right."""
+    """Return the mentions.
+
+    Three colour sensors that one line creates, without sides in names, become left, centre and right.
+    """
     calls = [
         mention.call for mention in mentions if mention.kind is DeviceKind.COLOR and mention.port
     ]
@@ -43,9 +46,9 @@ def add_sides(mentions: Sequence[Mention]) -> list[Mention]:
 
 
 def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorSpec]) -> bool:
-    """Return whether, by its names, one of a program's colour sensors is on another side than in the usual robot.
+    """Return whether a program's names put one of its colour sensors on another side than in the usual robot.
 
-    Names with a side for only some of the usual sensors are ignored, unless there is a new colour sensor.
+    Unless the program has an additional colour sensor, names count only if all of them say a side.
 
     Args:
         mentions: The devices that the program creates, by port.

@@ -15,7 +15,7 @@ _PORT = re.compile(r"(?:ev3-ports:)?(out[A-D])")
 
 
 def add_port_texts(mentions: Mentions, modules: Iterable[Module]) -> Mentions:
-    """Return a program's mentions; if the program creates no device, add motors on the ports that its texts name."""
+    """Return the mentions of a program; if it creates no device, with a motor for each port that texts in it name."""
     if mentions.devices or mentions.pairs:
         return mentions
     motors: dict[str, Mention] = {}

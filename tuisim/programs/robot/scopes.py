@@ -92,9 +92,10 @@ class Scope:
         return []
 
     def list_items(self, node: ast.expr) -> Iterator[ast.expr]:
-        """Yield an expression, and the motors of pairs that it stands for in turn if it is the variable of a loop.
+        """Yield an expression and, for a loop variable, also the motors of pairs that it stands for in turn.
 
-        They are attributes in a list, or for all of a pair, as in `for motor in tank.motors.values()`, the pair.
+        These are the attributes in a list over which the loop goes. For `for motor in tank.motors.values()`, the pair
+        is yielded for its motors.
         """
         yield node
         for binding in self.names.get(node.id, ()) if isinstance(node, ast.Name) else ():

@@ -66,7 +66,7 @@ class Module:
     is_package: bool = False
 
     def absolute(self, name: str | None, level: int) -> str:
-        """Return the absolute name of a module that this one imports.
+        """Return the absolute name of a module from an import in this module.
 
         Args:
             name: The name after `from`; None for none.
@@ -174,7 +174,7 @@ class _Search:
 
 @lru_cache(16)
 def _list_imported(module: Module) -> list[str]:
-    """Return the names in the imports of a module that can be modules, packages before the modules in them."""
+    """Return the names of all modules that the imports of a module may mean, each package before the modules in it."""
     imported: list[str] = []
     for node in ast.walk(module.tree):
         match node:
@@ -191,9 +191,9 @@ def _list_imported(module: Module) -> list[str]:
 
 
 def _list_packages(name: str) -> Iterator[str]:
-    """Yield the names of the packages in which a module is, the outermost first, and then its own name.
+    """Yield the names of the packages that contain a module, the outermost first, and then the module's own name.
 
-    An empty name, or one that is too long, yields nothing.
+    If the module's name is empty or too long, nothing is yielded.
     """
     parts = name.split(".") if 0 < len(name) <= MAX_NAME_CHARACTERS else []
     yield from (".".join(parts[:end]) for end in range(1, len(parts) + 1))
@@ -219,7 +219,10 @@ EV3_MODULES = frozenset({"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3de
 
 
 def find_hub(modules: dict[str, Module]) -> str:
-    """Return the hub, one of `HUBS`, for which a program or one of its own modules is; empty for the EV3 or no hub."""
+    """Return the hub, one of `HUBS`, for which a program or one of its own modules is.
+
+    Empty for the EV3, or if unknown.
+    """
     names = _list_all_imported(modules)
     if not EV3_MODULES.isdisjoint(names):
         return ""
@@ -254,7 +257,7 @@ def list_first_folders(program: Program) -> list[str]:
 
 
 def find_added_folders(tree: ast.Module, file: str) -> list[str]:
-    """Return the folders that a module adds to `sys.path`.
+    """Return the folders that a module adds to `sys.path`, as far as its text shows them.
 
     Args:
         tree: The module.

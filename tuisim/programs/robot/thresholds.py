@@ -65,7 +65,10 @@ _READ = re.compile("|".join(rf"\.{read}\b" for read in LightRead if not read.is_
 
 
 def find_light_read(text: str) -> LightRead:
-    """Return which reading of a colour sensor the text of a program has first; percent if it has none."""
+    """Return the kind of a colour sensor's reading that comes first in the text of a program.
+
+    Percent if it has none.
+    """
     match = _READ.search(text)
     return LightRead(match[0][1:]) if match else LightRead.PERCENT
 
@@ -127,7 +130,7 @@ def _find_thresholds(
 
 
 def _list_reads(mentions: Mentions) -> Iterator[tuple[int, str, LightRead]]:
-    """Yield each reading of a colour sensor in the text: its line, the sensor's port, and which reading it is."""
+    """Yield each reading of a colour sensor in the text: its line, the sensor's port, and the kind of the reading."""
     for scope in mentions.scopes:
         for node in scope.body if not scope.module.name else ():
             if isinstance(node, ast.Attribute) and node.attr in _READS:
@@ -151,7 +154,10 @@ def _read_mentions(program: Program) -> Mentions | None:
 
 
 def _find_comparisons(mentions: Mentions) -> Iterator[tuple[str, ProgramThreshold]]:
-    """Yield each comparison of a reading with a constant, with the sensor's port, empty if that is unknown."""
+    """Yield the sensor's port and the threshold for each comparison of a reading with a constant.
+
+    The port may be empty.
+    """
     for scope in mentions.scopes:
         if scope.module.name:
             continue

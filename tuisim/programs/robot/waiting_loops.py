@@ -36,7 +36,10 @@ def find_state_test(node: ast.expr) -> StateTest | None:
 
 
 def find_stopped_motors(loop: ast.While) -> Iterator[tuple[ast.expr, bool]]:
-    """Yield the motor that runs in a loop until it is slow or stands still, and whether that is certain."""
+    """Yield each motor for which a loop waits until it is slow or stands still, and whether this is certain.
+
+    It is certain if the loop compares positions; a comparison of a speed may have another purpose.
+    """
     match loop.test:
         case ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.NotEq()], comparators=[right]):
             pass
@@ -89,7 +92,7 @@ def _find_ends(loop: ast.While) -> Iterator[ast.expr]:
 
 
 def _find_released(test: ast.expr) -> ast.expr | None:
-    """Return the touch sensor that is not pressed if a test is true; None for other tests."""
+    """Return the touch sensor for which a condition is true while it is not pressed; None for other conditions."""
     match test:
         case ast.UnaryOp(op=ast.Not(), operand=value):
             return _find_pressed(value)
@@ -107,7 +110,7 @@ def _find_released(test: ast.expr) -> ast.expr | None:
 
 
 def _find_pressed(test: ast.expr) -> ast.expr | None:
-    """Return the touch sensor that is pressed if a test is true; None for other tests."""
+    """Return the touch sensor for which a condition is true while it is pressed; None for other conditions."""
     match test:
         case (
             ast.Attribute(value=base, attr="is_pressed")

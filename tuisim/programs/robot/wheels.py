@@ -186,7 +186,14 @@ def _choose_usual(
     usual: RobotSpec,
     other_tools: Collection[str],
 ) -> WheelMotors:
-    """Return the usual ports of the wheels, or other ports if motors of the program take the usual ones."""
+    """Return the usual ports of the wheels; if other parts of the program are on them, return other ports.
+
+    Args:
+        devices: The devices that the program creates.
+        kinds: The kind of each motor, by port.
+        usual: The usual robot.
+        other_tools: Ports of further motors that drive no wheel.
+    """
     ports = (usual.left_port, usual.right_port)
     sensors = {device.port for device in devices if not device.kind.is_motor}
     if (
@@ -243,10 +250,10 @@ def add_others(kinds: Mapping[str, DeviceKind], mentions: Mentions) -> dict[str,
 def _add_medium(
     kinds: Mapping[str, DeviceKind], mentions: Mentions, others: list[str]
 ) -> dict[str, DeviceKind]:
-    """Return the kinds of motors, in which `others` of unknown kind become medium unless their names say large.
+    """Return the kinds of motors by port.
 
-    This is done only for Pybricks on an EV3, and only for up to `_MAX_MEDIUM` others, as EV3 sets have few medium
-    motors.
+    Those of `others` whose kind is unknown become medium unless a name says large. This is done only for Pybricks on an
+    EV3, and only for up to `_MAX_MEDIUM` others, as EV3 sets have few medium motors.
 
     Args:
         kinds: The kind of each motor, by port.
@@ -281,9 +288,9 @@ class Size:
 
 
 def find_sizes(mentions: Mentions) -> dict[str, Size | None]:
-    """Return the wheels' diameter and distance in mm, by field of `RobotSpec`, from numbers named like these sizes.
+    """Return the diameter of the wheels and their distance, in mm, by field of `RobotSpec`.
 
-    A size is None if the program does not name it, or not clearly.
+    They are numbers in the program whose names say this. A size is None if it is missing or unclear.
     """
     named = [*_find_named(mentions)]
     wheels = [pair for pair in named if not is_spacing(pair[0])]
@@ -366,7 +373,12 @@ def _read_number(value: object) -> float:
 
 
 def _pick_only(named: list[tuple[str, Size]], limits: tuple[float, float]) -> Size | None:
-    """Return the size in mm if all named sizes agree; None if they differ, or if the size is not within the limits."""
+    """Return the size in mm on which all sizes with names agree; None if they differ, or if none is within the limits.
+
+    Args:
+        named: The sizes in the unit of their names, each with its name.
+        limits: The least and the greatest possible size in mm.
+    """
     low, high = limits
     sizes: list[Size] = []
     for name, size in named:

@@ -124,7 +124,7 @@ def is_radius(name: str) -> bool:
 
 
 def is_girth(name: str) -> bool:
-    """Return whether a name means a wheel's circumference, or its distance per turn such as `CM_PER_ROTATION`."""
+    """Return whether a name means a wheel's circumference, or the distance per turn as in `CM_PER_ROTATION`."""
     parts = {*_split_name(name)}
     way = parts & _UNITS_MM.keys() or parts & _APART
     is_way_per_turn = bool(parts & _PER and parts & _PER_TURN and way)
@@ -132,9 +132,9 @@ def is_girth(name: str) -> bool:
 
 
 def find_girth(name: str, number: float) -> float:
-    """Return a wheel's circumference from a number with a name such as `MM_PER_DEGREE` or `DEGREES_PER_CM`; else 0.
+    """Return a wheel's circumference from a number whose name is such as `MM_PER_DEGREE` or `DEGREES_PER_CM`.
 
-    The result is in the name's unit of length.
+    The result is in the unit of length in the name; 0 for other names.
     """
     parts = _split_name(name)
     if len(parts) != 3 or parts[1] not in _PER or not number:
@@ -145,9 +145,13 @@ def find_girth(name: str, number: float) -> float:
 
 
 def _is_alone(name: str, measure: frozenset[str]) -> bool:
-    """Return whether a name consists of one long word for a measure and perhaps a unit, such as `diameter_mm`.
+    """Return whether a name is only one long word for a measure, perhaps with a unit, as `diameter_mm`.
 
-    The measure must then be that of a wheel.
+    No other word then says whose measure it is: that of a wheel is assumed.
+
+    Args:
+        name: The name.
+        measure: The words for the measure.
     """
     parts = {*_split_name(name)} - _UNITS_MM.keys()
     return len(parts) == 1 and parts <= measure and len(*parts) >= _LONG_WORD
