@@ -148,7 +148,7 @@ class ActionHost(DOMNode):
     """The actions by id."""
 
     def take_keys(self, actions: Mapping[str, Action[Any, Any]]) -> None:
-        """Use another table of actions, in which only keys differ: bind the new keys instead of the old ones."""
+        """Use another table of the same actions, in which only keys differ: bind the new keys in place of the old."""
         changed = [
             action for name, action in actions.items() if action.key != self.ACTIONS[name].key
         ]
@@ -343,7 +343,7 @@ class KeyFooter(ActionWords):
 
     @on(events.Click)
     async def press_key_of_field(self, event: events.Click) -> None:
-        """Press a key of the focused text field if the user has clicked the key's word in the footer; else do nothing.
+        """If a key of the focused text field was clicked in the footer, press that key.
 
         A phone may lack this key.
         """

@@ -210,7 +210,7 @@ class LabApp(PanelMessages):
         """How the run ended, for the output panel once it has shown every row."""
 
     def _take_config(self, config: UserConfig) -> tuple[ConfigError, ...]:
-        """Bind the user's own keys; return the errors in the user's settings."""
+        """Bind the keys in the user's settings; return the errors in these settings."""
         problems = [*config.problems]
         try:
             self.take_keys(apply_keys(ACTIONS, config))

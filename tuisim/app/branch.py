@@ -95,9 +95,9 @@ class Branch:
 
 
 def find_first_difference(before: Recording, now: Recording, tick: int) -> int | None:
-    """Return the first tick up to `tick` at which the worlds of two runs differ; None if they do not differ.
+    """Return the first tick, up to `tick`, at which the worlds of two runs differ; None if they do not differ.
 
-    If one run ends before they differ, the result is the first tick that this run lacks.
+    If a run has ended before they differ, the result is the first tick that this run does not have.
     """
     old, new = (run.telemetry.array()[: tick + 1] for run in (before, now))
     both = min(len(old), len(new))

@@ -148,9 +148,9 @@ class DebugController:
 
     @property
     def _count_words(self) -> str:
-        """Return the number of active breakpoints in words, with the key of their dialog.
+        """The number of active breakpoints as text, with the key that lists them.
 
-        The result is empty if all of them are on lines, where the code panel marks them.
+        The text is empty if all active breakpoints are on lines, which the code panel marks.
         """
         active = [entry for entry in self.breaks if not entry.disabled]
         if all(entry.find_line() for entry in active):
@@ -158,13 +158,13 @@ class DebugController:
         return self._app.fill_keys(f"{counted(len(active), 'breakpoint')}: {{breaks}}")
 
     def toggle_line(self, line: int, which: str = "") -> None:
-        """Set or remove the breakpoint on a line, or enable a disabled one, and show a notice about that.
+        """Set a breakpoint on a line, remove it, or enable it if it is disabled; say so in a notice.
 
-        A line without code stands for the next line of code.
+        If the line has no code, use the next line of code.
 
         Args:
-            line: From 1.
-            which: Which line that is, in words.
+            line: The line of the edited text, from 1.
+            which: In words, which line this is, for the notice.
         """
         code_line = line if line in break_lines(self.breaks) else find_code_line(self.lines, line)
         if not code_line:
@@ -350,11 +350,10 @@ class DebugController:
             self._follow(Position(timeline.at))
 
     def _has_past_variables(self) -> bool:
-        """Return whether the program is to run again up to a past instant in view, to get the values of its variables.
+        """Return whether to run the program again up to the past instant in view, for its variables there.
 
         The debug panel needs these values. If only the code panel is shown, the program runs again only for a run of
-        this
-        session: the program of a stored run may be somebody else's.
+        this session: the program of a stored run may be somebody else's.
         """
         run = self._run_controller.run
         recording = self._run_controller.timeline.recording
@@ -505,9 +504,10 @@ class DebugController:
             self._app.say("This line is not in the running text")
 
     def go_on(self, command: Message) -> None:
-        """Send a command that continues the program until it pauses again; without a run, start the program first.
+        """Send a command that continues the program until it pauses again.
 
-        The command waits until an earlier step has ended. If a past instant is in view, it steps to a recorded line.
+        The command waits until an earlier step has ended. Without a run, the program is started first. If a past
+        instant is in view, go to a recorded line instead.
         """
         if self.is_away:
             self._step_past(command)
@@ -545,7 +545,7 @@ class DebugController:
         self.show()
 
     def step_back(self) -> None:
-        """Go back by one executed line; if an earlier step is still being computed, wait for that first."""
+        """Go back by one executed line; if an earlier step is still being computed, do so after that step."""
         if not self.replay.busy:
             self._forget_steps()
             self._go_back(1)

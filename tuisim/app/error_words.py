@@ -64,7 +64,7 @@ def fit_words(words: str, width: int) -> str:
 def find_remedy(words: str) -> str:
     """Return what the user can do in the app about an error, with ids of actions in braces.
 
-    For parts that the robot lacks, this is the choice of another robot; for any other error, the key that goes to the
+    If the robot lacks parts, this is to choose another robot; for any other error, it is the key that goes to the
     error.
     """
     if (parts := _list_parts(words)) is None:

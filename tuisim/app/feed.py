@@ -78,10 +78,10 @@ class Feed:
         return self._charted + POINTS_A_FEED < self.recording.telemetry.count
 
     def begin_again(self) -> bool:
-        """Restart the chart at the first tick if a part was plugged in, which adds columns; return whether this was so.
+        """If a part was plugged in since the last call, which adds columns, restart the chart at the first tick.
 
         Returns:
-            Whether a part was plugged in since the last call.
+            Whether a part was plugged in.
         """
         if self._parts == len(self.recording.plugged):
             return False
@@ -94,9 +94,9 @@ class Feed:
         self._charted = 0
 
     def chart_series(self, mat: Field) -> Series:
-        """Return the telemetry of the ticks since the last call, as times in s and values by column.
+        """Return the telemetry of the ticks since the last call: times in s and values, by column.
 
-        If there are many new ticks, a call returns only the first of them, thinned out.
+        If there are many new ticks, a call returns only the first part of them, and not every tick.
 
         Args:
             mat: The mat that the sensors read.
@@ -163,11 +163,11 @@ def trace_run(run: Recording, tick: int) -> Points:
 def _count_jumps(
     records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None
 ) -> npt.NDArray[np.int64]:
-    """Return for each record how often the robot was placed elsewhere until then.
+    """Return for each record how often the robot was moved by hand up to it, shape (n,).
 
     Args:
         records: Consecutive records.
-        before_mm: The position in the record before them; None if there is none.
+        before_mm: The position in the record before them; None if there is none, which counts as a move.
     """
     before_x, before_y = before_mm or (np.nan, np.nan)
     way = np.hypot(
@@ -267,9 +267,9 @@ class PanelFeed:
         )
 
     def _send_telemetry(self, feed: Feed) -> None:
-        """Pass telemetry on to the chart as often as the chart is drawn.
+        """Send new telemetry to the chart, at most as often as the chart is drawn.
 
-        There is no delay if much telemetry waits, or the run is not running.
+        If the run does not go on, or if much telemetry waits, it is sent without a delay.
         """
         now_s = time.monotonic()
         is_soon = now_s < self._charted_s + CHART_PERIOD_S and not feed.is_far_behind
@@ -307,9 +307,9 @@ class PanelFeed:
             self._show_past_rows(recording, count)
 
     def _count_rows(self) -> int | None:
-        """Return the number of output rows up to the past instant in view, even to an earlier line of its tick.
+        """Return the number of output rows up to the past instant in view; None at the newest instant.
 
-        None at the newest instant.
+        An earlier line of the newest tick also is a past instant.
         """
         timeline = self._runs.timeline
         if (recording := timeline.recording) is None:

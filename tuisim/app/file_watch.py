@@ -35,7 +35,7 @@ class FileWatch:
         }
 
     def note(self, path: Path) -> None:
-        """Store the present state of a file that the app itself has written, so that `changed` does not return it."""
+        """Store the state of a file after the app itself has written it, so that `changed` does not return it."""
         if path in self._known:
             self._known[path] = _stamp(path)
 

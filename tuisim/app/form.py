@@ -54,7 +54,7 @@ class _Control(Widget, can_focus=True):
 
 
 class Choice(_Control):
-    """A widget with one of several words; ← and → or a click change the word."""
+    """A widget that shows one of several words; the user changes it with ← and →, or with a click."""
 
     DEFAULT_CSS = "Choice { height: 1; width: 1fr; }"
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -64,7 +64,7 @@ class Choice(_Control):
 
     @dataclass
     class Stepped(Message):
-        """Posted when the user asks for the choice `by` steps after the present choice."""
+        """Posted when the user asks for another word: the one `by` words after the present one."""
 
         choice: Choice
         by: int
@@ -100,7 +100,7 @@ class FormPanel(Vertical):
 
     @on(Input.Changed)
     def _take_back(self, event: Input.Changed) -> None:
-        """Remove the error when the user edits the wrong value."""
+        """Remove the error from the last line, because the user edits the wrong value."""
         event.stop()
         if self.has_class("-wrong"):
             event.input.remove_class("wrong")
@@ -108,7 +108,7 @@ class FormPanel(Vertical):
 
 
 class EntryPanel(FormPanel):
-    """A panel with text fields; a field is applied by Enter, and when it loses the focus."""
+    """A panel with text fields; the value of a field is applied on Enter, and when the field loses the focus."""
 
     @on(Input.Submitted)
     def _apply_submitted(self, event: Input.Submitted) -> None:
@@ -124,12 +124,12 @@ class EntryPanel(FormPanel):
 
 
 class Row(Vertical):
-    """One row of a form: a label and a field, or a choice of words.
+    """One row of a form: a label, and a text field or a choice of words.
 
     Args:
-        field: Id of the edited field, which identifies the row.
-        label: Its label; empty gives the field the whole width.
-        chosen: Whether it has a choice instead of a text field.
+        field: Id of the field that the row edits.
+        label: The label; if it is empty, the field has the whole width.
+        chosen: Whether the row has a choice instead of a text field.
     """
 
     DEFAULT_CSS = """

@@ -94,7 +94,7 @@ class GoalsController:
         self.change(file)
 
     def is_of_task(self, recording: Recording) -> bool:
-        """Return whether a run had the same mat and the same start pose as the next run."""
+        """Return whether a run had the mat and the start pose of the next run, so that the goals apply to it."""
         was = recording.spec.world
         now = self._run_controller.next_run.spec.world
         return (was.background, was.start) == (now.background, now.start)
@@ -176,9 +176,10 @@ class GoalsController:
 def _judge_run(
     goals: Sequence[Goal], folder: Path, live: bool, field: Field | None
 ) -> tuple[tuple[Judgement, ...], float] | None:
-    """Return the judgements of a run, and the seconds that judging took; None if a live run ended meanwhile.
+    """Return the judgements of a run, and the wall-clock seconds that judging took.
 
-    The run is loaded from its folder: the app continues to read its own views of the recording.
+    The result is None if a live run has ended meanwhile, but how it ended is not stored yet. The run is loaded from its
+    folder, because the app continues to read its own views of the recording.
     """
     from tuisim.tasks.goals.judge import judge
 

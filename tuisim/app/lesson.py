@@ -304,9 +304,9 @@ class LessonController:
         )
 
     def _follow(self, change: Change) -> None:
-        """Act on a change of the session: go on to the next step, or save the session and update the panel.
+        """Do what a change of the session requires: begin the next step, or save the session and update the panel.
 
-        A change may also require to try the program in other worlds, which is done in the background.
+        The change can also require to try the program in other worlds, which is done in the background.
         """
         session = self.session
         if session is None or change is Change.NONE:

@@ -519,12 +519,12 @@ class Loader:
         source: ProgramSource | None = None,
         gone: Iterable[str] = (),
     ) -> None:
-        """Apply the changed settings of a file; for its other settings, the user's own changes stay.
+        """Apply the changed settings of a file; the user's own changes of other settings stay.
 
         Args:
-            differences: The new values.
-            program: The program from now on.
-            source: The program with its magic line, if its text has changed.
+            differences: The new values of the changed settings.
+            program: The program of the next run.
+            source: The program with its magic line, if its text has changed; else None.
             gone: The settings that the file no longer has.
         """
         plan = plans.apply_choices(self._run_controller.next_run, differences)
@@ -585,7 +585,10 @@ def _list_panels(magic: Mapping[str, Any]) -> dict[str, bool]:
 
 
 def _find_differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings of a file that differ from those before; a removed one has its default."""
+    """Return the settings of a file whose values have changed, with the new values.
+
+    A removed setting has its default.
+    """
     bare = Settings()
     removed = {path: bare[path] for path in before.keys() - now.keys() if path in plans.WORLD_PATHS}
     return removed | {

@@ -111,7 +111,7 @@ class NoticeRow(Static):
 
 
 class Notices:
-    """The notices of an app. A new one replaces the visible one, but waits while that is an error not read yet.
+    """The notices of an app. A new notice replaces the visible one; if that is an unread error, the new one waits.
 
     Args:
         app: The notices are shown on its topmost screen.

@@ -156,7 +156,8 @@ class PanelArea(Container):
     def toggle(self, panel: str) -> None:
         """Show a hidden panel, or hide a shown panel.
 
-        An area with room for one panel shows the panel in place of the present one, or the world in place of the panel.
+        In an area with room for only one panel, show the panel instead of the present one; if it is shown, show the
+        world.
         """
         show = self.is_single or not self.is_shown(panel) or bool(self.alone)
         self.alone = ""
@@ -172,12 +173,12 @@ class PanelArea(Container):
         self._chosen[panel] = show
 
     def can_take_focus(self, panel: str) -> bool:
-        """Return whether a panel is shown beside others, was not just opened by its key, and can have the focus."""
+        """Return whether a panel can have the focus, is beside other panels, and was not just opened by its key."""
         beside = self.is_shown(panel) and not self.alone and not self.is_single
         return beside and panel != self.front and self._can_focus(panel)
 
     def open(self, panel: str) -> None:
-        """Show a panel in this session only: it is not stored for the next start."""
+        """Show a panel for this session: that it is shown is not stored for the next start."""
         if self.is_single:
             self.front = panel
             self.lay_out()
@@ -185,9 +186,9 @@ class PanelArea(Container):
             self.request({panel: True})
 
     def show_next_panel(self, by: int) -> str:
-        """Return the id of the panel `by` panels after the focused one, empty without one.
+        """Return the id of the panel that is `by` panels after the focused one; empty if there is none.
 
-        An area with room for one panel also shows that panel.
+        In an area with room for only one panel, count from the shown panel, and show the result.
         """
         if self.is_single:
             usual = choose_panels(self.preset, self._asked, self.size.width, self.size.height)

@@ -42,7 +42,7 @@ class ReasonTour:
     def has_gone_wrong(self, runs: RunController) -> bool:
         """Return whether the run in view is known to have gone wrong, or repeats the earlier run beside it.
 
-        A repetition may differ from the earlier run, which is a reason too.
+        The repetition may differ from the earlier run, which is also a reason.
         """
         recording = runs.timeline.recording
         earlier = runs.earlier
@@ -65,7 +65,7 @@ class ReasonTour:
     ) -> None:
         """Store the reasons of a run; do nothing if another run has begun meanwhile.
 
-        If the run has gone on since the reasons before, the tour begins again with the first reason.
+        If the run has gone on since the former reasons were found, the tour begins again with the first reason.
         """
         if self._of is recording:
             if recording.newest != self._newest:

@@ -95,7 +95,10 @@ class RunController:
 
     @property
     def spec(self) -> RunSpec:
-        """The specification in view: of the live run or the run of a past instant, else of the next run."""
+        """The specification of the live run, or of the run of a past instant in view.
+
+        Otherwise that of the next run.
+        """
         recording = self.timeline.recording
         return recording.spec if recording and (self.in_run or self.in_past) else self.next_run.spec
 
@@ -217,9 +220,9 @@ class RunController:
         return self.timeline.record() or recording.telemetry.last()
 
     def _find_moment(self, record: TickRecord | None) -> tuple[Instant, int, bool]:
-        """Return the instant of a record, the current line of the program (0 for none), and whether the pen is down.
+        """Return the instant of a record, the line that runs then (0 for none), and whether the pen is down.
 
-        For None, return the instant and the pen of the robot before the next run.
+        If the record is None, the instant and the pen are those of the robot before the next run.
         """
         recording = self.timeline.recording
         if record is None or recording is None:
@@ -240,15 +243,19 @@ class RunController:
         return instant, line, down
 
     def _find_present(self, record: TickRecord) -> Present | None:
-        """Return what the program would read at the pause in view; None if there is none at a record."""
+        """Return what the program would read at the pause in view.
+
+        None if it is not paused at the instant of a record.
+        """
         pause = self.shown_pause
         is_there = pause is not None and (pause.past or self._is_paused)
         return pause.find_present(record, self.spec.robot) if pause and is_there else None
 
     def _find_pressed(self, record: TickRecord | None) -> frozenset[str]:
-        """Return the buttons that the user holds down; without any, or in the past, the buttons pressed at a record.
+        """Return the buttons that the user holds down.
 
-        The set is empty if no instant of a run is in view.
+        If the user holds none, or the past is in view, return those that were pressed at a record. The set is empty if
+        no instant of a run is in view.
         """
         recording = self.timeline.recording
         if record is None or recording is None or not self._is_of_run:
@@ -266,9 +273,9 @@ class RunController:
         )
 
     def find_mat(self, spec: RunSpec) -> Field | None:
-        """Return the mat that is prepared for a specification: it may be that of the next run or of the run in view.
+        """Return the prepared mat that is the one of a specification: that of the next run, or that of the run in view.
 
-        The result is None if neither mat is.
+        The result is None if it is neither of them.
         """
         recording = self.timeline.recording
         mats = (self.mat, self._mat_of_run)

@@ -117,7 +117,7 @@ class Snapshot:
     def list_turns(self) -> list[tuple[float, float]]:
         """Return position in degrees and speed in degrees/s of each motor, as the program reads them.
 
-        The wheel motors come first.
+        The wheel motors come first, the left one before the right one.
         """
         now = self.instant
         turns = (
@@ -213,13 +213,17 @@ class PauseView:
 
     @property
     def line(self) -> tuple[int, int]:
-        """The tick, and the line of the program; 0 if it is one of a module."""
+        """The tick of the pause, and the line of the program.
+
+        The line is 0 if the program is paused in another module.
+        """
         return self.paused.tick, 0 if self.paused.file else self.paused.line
 
     def find_present(self, record: TickRecord, robot: RobotSpec) -> Present | None:
-        """Return what the program would read there; None if that is unknown, or another instant than that of a record.
+        """Return what the program would read at the pause; None if that is unknown.
 
-        After an action of the user, only the record is right.
+        It is also None if the record is another instant than the pause, or the user has changed something since the
+        pause.
         """
         present = self.inspected.present
         key = record.tick, record.actions

@@ -38,7 +38,7 @@ def build_wav(tones: Sequence[Sequence[float]]) -> bytes:
     """Return tones as a mono WAV file of at most `MAX_SOUND_S` seconds.
 
     Args:
-        tones: For each, Hz (0 is silence), ms, and ms of the pause after it.
+        tones: For each tone its frequency in Hz (0 is silence), its length in ms, and the pause after it in ms.
     """
     samples = array("h")
     room = int(MAX_SOUND_S * RATE_HZ)
@@ -114,9 +114,9 @@ class Voice:
 
 
 def _start_player(command: Sequence[str], data: bytes) -> subprocess.Popen[bytes] | None:
-    """Start a program that reads data from its standard input, and return it; None if it cannot be started.
+    """Start a program that plays data from its standard input; return its process without waiting for its end.
 
-    Does not wait for the program.
+    The result is None if it cannot be started.
     """
     read, write = os.pipe()
     try:

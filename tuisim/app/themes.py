@@ -156,12 +156,12 @@ class ThemeColors(LineFilter):
         return style + changed
 
     def _make_legible(self, rgb: Rgb, on: Rgb, is_line: bool) -> Rgb:
-        """Return a colour moved toward black or white until it is legible on a background.
+        """Return a colour moved towards black or white as far as necessary to be legible on a background.
 
         Args:
             rgb: The colour.
             on: The background.
-            is_line: Whether the colour is that of a line, which needs less contrast than text.
+            is_line: Whether a line has the colour; it needs less contrast than text.
         """
         ground = Color(*on)
         color = Color(*rgb)

@@ -126,7 +126,11 @@ class Timeline:
     # Navigation
 
     def go(self, tick: int | None) -> None:
-        """Go to a tick, at least to the first; None, the newest tick and any later one stand for the newest instant."""
+        """Go to a tick of the run; a tick before the first one stands for the first.
+
+        Args:
+            tick: The tick; None, the newest tick or a later one stand for the newest instant.
+        """
         self._played_s = None
         self.at = None if tick is None or tick >= self.newest or self.newest <= 0 else max(0, tick)
 
@@ -240,7 +244,7 @@ class _Search:
     def find_tick(self, condition: ValueCondition) -> int | None:
         """Return the tick of the nearest printed row, in the direction of the search, that meets a condition.
 
-        None if there is no such row.
+        None without one.
         """
         if condition.operator is Operator.CHANGES:
             every = (row for row in self.recording.rows.rows(0) if row.stream in TEXT_STREAMS)
@@ -256,16 +260,17 @@ class _Search:
 def find(
     text: str, timeline: Timeline, mat: Field | None = None, *, first_at_end: bool = False
 ) -> int:
-    """Return the tick of the instant that an expression names, relative to the instant in view.
+    """Return the tick of the instant that an expression means; it can be relative to the instant in view.
 
     Args:
         text: An expression in one of the forms of `list_forms`.
         timeline: The run, and the instant in view.
         mat: The run's mat, from which readings are taken; None if it is not prepared yet.
-        first_at_end: Whether a search from the newest instant begins at the start of the run; else it goes backwards.
+        first_at_end: Whether a search at the newest instant begins at the start of the run; otherwise it goes
+            backwards.
 
     Raises:
-        ConfigError: the words are not understood, or there is no such instant.
+        ConfigError: the expression is not understood, or there is no such instant.
     """
     recording = timeline.recording
     if recording is None or recording.newest < 0:
@@ -418,7 +423,7 @@ def _read_printed_names(recording: Recording) -> list[str]:
 def _find_change(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
     """Return the nearest tick, in the direction of a search, at which a condition becomes true.
 
-    For the name of a printed sample, the result is the tick of the nearest sample that meets the condition.
+    If the condition is about a printed sample, return the tick of the nearest sample for which it is true.
 
     Raises:
         ConfigError: there is none, or no such name.

@@ -141,7 +141,10 @@ def show_help(context: ActionContext) -> None:
 
 
 def choose_cells(context: ActionContext) -> None:
-    """Show the test card of glyphs; draw the world with the set that the user chooses, and store the choice."""
+    """Show a test picture in each set of glyphs.
+
+    Draw all pictures with the set that the user chooses, and store the choice.
+    """
     from tuisim.app.dialogs.cells import CellsCard
 
     app = context.app
@@ -208,7 +211,7 @@ def choose_theme(context: ActionContext) -> None:
 
 
 def open_palette(context: ActionContext) -> None:
-    """Open the command palette."""
+    """Open the command palette, in which the user searches for an action."""
     context.app.action_command_palette()
 
 

@@ -45,7 +45,12 @@ def answer(context: ActionContext) -> None:
 
 
 def scroll(context: ActionContext, by: int) -> None:
-    """Scroll the text of the lesson by rows; if all of it is visible, scroll the code if that has the focus."""
+    """Scroll the text of the lesson if not all of it is visible; else scroll the code if it has the focus.
+
+    Args:
+        context: The parts of the app.
+        by: Number of pages; negative scrolls up.
+    """
     area = context.panels
     if area.lesson and has_more_text(area):
         area.lesson.action_scroll_text(by)
@@ -54,7 +59,7 @@ def scroll(context: ActionContext, by: int) -> None:
 
 
 def accept_page_keys(area: PanelArea) -> bool:
-    """Return whether page up and page down scroll the lesson or the code, and not another widget."""
+    """Return whether the page keys scroll the code or the lesson now, so that no other widget gets them."""
     if not area.screen.is_current:
         return False
     if area.code is not None and area.code.has_focus_within:

@@ -30,7 +30,7 @@ def run(context: ActionContext) -> None:
 
 
 def pause(context: ActionContext) -> None:
-    """Pause or continue the program; if the past is in view, start or stop its playback."""
+    """Pause the program if it runs, else continue it; while the past is in view, start or stop its playback instead."""
     timeline = context.runs.timeline
     if timeline.playing:
         timeline.stop_playback()

@@ -46,7 +46,7 @@ def go_to_tick(context: ActionContext, tick: int | None) -> None:
 
 
 def _is_laid_out(context: ActionContext, recording: Recording) -> bool:
-    """Return whether the app's current mat is the mat of a run; if it is another mat, show a notice."""
+    """Return whether the mat of a run is the app's current mat; if it is not, show a notice."""
     mat = context.runs.mat
     if mat is not None and mat.key[:2] == mat_key(recording.spec)[:2]:
         return True
@@ -253,10 +253,12 @@ def _say_nothing_wrong(context: ActionContext) -> str:
 
 
 def propose_action(context: ActionContext, action: protocol.Message) -> bool:
-    """Propose a branch with a user action if a past instant is in view, even an earlier line of the newest tick.
+    """If a past instant is in view, ask whether to branch there with a user action.
+
+    An earlier line of the newest tick also is a past instant.
 
     Returns:
-        Whether a past instant is in view; the caller then must not apply the action to the present.
+        Whether a past instant is in view; if so, the caller must not apply the action to the live run.
     """
     if is_away := context.debugger.is_away:
         propose_branch(context, action)

@@ -19,7 +19,15 @@ GAP = 2
 def build_rows(
     texts: Sequence[str], widths: Sequence[int], gap: int, style: Style, width: int
 ) -> list[Line]:
-    """Return a row of a pane as one line, or as many lines as its last text needs."""
+    """Return a row of a pane as lines: one line, or several if its last text has to be wrapped.
+
+    Args:
+        texts: The cells of the row.
+        widths: The width of each column in characters.
+        gap: Blanks between two columns.
+        style: The style of the row.
+        width: Width of the pane in characters.
+    """
     margin = sum(widths[:-1]) + gap * (len(widths) - 1)
     if margin + len(texts[-1]) <= width:
         return [build_row(texts, widths, gap, style)]
@@ -52,7 +60,15 @@ def build_head(
     widths: Sequence[int],
     gap: int,
 ) -> Line:
-    """Return the headings as a line, those of numbers at the right, where their digits are."""
+    """Return the headings of some columns as a line; those of columns with numbers are aligned to the right.
+
+    Args:
+        heads: The headings of all columns.
+        used: The indices of the columns.
+        rows: The rows of the pane.
+        widths: The widths of all columns.
+        gap: Blanks between two columns.
+    """
     return [
         (
             (" " * gap).join(
@@ -67,7 +83,7 @@ def build_head(
 
 
 def build_row(texts: Sequence[str], widths: Sequence[int], gap: int, style: Style) -> Line:
-    """Return a row of a pane as a line, with its numbers at the right of their columns."""
+    """Return the cells of a row of a pane as a line; numbers are aligned to the right of their columns."""
     parts = (
         text.rjust(width) if text[:1].isdigit() or text[:1] == "-" else text.ljust(width)
         for text, width in zip(texts, widths, strict=True)

@@ -339,9 +339,16 @@ def _build_continuation(
     width: int,
     height: int,
 ) -> list[Line]:
-    """Return the columns that do not fit as a second table below the first one, which repeats the first column.
+    """Return the lines of a second table, below a pane, with the columns that the pane has no room for.
 
-    The list is empty if that table is too high or too wide.
+    Its first column is that of the pane. The list is empty if the second table is too high or too wide as well.
+
+    Args:
+        heads: The headings of all columns.
+        rows: The rows of the pane.
+        columns: The indices of the columns that do not fit.
+        widths: The widths of all columns.
+        width, height: The free space in characters and lines.
     """
     columns_below = [0, *columns]
     wide = [widths[index] for index in columns_below]

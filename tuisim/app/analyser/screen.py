@@ -353,13 +353,13 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         forms: Sequence[Form] = (),
         completes: bool = False,
     ) -> None:
-        """Ask for a line of text in a dialog, and call `do` with it.
+        """Ask for a line of text in a dialog, and call `do` with the line.
 
         Args:
             title: Title of the dialog.
-            do: Applies the line; a TuisimError is shown and the line can be corrected.
+            do: Applies the line. If it raises a TuisimError, the error is shown, and the user can correct the line.
             value: Initial text.
-            forms: The accepted forms, with `Colour` for the selected variable.
+            forms: The accepted forms; in them, `Colour` is replaced by the name of the selected variable.
             completes: Whether to offer the words of expressions as completions.
         """
 

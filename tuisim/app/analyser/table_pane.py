@@ -116,10 +116,9 @@ def _fit_columns(
 
 
 def build_heading(model: AnalysisModel, column: str) -> str:
-    """Return the heading of a column in the table: its name, except for the column `run` of a log of stored runs.
+    """Return the heading of a column in the table: its name, except that `run` of stored runs becomes `nth run`.
 
-    That heading is `nth run`: the column counts the runs of the log, while the title of the screen has their numbers in
-    the store.
+    The column counts the runs of the log, while the title of the screen has their numbers in the store.
     """
     return f"nth {column}" if column == "run" and model.opened.runs else column
 

@@ -95,7 +95,7 @@ def _is_readable(fits: Callable[[Path], object], path: Path) -> bool:
 
 
 class ListDialog(FieldDialog[str]):
-    """A dialog with a list, and usually with a field for a path; it returns the chosen entry or the typed text."""
+    """A dialog with a list and usually a text field; it returns the value of the chosen entry, or the typed path."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*MOVE_KEYS]
 
@@ -124,10 +124,10 @@ class ListDialog(FieldDialog[str]):
                 self.dismiss(typed)
 
     def read(self, typed: str) -> object:
-        """Return what a typed name or path stands for, such as the world in a file.
+        """Return the object that a typed name or path means, such as the world in a file.
 
         Raises:
-            TuisimError: it stands for nothing that can be chosen.
+            TuisimError: there is no such object.
         """
         return typed
 
@@ -137,14 +137,14 @@ class ListDialog(FieldDialog[str]):
 
 
 class Chooser(ListDialog):
-    """The dialog that returns a name or a path. Typed words search the list; the field also takes a path.
+    """A dialog that returns a name or a path; typed words search its list, and the field also takes a path.
 
     Args:
         title: Title of the dialog.
-        groups: The list; empty groups are omitted.
-        current: The current value, selected at first.
-        path_hint: What the field takes beside words to search for; without it there is no field.
-        read: Reads what a name or a path stands for; raises a TuisimError.
+        groups: The list; empty groups are left out.
+        current: The value of the entry that is selected at first.
+        path_hint: What the user may type in the field besides words to search for; empty for no field.
+        read: Returns the object that a name or a path means, or raises a TuisimError.
         suffixes: Suffixes of the files that a path may name, with their dots.
     """
 
@@ -275,11 +275,14 @@ class Chooser(ListDialog):
             super().choose(value)
 
     def read(self, typed: str) -> object:
-        """Return what a typed name or path stands for, as the function `read` given to the dialog does."""
+        """Return the object that a typed name or path means, from the function `read` of the dialog."""
         return self._read(typed)
 
     def report_unread(self, error: TuisimError) -> None:
-        """Choose the entry that the search has highlighted; if there is none, show the error of the typed text."""
+        """If the search has highlighted an entry, choose that entry.
+
+        Otherwise show why the typed text means nothing.
+        """
         listed = self.query_one(OptionList)
         if listed.highlighted is None:
             self.say(shorten_error(error), wrong=True)
@@ -299,9 +302,9 @@ def search_groups(groups: Iterable[ChoiceGroup], typed: str) -> list[ChoiceGroup
 
 
 def find_best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
-    """Return the value of the first entry whose name begins with the typed text.
+    """Return the value of the first entry whose name begins with the typed text, else of the first that contains it.
 
-    If there is none, the result is that of the first entry whose name contains the text, or else of the first entry.
+    If no name contains it, return the value of the first entry of all.
     """
     entries = [entry for group in groups for entry in group.entries]
     prefix = typed.lower()

@@ -98,11 +98,11 @@ _MIN_LIST_ROWS = 5
 
 
 def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
-    """Return the cells of one line of the list of runs by column, without the columns that do not fit.
+    """Return the cells of a line of the list of runs, by column; columns without room are left out.
 
     Args:
         texts: The text of each column.
-        columns: Width of the terminal.
+        columns: Width of the terminal in characters.
     """
     left_out = next(names for from_columns, names in _LEFT_OUT.items() if columns >= from_columns)
     more = _MORE_CELLS if columns >= _WIDE_COLUMNS else {}

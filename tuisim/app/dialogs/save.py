@@ -75,7 +75,7 @@ class FileDialog(Dialog[Path]):
         yield from ()
 
     def resolve_target(self, path: Path) -> Path:
-        """Return the path of the file to write for a typed path.
+        """Return the path of the file to write for a path that the user has typed.
 
         Raises:
             TuisimError: it cannot be written.

@@ -107,7 +107,7 @@ class Welcome(Dialog[Begin | Recent]):
         self.action_take(int(event.option.id or 0))
 
     def action_leave_for(self, action: str) -> None:
-        """Close the welcome, and run an action of the app, as its key would."""
+        """Close the welcome without a result, and run an action of the app as if its key was pressed."""
         self.dismiss(None)
         self.app.call_later(self.app.run_action, f"app.act('{action}')")
 

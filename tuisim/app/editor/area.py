@@ -205,11 +205,14 @@ class CodeArea(TextArea):
 
     @property
     def allow_horizontal_scroll(self) -> bool:
-        """Whether long lines can be scrolled; always, although there is no scroll bar, which would take a row."""
+        """Whether long lines can be scrolled sideways: always True, but without a scroll bar."""
         return True
 
     def scroll_cursor_visible(self, center: bool = False, animate: bool = False) -> Offset:
-        """Scroll to the cursor; if the line fits up to the cursor, scroll to the start of the lines."""
+        """Scroll so that the cursor is visible.
+
+        If its line fits as far as the cursor, scroll to the left edge of the text.
+        """
         scrolled = super().scroll_cursor_visible(center, animate)
         x = self.wrapped_document.location_to_offset(self.cursor_location).x
         if x + _CURSOR_COLS + self.gutter_width <= self.scrollable_content_region.width:
@@ -345,9 +348,10 @@ class CodeArea(TextArea):
     def _append_values(
         self, text: Strip, values: Sequence[Variable], room: int, style: Style
     ) -> Strip:
-        """Return a row of text with the values of variables behind it; if their names do not fit, only the values.
+        """Return a row of text with the names and values of variables behind it.
 
-        If even the values do not fit, the text is cut: a reader who looks for an error needs the values more.
+        If there is no room for the names, only the values are added. If even these do not fit, the text is cut, since a
+        reader who looks for an error needs the values more.
 
         Args:
             text: The row.
@@ -394,7 +398,7 @@ class CodeArea(TextArea):
         return self.typing or self.awaits_letters
 
     def await_letters(self, on: bool) -> None:
-        """Set whether the next letter starts typing."""
+        """Set whether the next letter that the user presses starts typing."""
         on = on and self.can_be_typed_in and not self.typing
         if on != self.awaits_letters:
             self.awaits_letters = on
@@ -475,14 +479,20 @@ class CodeArea(TextArea):
         event.prevent_default()
 
     def _count_deletable_blanks(self) -> int:
-        """Return how many blanks before the cursor backspace deletes; 0 if there is more than indentation."""
+        """Return how many blanks backspace deletes before the cursor.
+
+        0 unless only indentation is before the cursor.
+        """
         row, column = self.cursor_location
         return text_lines.count_deletable_blanks(self.document.get_line(row)[:column])
 
     # Completion
 
     async def _complete(self) -> None:
-        """Complete the word before the cursor, or list possible names, or indent; keys pressed meanwhile wait."""
+        """Complete the word before the cursor, list its possible completions, or indent if there is no word.
+
+        Keys that are pressed meanwhile wait.
+        """
         place = self.cursor_location
         matches: tuple[Candidate, ...] = ()
         if self._find_word() is not None:
@@ -550,7 +560,10 @@ class CodeArea(TextArea):
         )
 
     def follow_word(self) -> None:
-        """Show only the names in the list that begin with the word typed so far, or close the list."""
+        """Show in the list of names those that begin with the word as typed so far.
+
+        If the cursor is no longer in that word, close the list.
+        """
         if not self.candidates.is_open:
             return
         word, (row, column) = self._find_word(), self.cursor_location
@@ -569,7 +582,11 @@ class CodeArea(TextArea):
         self.replace(text, *sorted(self.selection), maintain_selection_offset=False)
 
     def _change_lines(self, change: text_lines.Change) -> None:
-        """Replace the selected lines, or the line of the cursor, by what a function returns for them."""
+        """Replace the selected lines, or without a selection the line of the cursor, by the result of a function.
+
+        Args:
+            change: Returns the new lines for the old ones.
+        """
         (top, left), (bottom, right) = sorted(self.selection)
         was_empty = self.selection.is_empty
         if bottom > top and right == 0:

@@ -136,7 +136,7 @@ class Assistant:
         background.begin(self._area, self._fetch_names, group="names", exclusive=True)
 
     async def _fetch_names(self) -> None:
-        """List the possible names after the dot at the cursor, unless the user has asked for them or types on."""
+        """Look up and list the names that may follow the dot at the cursor, unless a list is open already."""
         text, path, row, column = self._place()
         word = completion.find_word(self._area.document.get_line(row), column)
         if word is None or self._area.candidates.is_open:

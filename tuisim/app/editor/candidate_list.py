@@ -169,7 +169,12 @@ class CandidateList(Widget):
         self.filter(word, place)
 
     def filter(self, word: str, place: Offset) -> None:
-        """Show only the names that begin with a word; close the list if there is none, or only the word itself."""
+        """Show only the names that begin with a word; close the list if no name does, or only the word itself.
+
+        Args:
+            word: The letters typed so far.
+            place: Position of the word on the screen.
+        """
         if word == self._word and self.is_open:
             return
         self._word = word
@@ -204,10 +209,10 @@ class CandidateList(Widget):
         )
 
     def takes_key(self, event: events.Key) -> bool:
-        """Return whether the list handles a key; if not, the text gets the key.
+        """Return whether the list, and not the text, handles a key.
 
-        Enter begins a new line in the text if it was pressed before the list was visible. Enter also does so after a
-        whole name, if the list has opened by itself.
+        Enter is left to the text, where it begins a new line, if it was pressed before the list was visible. So it is
+        after a complete name if the list has opened by itself.
         """
         is_whole = self.is_offered and self._has_whole_name(self._word)
         ends_line = event.key == "enter" and (is_whole or event.time < self._opened_s)

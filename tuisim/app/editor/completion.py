@@ -228,7 +228,10 @@ def preload() -> None:
 
 
 def _ask_jedi(ask: Callable[[], Result], otherwise: Result) -> Result:
-    """Return the result of a look-up with Jedi, or `otherwise` if Jedi fails."""
+    """Return the result of `ask`, a look-up with Jedi.
+
+    Return `otherwise` if Jedi fails, as with unfinished programs.
+    """
     try:
         return ask()
     # Jedi itself fails with some unfinished programs.
@@ -299,11 +302,11 @@ def _find_class(script: Script, line: int, column: int) -> str:
 
 
 def _rank(completion: Completion, word: str, owner: str) -> tuple[int, ...]:
-    """Return the sort key of a name: names in the typed case come first; private, constant and general ones last.
+    """Return the sort key of a proposed name: usual names first; private, constant and general ones last.
 
     Args:
         completion: The name.
-        word: The letters typed so far.
+        word: The letters typed so far; names that begin with them in the same case come first.
         owner: The class of the object before the dot, whose own names precede inherited ones; empty if there is none.
     """
     is_constant = completion.name.isupper() and completion.type == "statement"

@@ -218,7 +218,7 @@ class Document:
     # Editing
 
     def handle_edit(self, text: str) -> None:
-        """Store the text that the user has just edited in the code panel, and save it as a draft soon."""
+        """Store the new text after an edit in the code panel; a draft of the text is saved soon after."""
         self._text = text
         self._error_line = 0
         if code := self._panel_area.code:
@@ -282,7 +282,10 @@ class Document:
         self._show_restored()
 
     def run_when_saved(self, do: Callable[[], None]) -> None:
-        """Call a function that replaces the text; if there are unsaved changes, ask the user first."""
+        """Call a function that replaces the text.
+
+        If the text has unsaved changes, first ask whether to save or discard them.
+        """
         if not self.dirty:
             do()
             return
@@ -329,10 +332,12 @@ class Document:
         return is_applied or self._apply_text()
 
     def go_to_mistake(self) -> str:
-        """If the text cannot run, show the line of its mistake.
+        """Show the line of the mistake because of which the text cannot run, if there is one.
 
         Returns:
-            Why the text cannot run; empty if it can, or if the run in view ran this text, since its error says more.
+            Why the text cannot run. It is empty if the text can run, or if the run in view ran this text: its error
+            then says
+            more.
         """
         self.run_changed()
         is_run = self._ran is not None and self._ran[1] == self._text
@@ -349,7 +354,7 @@ class Document:
 
     @property
     def _lacks_mat(self) -> bool:
-        """Whether the program was opened without the mat in its magic line, and the user has chosen no other one."""
+        """Whether the program was opened without its mat, which is wrong, and the user has chosen no other."""
         settings = self._run_controller.next_run.settings
         is_usual = settings["background"] == Settings()["background"]
         return is_usual and find_wrong_mat(self._text, self._name, settings["mats"]) is not None
@@ -464,7 +469,7 @@ class Document:
             self.save(lambda: do(Path(self._path)))
 
     def save_own(self) -> None:
-        """Save the text without a question if it has unsaved changes and its file is the student's own."""
+        """Save unsaved changes without asking, if the file is the student's own."""
         if self.dirty and self._has_own_file and self._try_write(Path(self._path)):
             self._mark_saved(Path(self._path))
 

@@ -47,7 +47,7 @@ class KeyPage:
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """The page of the guide about a panel, and the groups of keys that concern the panel."""
+    """What the guide shows about a panel: a page, and the groups of keys that concern the panel."""
 
     page: str = ""
     """Name of the page; empty for the page with every key."""
@@ -338,7 +338,7 @@ class GuideScreen(Dialog[None]):
         self._arrange(event.widget is self._page)
 
     def _arrange(self, reading: bool) -> None:
-        """Show the answers of a search, or the page; without a search, the contents are also shown if there is room.
+        """Show either the answers of a search or a page; without a search, show the contents as well if there is room.
 
         Args:
             reading: Whether the user reads a page.

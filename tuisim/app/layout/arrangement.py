@@ -70,7 +70,7 @@ class Preset(StrEnum):
 
 
 def is_low(preset: Preset, width: int, height: int) -> bool:
-    """Return whether an area is too low for the usual forms of a preset.
+    """Return whether an area is so low that a preset needs special forms.
 
     Such an area has room for the world in its whole width, or for one panel with long lines.
     """
@@ -136,7 +136,10 @@ _PLANS: Mapping[Preset, _Plan] = {
 
 
 def find_core_panels(preset: Preset, width: int, height: int) -> tuple[str, ...]:
-    """Return the panels that a preset always shows in an area; the standard one has none unless the area is low."""
+    """Return the panels that a preset always shows in an area of this size.
+
+    The standard preset has none, unless the area is low.
+    """
     plan = _PLANS[preset]
     return plan.low if is_low(preset, width, height) else plan.core
 
@@ -185,7 +188,13 @@ _READ_FIRST = ("code", "chart", "arrays")
 
 
 def _gives_way(panel: str, switched: Mapping[str, bool], width: int) -> bool:
-    """Return whether a panel stays hidden to leave room for others, such as code and variables in a narrow terminal."""
+    """Return whether a panel is hidden at the start because the area is too narrow to show it with the others.
+
+    Args:
+        panel: Id of the panel.
+        switched: Panels that the user has shown (True) or hidden.
+        width: Columns of the area.
+    """
     is_narrow = width < _MIN_CODE_COLS
     match panel:
         case "code":
@@ -203,7 +212,12 @@ def _fit_panels(
 ) -> list[str]:
     """Return the panels that fit into an area.
 
-    Each of `panels` needs its minimum size; one of `fill` fits only if all panels are still shown well.
+    Args:
+        form: Arranges panels in the area.
+        panels: Panels that fit if there is room for their minimum size.
+        fill: Further panels, which fit only if all panels are then still larger than that, and easy to read.
+        width: Columns.
+        height: Rows.
     """
     fitting: list[str] = []
     for panel in panels:
@@ -368,14 +382,15 @@ def make_room(
 ) -> list[str]:
     """Return the panels to show so that one panel gets a minimum size.
 
-    First all panels are tried, then the panel with those in other areas of the screen, then the panel alone.
+    These are all panels if it gets that size among them; else without the others in its own area of the screen; else
+    the panel alone.
 
     Args:
         panel: The panel that needs room.
-        panels: Ids, the most wanted first.
+        panels: Ids of all panels, the most wanted first.
         min_size: Minimum columns and rows of `panel`.
         size: Columns and rows of the screen.
-        preset: The arrangement.
+        preset: The preset of the arrangement.
     """
     others = [other for other in panels if other != panel]
     elsewhere = [other for other in others if PANELS[other].place != PANELS[panel].place]

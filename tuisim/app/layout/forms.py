@@ -120,9 +120,9 @@ def _build_stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], wi
 
 
 def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
-    """Return the columns of the bottom strip, each a panel or a few stacked panels; empty without panels.
+    """Return the columns of the bottom strip as nodes, each a panel or stacked panels; empty without panels.
 
-    If code would be narrow and the strip is high enough, the code has the whole width, above the other panels.
+    If the code would be narrow, and the strip is high enough, the code has the whole width above the other panels.
     """
     if not panels:
         return []
@@ -162,9 +162,9 @@ def _build_output_stack(width: int) -> Node:
 
 
 def _find_strip_shares(stacks: Sequence[Node], width: int) -> list[float]:
-    """Return the widths of the columns of a strip as shares, so that a chart beside code is wide enough.
+    """Return the share of the width for each column of a strip, so that a chart beside code is wide enough.
 
-    The list is empty if the usual widths suffice, or other panels are in the strip.
+    The list is empty if the usual widths are enough, or if the strip has other panels.
     """
     if not {"chart", "code"}.issubset(stacks) or not {"chart", "code", "output"}.issuperset(stacks):
         return []
@@ -362,9 +362,9 @@ _FAIR_ROWS = 22
 
 
 def build_low(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return a node for a low area: the world in the whole width, or above a panel that needs the width.
+    """Return a node for a low area: the world in the whole width, or above a panel that needs the whole width.
 
-    Readings and output are below the world or beside it.
+    The readings and the output are below the world or beside it.
     """
     roomy = [panel for panel in _ROOMY if panel in panels]
     beside = [
@@ -399,7 +399,10 @@ def build_low(panels: Sequence[str], width: int, height: int) -> Node:
 
 
 def _find_roomy_rows(roomy: Sequence[str], beside: Sequence[str], height: int) -> int:
-    """Return the rows of the panels that have the whole width; above them are the world and the panels beside it."""
+    """Return the rows, in an area of `height` rows, for the panels that have the whole width.
+
+    Above them are the world and the panels beside the world.
+    """
     fair = max(_sum_fair_rows(roomy), height // 2)
     return max(fair - _MAX_YIELDED_ROWS, min(fair, height - sum(_list_read_rows(beside))))
 

@@ -64,7 +64,10 @@ class PanelLayout:
     """Panels that get rows first, the most wanted first; the world is before them."""
 
     def rank(self, node: Node) -> int:
-        """Return the rank of a node: nodes with lower ranks get their rows first. The rank is -1 with the world."""
+        """Return the rank of a node: nodes with lower ranks get their rows first.
+
+        The rank is -1 if the node contains the world, else the index of its most wanted panel.
+        """
         panels = list_panels(node)
         ranks = [self.wanted.index(panel) for panel in panels if panel in self.wanted]
         return -1 if "world" in panels else min(ranks, default=len(self.wanted))
@@ -165,8 +168,9 @@ def _divide_columns(split: Split, width: int) -> list[int]:
 def _divide_rows(split: Split, width: int, height: int, rank: Callable[[Node], int]) -> list[int]:
     """Return the height in rows of each part of a split.
 
-    Each part gets its minimum height; then, by rank, the height at which it is shown well, and still more. The part
-    that grows most gets the rest.
+    First each part gets its minimum height. The remaining rows are then given in the order of the ranks: until each
+    part is shown well, then until it has all rows that it can use. What is left goes to the part with the largest
+    weight.
     """
     rows = _list_min_rows(split)
     spare = height - sum(rows)

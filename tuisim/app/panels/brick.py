@@ -103,7 +103,7 @@ class Brick(LinesPanel, can_focus=True):
 
     @property
     def _idle_words(self) -> str:
-        """Words for the frame before the first run; empty after that."""
+        """The text for the frame before the first run; empty after the first run has begun."""
         is_idle = self._snapshot is not None and self._snapshot.state is RunPhase.IDLE
         return "R: a program draws here" if is_idle else ""
 
@@ -129,9 +129,9 @@ class Brick(LinesPanel, can_focus=True):
         return frozenset((*self._tapped, *self._latched, *filter(None, [self._clicked])))
 
     def _has_program(self, name: str) -> bool:
-        """Return whether a live run is in view.
+        """Return whether the live run is in view, so that its program can read a pressed button.
 
-        If it is not, post the press of the button `name`, so that the app says why it has no effect.
+        Otherwise post the press of the button `name`, so that the app says why it has no effect.
         """
         if (
             self._snapshot is not None
@@ -170,11 +170,11 @@ class Brick(LinesPanel, can_focus=True):
         return self._snapshot.time_s if self._snapshot else 0.0
 
     def _release_tapped(self, name: str, seen_s: float) -> None:
-        """Release a button after the program has had time to read it, however slow the run is.
+        """Release a button once the program has had time to read it; before that, try again later.
 
         Args:
             name: The button.
-            seen_s: The simulated time from which on the program has read it.
+            seen_s: The simulated time at which the program certainly has read the button.
         """
         if name not in self._tapped:
             # The run has ended since the timer fired, and all buttons were released.

@@ -157,7 +157,7 @@ class Chart(LinesPanel, can_focus=True):
         )
 
     def _find_bands(self) -> None:
-        """Find the bands of the chosen trace; if it has fewer than two, those of another trace with at least two.
+        """Find the bands of the chosen trace; if it has fewer than two, take another trace that has at least two.
 
         While the run goes on, there are no bands.
         """

@@ -284,11 +284,11 @@ class Code(Vertical):
         self._say()
 
     def set_running(self, text: str | None, tells: bool = True) -> None:
-        """Set the text of the run in view, to which the lines of the run belong.
+        """Set the text that the run in view executes; the line numbers of the run refer to this text.
 
         Args:
-            text: None without a run.
-            tells: Whether it is a run of this program, so that a difference between the texts is shown.
+            text: The text; None without a run.
+            tells: Whether the run is one of the shown program, so that the panel says if the two texts differ.
         """
         self._run_lines = source_lines(text) if text is not None else None
         self._mapped = None
@@ -387,7 +387,7 @@ class Code(Vertical):
         return self._mapped[1].find_shown_line(line)
 
     def show_pause(self, pause: PauseView | None) -> None:
-        """Show the values of variables behind the lines that assign them.
+        """Show the values of variables behind the lines that assign them, as they are at a pause.
 
         Args:
             pause: Where the program is paused; None while it runs, which removes the values.

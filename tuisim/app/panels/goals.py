@@ -47,7 +47,7 @@ class Goals(LinesPanel, can_focus=True):
         self._show_subtitle()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show the state of the goals at an instant of the run; `show_goals` sets the goals and their judgements."""
+        """Show the states of the goals at an instant of the run; goals and judgements come from `show_goals`."""
         past = (snapshot.instant.tick, snapshot.time_s) if snapshot.past else None
         if past != self._past:
             self._past = past

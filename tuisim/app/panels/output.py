@@ -133,7 +133,10 @@ class Output(Vertical):
         self.post_message(self.Answered(None))
 
     def show(self, snapshot: Snapshot) -> None:
-        """Before the first run, show what the panel is for; rows arrive through `add`."""
+        """Show what the panel is for before the first run.
+
+        Output rows do not come from the snapshot, but through `add`.
+        """
         self._log.say_if_empty(
             fill_keys(self.app, IDLE_WORDS) if snapshot.state is RunPhase.IDLE else ""
         )
@@ -190,8 +193,8 @@ def split_row(row: OutputRow, width: int) -> list[str]:
 def _find_break(text: str, width: int) -> int:
     """Return the index at which to break a text that is longer than `width` cells.
 
-    The break is behind a blank or a separator if that leaves less than half of the row empty; else before a word that
-    fits in one row.
+    The break is behind a separator if at least half of the row is then filled; else at the last blank, if the word
+    after it fits into one row; else at `width`.
     """
     good, fair = (
         max(text.rfind(sign, width // 2, width) for sign in signs) + 1 for signs in _BREAKS
@@ -301,7 +304,7 @@ class Log(Widget, can_focus=True):
 
     @property
     def _all(self) -> int:
-        """Return the number of lines to scroll through; one line may stand for older rows that are no longer stored."""
+        """The number of lines to scroll through; one line may stand for older rows that are no longer stored."""
         return len(self._lines) + (1 if self._count > len(self._rows) else 0)
 
     def _find_line(self, index: int) -> Line:

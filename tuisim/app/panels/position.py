@@ -26,10 +26,14 @@ _FIELDS = dict(zip(("x", "y", "angle"), START_VALUES.values(), strict=True))
 
 
 def parse_field(field: str, text: str) -> float:
-    """Return the number that a text stands for in a field of the panel.
+    """Return the number in a text that was typed into a field of the panel.
+
+    Args:
+        field: The name of the field, which has a range.
+        text: The text.
 
     Raises:
-        ValueError: the text is no number, or out of range; the message says what is allowed.
+        ValueError: the text is no number, or out of the range; the message says what is allowed.
     """
     value = _FIELDS[field]
     try:

@@ -141,7 +141,10 @@ class World(Widget, can_focus=True):
             self._say()
 
     def _say_below(self) -> None:
-        """Show in the lower border what the mouse does, or how far the robot is off the field, or the other robots."""
+        """Show in the lower border what dragging does while obstacles are edited.
+
+        Otherwise show how far the robot is off the field, or else which other robots are in the picture.
+        """
         words = "drag to draw or move an obstacle" if self._edits_boxes else ""
         if (now := self._snapshot) is not None and not words:
             room = self.size.width - _FRAME
@@ -273,7 +276,10 @@ class WorldView(PixelView):
     def _follow(
         self, width_px: int, height_px: int, pose: Pose, now: Snapshot, cell: CellPoints
     ) -> Viewport:
-        """Return the view to draw; if there is a floor, it follows a robot that drives off the field."""
+        """Return the part of the world to draw.
+
+        If the mat lies on a floor, it follows a robot that leaves the field.
+        """
         on_floor = now.spec.world.is_open
         previous = self._port
         zoom = self.zoom

@@ -81,10 +81,10 @@ def arrange_discs(count: int, cols: int, rows: int) -> Arrangement:
 
 
 def _count_disc_columns(cols: int, high_cols: int) -> int:
-    """Return the width of a disc in columns that fits an area.
+    """Return the largest width in columns of a disc that fits an area.
 
     Args:
-        cols: Width of the area.
+        cols: Width of the area in columns.
         high_cols: Height of the area in columns; a row is as high as two columns are wide.
     """
     side = max(min(cols, high_cols), 0)

@@ -247,11 +247,11 @@ def _list_lamps(face: BrickState) -> list[tuple[int, int]]:
 
 
 def _build_lamp(lamp: tuple[int, int], named: bool, columns: int) -> Run:
-    """Return a row in the mixed colour of a red and a green light.
+    """Return a row that is filled with the mixed colour of a red and a green light.
 
     Args:
         lamp: Brightness of red and green, 0 to 255.
-        named: Whether to write the name of the colour, for terminals and users without colour.
+        named: Whether to write the name of the colour in it, for terminals and users without colour.
         columns: Width of the row.
     """
     red, green, blue = mix_led_rgb(*lamp)

@@ -371,7 +371,7 @@ def _change_arguments(plan: NextRun, text: str) -> NextRun:
 
 
 def find(plan: NextRun, edit_id: str) -> FormField | None:
-    """Return the field with an id; None if the plan's robot has no such field."""
+    """Return the form field with an id; None if the plan's robot has no such field."""
     return next(
         (edit for section in build_sections(plan) for edit in section.edits if edit.id == edit_id),
         None,
@@ -379,7 +379,13 @@ def find(plan: NextRun, edit_id: str) -> FormField | None:
 
 
 def step(edit: FormField, plan: NextRun, by: int) -> str:
-    """Return the choice of a field that is `by` steps after its current one in a plan."""
+    """Return the value that is `by` steps after the present one in the list of a field's choices, which is circular.
+
+    Args:
+        edit: The field.
+        plan: The plan, which has the present value.
+        by: Number of steps; negative goes back.
+    """
     now = edit.read(plan)
     choices = edit.choices
     return choices[(choices.index(now) + by) % len(choices)] if now in choices else choices[0]

@@ -133,7 +133,7 @@ def build_first_plan(
 
 
 def plan_spec(spec: RunSpec) -> NextRun:
-    """Return the plan of a run of which only the specification is known."""
+    """Return the plan of a run of which only the specification is known, but not the settings that led to it."""
     return replace(build_plan(merge_settings(extract_settings(spec))), spec=spec)
 
 
@@ -164,7 +164,10 @@ def read_first_line(program: Program | None) -> Mapping[str, Any]:
 
 
 def _resolve_choices(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return robot, obstacles and profile as objects, and the words that have named them, both by setting."""
+    """Return two mappings by setting: the robot, obstacles and profile that words have named, as objects.
+
+    And these words.
+    """
     resolved = dict(choices)
     words = {}
     for key, load in (
@@ -275,7 +278,7 @@ def follow_program_robot(plan: NextRun) -> NextRun:
 
 
 def list_notes(before: NextRun, plan: NextRun) -> list[str]:
-    """Return what the user should know about the robot of a plan, and has not been told of the plan before."""
+    """Return what the user should be told about the robot of a plan, without what the plan `before` already caused."""
     notes = () if plan.robot == before.robot else plan.robot.notes
     known = list_ineffective(before.spec)
     return [*notes, *(text for text in list_ineffective(plan.spec) if text not in known)]

@@ -59,7 +59,7 @@ def _search(screen: LogScreen, text: str) -> None:
 
 
 def cycle_sizes(screen: LogScreen) -> None:
-    """Switch from chart and pane to the chart alone, then to the pane alone, and then back to both."""
+    """Show the chart alone if chart and pane are shown; at the next call the pane alone, at the third both again."""
     both = screen.chart.display and screen.pane.display
     screen.lay_out(chart=both or not screen.chart.display, pane=not both)
 
@@ -86,7 +86,7 @@ def choose(screen: LogScreen, step: int) -> None:
 
 
 def sort(screen: LogScreen) -> None:
-    """Sort the table by the selected column: ascending first, descending at the next call, unsorted at the third."""
+    """Sort the table by the selected column: first ascending, at the second call descending, at the third unsorted."""
     model = screen.model
     rows = screen.model.rows
     if rows.view.sorted_by != rows.chosen:
