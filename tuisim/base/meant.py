@@ -24,8 +24,8 @@ _WELL_KNOWN = ("time", "random", "math", "statistics", "threading", "datetime")
 def find_meant_names(wrong: str, names: Set[str]) -> list[str]:
     """Return the public names that may be meant by a wrong name, the most likely first.
 
-    They are the names that begin with the wrong one; if there are none, the most similar name; else those that contain
-    it.
+    They are the names that begin with the wrong one. If there are none, it is the most similar name; if none is
+    similar, the names that contain the wrong one, or `on` for a wrong name such as `forward`.
     """
     public = sorted((name for name in names if not name.startswith("_")), key=lambda n: (len(n), n))
     containing = [name for name in public if wrong in name] if len(wrong) >= _MIN_LETTERS else []

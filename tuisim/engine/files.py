@@ -561,7 +561,12 @@ def value_lines(part: Spec, keys: Iterable[str]) -> list[str]:
 
 
 def toml_form(value: Value, found: Any) -> Scalar:
-    """Return a value as TOML files contain it: as a name if it has one, as a list if it is a tuple, else unchanged."""
+    """Return a value as TOML files contain it: as a name if it has one, as a list if it is a tuple, else unchanged.
+
+    Args:
+        value: The description of the value.
+        found: The value.
+    """
     if isinstance(value, NamedNumber):
         return value.named(found)
     if isinstance(value, NamedPart):

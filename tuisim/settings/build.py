@@ -97,7 +97,7 @@ def _place_obstacles(settings: Settings, mat: Background) -> tuple[Obstacle, ...
 
 
 def _drop_scale_of_ev3(drift: DriftSpec) -> DriftSpec:
-    """Return the drift of a robot with a hub: if it is `typical`, with a `gyro_scale_pc` of 0.
+    """Return the drift of a robot with a hub: `typical` gets a `gyro_scale_pc` of 0, any other drift is unchanged.
 
     The typical value of `gyro_scale_pc` comes from measurements of the EV3's gyro.
     """

@@ -156,7 +156,8 @@ def _build_app_options() -> list[GroupedOption]:
 def parse_line(line: str, magic: str) -> Arguments:
     """Return the arguments after a magic that sets the world.
 
-    `help` is the help text if it was requested. For the magic of the app, `app` is its `AppWords`; otherwise None.
+    In the result, `help` is the help text if the line asks for it; `app` is the `AppWords` of the magic that shows the
+    app, and None for any other magic.
 
     Args:
         line: The words after the magic.

@@ -50,7 +50,7 @@ def parse_press(text: str) -> Press:
 
 
 class Presses(Value):
-    """The kind of value of an option for presses: a tuple of texts, to which each use of the option adds one."""
+    """The description of an option for presses by hand: its value is a tuple of texts, and each use of it adds one."""
 
     __slots__ = ()
 

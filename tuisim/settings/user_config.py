@@ -308,7 +308,15 @@ _NAMES = ("mats", "background", "robot", "obstacles", "profile")
 
 
 def _resolve(setting: Setting, value: Any, path: Path) -> Any:
-    """Return the value of a setting; a path becomes relative to the folder of `config.toml`."""
+    """Return the value of a setting as it is used: a path is made relative to the folder of `config.toml`.
+
+    Any other value is returned unchanged.
+
+    Args:
+        setting: The setting.
+        value: The value in the file.
+        path: The path of `config.toml`.
+    """
     if setting.name not in _NAMES:
         return value
     word = user_path(value)

@@ -124,7 +124,7 @@ def has_driver(run: RunSpec) -> bool:
 
 
 def name_motors(robot: RobotSpec) -> tuple[str, ...]:
-    """Return the prefix of each motor's columns: `left`, `right`, then by port such as `motor_a`."""
+    """Return the prefix of each motor's columns: `left` and `right` for the wheels, such as `motor_a` for others."""
     return "left", "right", *(f"motor_{motor.port[-1].lower()}" for motor in robot.extra_motors)
 
 

@@ -205,7 +205,10 @@ class RunControl:
                     session.debug().take(command)
 
     def resume(self, at_full_speed: bool = False) -> None:
-        """Resume the run until the debugger pauses it again, with `at_full_speed` without pacing."""
+        """Resume the run until the debugger pauses it again.
+
+        `at_full_speed` says whether it is not paced until then.
+        """
         self._paused = False
         self._steps = 0
         self._rushing = at_full_speed

@@ -144,9 +144,9 @@ def compile_with_hooks(
 
 
 def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:
-    """Yield the code of each statement of a prelude, a text that runs before a program and defines names for it.
+    """Yield the statements of a prelude, a text that runs before a program and defines names for it.
 
-    Each code comes after the name that the statement assigns to, or after an empty text.
+    Each comes as two values: the name that the statement assigns to, empty for none, and its code.
 
     Args:
         name: The name of the prelude.

@@ -162,7 +162,10 @@ class Scheduler:
     # Waiting
 
     def sleep_until(self, until: int, on_change: bool = False) -> None:
-        """Block the current thread until a simulated time in ns or, with `on_change`, until a motor ends a move."""
+        """Block the current thread until a simulated time in ns.
+
+        With `on_change`, the wait ends earlier if a motor ends a move before that time.
+        """
         self.wait(until, on_change)
 
     def wait(self, until: int, on_change: bool = False, queue: Queue | None = None) -> bool:

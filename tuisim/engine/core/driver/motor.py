@@ -194,9 +194,9 @@ class DriverMotor(MotorDriver):
         return self._look_ns
 
     def find_last_look_ns(self, time_ns: int) -> int:
-        """Return the time in ns of the last check of the motor's state by the driver that is not after `time_ns`.
+        """Return when the driver last checks the motor's state up to the time `time_ns`, in ns.
 
-        If even the next check is after `time_ns`, return the time of that check.
+        If even its next check is after `time_ns`, return the time of that check.
         """
         return self._look_ns + max(0, time_ns - self._look_ns) // LOOK_NS * LOOK_NS
 

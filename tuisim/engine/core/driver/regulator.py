@@ -274,6 +274,10 @@ class MotorDriver:
     def _run_speed_control(self, step_ns: int, end_ns: int) -> int:
         """Run steps of the speed control alone, in few calls, as long as the motor turns on.
 
+        Args:
+            step_ns: When the first step is due.
+            end_ns: Steps that are due from this time on are not run.
+
         Returns:
             When the next step is due, in ns. It is before `end_ns` if that step needs more than the speed control.
         """

@@ -273,7 +273,10 @@ class Controller:
         self._goal = end._replace(rate=even.rate)
 
     def _limit(self, acceleration: int) -> int:
-        """Return the size of an acceleration; firmware without a speed window limits it to that of the settings."""
+        """Return the acceleration to use for a wanted one, without its sign.
+
+        Firmware without a speed window uses at most the acceleration in the settings.
+        """
         if self.settings.speed_window_ms:
             return abs(acceleration)
         return min(abs(acceleration), self.settings.acceleration)

@@ -385,7 +385,10 @@ class DriveBase:
         return (total + difference) / 2 if motor is self.left else (total - difference) / 2
 
     def find_segment_end_us(self, now_us: int) -> int | None:
-        """Return the time in µs at which the current segment of either trajectory ends; None if neither ends."""
+        """Return the time in µs at which the first current segment of the two trajectories ends; None if none ends.
+
+        While the drive base moves by the gyro, it is the next microsecond: the gyro corrects the motors at every tick.
+        """
         if self.uses_gyro and (self.end_us is None or now_us < self.end_us):
             # The gyro corrects the motors at every tick, so no segment lasts longer.
             return now_us + 1

@@ -160,7 +160,10 @@ class Watcher:
         return _find_first((text, check()) for text, check in self._after_tick.items())
 
     def match_row(self, row: str, stream: Stream) -> tuple[str, str] | None:
-        """Return a breakpoint that matches a printed row, as its text and the matching value; None if none matches."""
+        """Return a breakpoint that matches a printed row, as its text and the matching value; None if none matches.
+
+        `stream` is the stream of the row.
+        """
         if stream not in SAMPLE_STREAMS:
             return None
         return _find_first((text, check(row)) for text, check in self._on_row.items())

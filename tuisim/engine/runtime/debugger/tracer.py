@@ -163,9 +163,10 @@ class Tracer:
     def history(
         self, count: int, name_of: Callable[[ScheduledThread], str]
     ) -> tuple[ExecutedLine, ...]:
-        """Return the last executed lines, up to `count`, whose position in their tick is known.
+        """Return the last executed lines, at most `count`, oldest first.
 
-        `name_of` returns the name of a thread.
+        Lines of a tick in which tracing began too late to count them are left out. `name_of` returns the name of a
+        thread.
         """
         met = [row for row in self._met if row[0] != self._uncounted_tick]
         return tuple(

@@ -28,7 +28,11 @@ def wait(time: float) -> None:
 
 
 def wait_until(end_us: int) -> Waiting[None]:
-    """Yield `end_us` until it is the simulated time in microseconds, even if a motor ends a move before."""
+    """Wait until a simulated time in microseconds.
+
+    Yield `end_us`, and yield it again if a motor ends a move before that time, so that the caller would go on too
+    early.
+    """
     if Connected.brick.command() == end_us:
         yield end_us
     while Connected.brick.now_us < end_us:
