@@ -31,8 +31,13 @@ def is_seen(view: Viewport, x_mm: float, y_mm: float) -> bool:
     return 0 <= col <= view.width_px and 0 <= row <= view.height_px
 
 
-def test_the_whole_field_is_in_view_while_the_robot_is_well_inside_it() -> None:
-    assert follow((1181, 571), (700, 400), (1700, 750)) == WHOLE
+@pytest.mark.parametrize("place", [(700, 400), (150, 500), (FIELD_WIDTH_MM, 0)])
+def test_the_whole_field_is_in_view_while_the_robot_is_on_it(place: tuple[float, float]) -> None:
+    assert follow((1181, 571), place) == WHOLE
+
+
+def test_the_whole_field_is_in_view_again_once_the_robot_is_back_on_it() -> None:
+    assert follow((1181, 571), (-300, 500), (150, 500)) == WHOLE
 
 
 @pytest.mark.parametrize("zoom", [1, 2, 4])

@@ -21,7 +21,7 @@ ZOOMS = (1, 2, 4)
 _KEEP_INSIDE = 0.22
 """A following view moves once the robot is nearer to an edge than this share of its size."""
 _KEEP_ON_FLOOR = 0.15
-"""The same for the view of a whole field on a floor: a robot in its middle is inside two thirds of it."""
+"""The same for a view of the size of the field, once the robot has left the field."""
 
 
 class Area(NamedTuple):
@@ -104,13 +104,14 @@ def follow_robot(
     Args:
         width_px: Width of the picture, at least 1.
         height_px: Height of the picture, at least 1.
-        zoom: One of `ZOOMS`; 1 shows the whole field and never moves.
+        zoom: One of `ZOOMS`; 1 shows the whole field, and does not move while the robot is on it.
         pose: The pose of the robot.
         previous: The viewport of the last frame, if any.
         cell: The pixels in a character cell.
         on_floor: Whether the robot may leave the field: then the view follows it off the field, by thirds of its size.
     """
-    if zoom == 1 and not on_floor:
+    on_field = 0 <= pose.x_mm <= FIELD_WIDTH_MM and 0 <= pose.y_mm <= FIELD_HEIGHT_MM
+    if zoom == 1 and (on_field or not on_floor):
         return fit_field(width_px, height_px, cell)
     mm_per_px = _fit_mm_per_px(width_px, height_px, cell) / zoom
     same_scale = (
