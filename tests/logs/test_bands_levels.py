@@ -26,6 +26,7 @@ from tuisim.logs.levels import (
     find_light,
     find_light_scale,
     find_nearest_greys,
+    has_light_levels,
     list_greys,
     measure_levels,
     undo_clamping,
@@ -180,3 +181,19 @@ def test_noisy_bands_of_nearly_one_level_are_described_as_one() -> None:
     }
     words = describe_levels(BandReport("Helligkeit", columns, 0, 300))
     assert words.startswith("Helligkeit: 3 levels: 92.16 (2x), 17.97 (2x), 95.00; ")
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "is_light"),
+    [
+        ("Color", [6.0, 0.0, 1.0, 6.0], False),
+        ("Color", [6.0, 5.5, 1.0], True),
+        ("Colour", [0.0, 100.0, 50.0], True),
+        ("left_red_pc", [0.0, 0.0, 5.0], True),
+        ("reflected", [5.0, 5.0], True),
+    ],
+)
+def test_codes_of_colours_get_no_names_of_greys(
+    name: str, values: list[float], is_light: bool
+) -> None:
+    assert has_light_levels(name, np.array(values)) is is_light

@@ -19,9 +19,8 @@ from tuisim.base.errors import counted
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.columns import list_numeric_columns
 from tuisim.logs.derived import read_spec
-from tuisim.logs.levels import Levels, Light, find_light, measure_levels
+from tuisim.logs.levels import Levels, Light, find_light, has_light_levels, measure_levels
 from tuisim.logs.plateaus import Search, find_plateaus
-from tuisim.logs.units import can_be_light
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log, Series
@@ -127,7 +126,9 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
     """
     series = log.series(name)
     light = read_light(log.metadata, series.run)
-    levels = measure_levels(series.values, light if can_be_light(name) else None, search)
+    levels = measure_levels(
+        series.values, light if has_light_levels(name, series.values) else None, search
+    )
     finite = np.append(0, np.cumsum(np.isfinite(series.values)))
     first, last = levels.start, levels.stop - 1
     samples = finite[last + 1] - finite[first]

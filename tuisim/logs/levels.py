@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tuisim.base.data_class import dataclass
+from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.css_colors import load_css_colors
 from tuisim.engine.core.sensors.color import find_response
 from tuisim.engine.core.spec import RunSpec
@@ -17,6 +18,7 @@ from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.magnitude import find_scale
 from tuisim.logs.plateaus import Search, find_plateaus
 from tuisim.logs.stillness import FIELDS
+from tuisim.logs.units import can_be_light, names_level
 
 NEAR_PERCENT = 2.0
 """Largest distance in percent at which a level gets the name of a grey."""
@@ -81,6 +83,17 @@ def _undo_end_clamping(below: FloatArray, noise: int) -> FloatArray:
     """
     undone = np.maximum(0.0, 2.0 * np.sqrt(noise * np.maximum(below, 0.0)) - noise)
     return np.where(below >= noise, below, undone)
+
+
+def has_light_levels(name: str, values: FloatArray) -> bool:
+    """Return whether a variable can have levels of light, which greys of the mat cause.
+
+    Codes of colours, such as 6 for white, are no levels: whole numbers from 0 to 7, unless the name says level.
+    """
+    if not can_be_light(name):
+        return False
+    are_codes = np.isin(values[np.isfinite(values)], np.arange(len(COLOR_NAMES))).all()
+    return names_level(name) or not are_codes
 
 
 def find_light_scale(values: FloatArray) -> float:

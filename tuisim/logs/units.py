@@ -51,6 +51,9 @@ _LIGHT = re.compile(
     r"colou?r|light|reflect|ambient|bright|intensity|(?:^|[\W_])(?:red|green|blue|gr[ae]y)",
     re.IGNORECASE,
 )
+_LEVEL_NAME = re.compile(
+    r"reflect|ambient|bright|intensity|%|_pc$|percent|_(?:red|green|blue)$", re.IGNORECASE
+)
 _PERCENT = re.compile(r"(?:%|_pc|percent|_proximity)$", re.IGNORECASE)
 
 
@@ -61,6 +64,11 @@ _OTHER = re.compile(
     re.IGNORECASE,
 )
 """Names of variables that are no light, or have a unit that light has not."""
+
+
+def names_level(name: str) -> bool:
+    """Return whether the name of a variable says that it is a level of light, and not the code of a colour."""
+    return bool(_LEVEL_NAME.search(name.partition(" #")[0]))
 
 
 def can_be_light(name: str) -> bool:

@@ -9,8 +9,7 @@ from rich.style import Style
 
 from tuisim.base import palette
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.logs.levels import Levels, Light, measure_levels
-from tuisim.logs.units import can_be_light
+from tuisim.logs.levels import Levels, Light, has_light_levels, measure_levels
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.axes import Limits
 from tuisim.pictures.charts.layout import Span, fit_names
@@ -51,7 +50,9 @@ def find_spans(trace: Trace, light: Light) -> tuple[Span, ...]:
     """
     if len(trace.times_s) > MAX_SAMPLES:
         return ()
-    levels = measure_levels(trace.values, light if can_be_light(trace.name) else None)
+    levels = measure_levels(
+        trace.values, light if has_light_levels(trace.name, trace.values) else None
+    )
     ends = trace.times_s[levels.start].tolist(), trace.times_s[levels.stop - 1].tolist()
     names = [grey.name if grey and not trace.scale else "" for grey in levels.greys]
     rows = zip(*ends, levels.level.tolist(), names, _find_steps(levels, trace.times_s), strict=True)
