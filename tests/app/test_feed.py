@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tuisim.app.feed import PanelFeed, _insert_gaps, _thin_positions, sample_series
+from tests.app.panel_help import SPEC
+from tuisim.app.feed import Feed, PanelFeed, _insert_gaps, _thin_positions, sample_series
 from tuisim.app.snapshot import CHART_PERIOD_S, RunPhase
 from tuisim.engine.runs.records import OutputRow, Stream
 
@@ -25,6 +26,7 @@ class Panels:
         self.chart = self
         self.on_screen = False
         self.got: list[tuple[str, list[float], bool]] = []
+        self.lag = ""
 
     def is_shown(self, panel: str) -> bool:
         assert panel == "chart"
@@ -32,6 +34,9 @@ class Panels:
 
     def append(self, name: str, times_s: list[float], values: list[float], logged: bool) -> None:
         self.got.append((name, values, logged))
+
+    def show_lag(self, words: str) -> None:
+        self.lag = words
 
     def clear_log(self) -> None:
         self.got.clear()
@@ -69,6 +74,18 @@ def test_a_chart_gets_nothing_of_the_run_before(panels: Panels, feed: PanelFeed)
     panels.on_screen = True
     feed.show()
     assert panels.got == []
+
+
+@pytest.mark.parametrize("unread, words", [(120, "drawn to 1.2 of 7.0 s"), (690, ""), (None, "")])
+def test_a_chart_that_lags_behind_a_flood_of_prints_says_how_far_it_is_drawn(
+    unread: int | None, words: str
+) -> None:
+    recording: Any = SimpleNamespace(
+        spec=SPEC,
+        telemetry=SimpleNamespace(count=700),
+        rows=SimpleNamespace(find_unread_tick=lambda: unread),
+    )
+    assert Feed(recording).describe_lag() == words
 
 
 def test_a_chart_gets_telemetry_as_often_as_it_is_drawn(

@@ -36,6 +36,8 @@ POINTS_A_FEED = 60
 POINTS_OF_A_RUN = 1500
 """Approximate number of moments measured of a run that began before the panel was shown."""
 TRACE_POINTS_A_FEED = 4000
+_MIN_LAG_S = 0.3
+"""A shorter lag of the chart is not seen."""
 _JUMP_MM = 25.0
 """No wheel moves the pen this far in one tick: the robot was placed elsewhere."""
 
@@ -76,6 +78,15 @@ class Feed:
     def is_far_behind(self) -> bool:
         """Whether it takes more than one call of `chart_series` to return the rest of the run."""
         return self._charted + POINTS_A_FEED < self.recording.telemetry.count
+
+    def describe_lag(self) -> str:
+        """Return up to which time the chart has what a program printed faster than it is read; empty without a lag."""
+        hz = self.recording.spec.profile.tick_hz
+        tick = self.recording.rows.find_unread_tick()
+        end = self.recording.telemetry.count
+        if tick is None or end - tick < _MIN_LAG_S * hz:
+            return ""
+        return f"drawn to {tick / hz:.1f} of {end / hz:.1f} s"
 
     def begin_again(self) -> bool:
         """If a part was plugged in since the last call, which adds columns, restart the chart at the first tick.
@@ -239,6 +250,8 @@ class PanelFeed:
             output.add(rows)
         self._uncharted += rows
         self._send_rows()
+        if self._feed is not None and self._panel_area.chart:
+            self._panel_area.chart.show_lag(self._feed.describe_lag())
 
     def _send_rows(self) -> None:
         """Pass the waiting output rows to the chart, if that is on the screen."""

@@ -187,6 +187,14 @@ async def test_a_frozen_chart_keeps_its_time_window_when_samples_arrive() -> Non
     assert not following[1]
 
 
+async def test_the_charts_border_says_how_far_it_is_drawn_until_it_is_drawn_to_the_end() -> None:
+    async with open_chart() as (_, app):
+        app.panel.show_lag("drawn to 1.2 of 7.0 s")
+        assert app.panel.border_subtitle == "drawn to 1.2 of 7.0 s"
+        app.panel.show_lag("")
+        assert not app.panel.border_subtitle
+
+
 async def test_clearing_the_chart_keeps_which_traces_are_ticked() -> None:
     async with open_chart() as (pilot, app):
         await opened(app, pilot)

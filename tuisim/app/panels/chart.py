@@ -76,6 +76,7 @@ class Chart(LinesPanel, can_focus=True):
         self._dragging = False
         self._pointed_s: float | None = None
         """The time below the pointer."""
+        self._lag = ""
         self._printed_s = 0.0
         """When the newest line of the output at a past instant was printed."""
         self._light = PLAIN_LIGHT
@@ -101,6 +102,7 @@ class Chart(LinesPanel, can_focus=True):
     def clear(self) -> None:
         """Remove all traces; a trace that gets points later is shown or hidden as before."""
         self._traces.clear()
+        self._lag = ""
         self._state = replace(self._state, x_limits=None)
         self._read(None)
         self._drop_cursor()
@@ -127,6 +129,12 @@ class Chart(LinesPanel, can_focus=True):
         if time_s != self._printed_s:
             self._printed_s = time_s
             self._schedule_drawing()
+
+    def show_lag(self, words: str) -> None:
+        """Show in the border how far the printed values are drawn; empty if all are."""
+        if words != self._lag:
+            self._lag = words
+            self._read(self._pointed_s)
 
     def _schedule_drawing(self) -> None:
         self._dirty = True
@@ -298,7 +306,7 @@ class Chart(LinesPanel, can_focus=True):
         """
         self._pointed_s = time_s
         words = escape_markup(self._format_values(self.size.width - 4))
-        words = words or (self.FROZEN if self._state.x_limits else "")
+        words = words or (self.FROZEN if self._state.x_limits else self._lag)
         # An assignment draws the panel again even if the words are the same.
         if words != self.border_subtitle:
             self.border_subtitle = words

@@ -274,6 +274,11 @@ class RowIndex:
             rows.append(row)
         return rows
 
+    def find_unread_tick(self) -> int | None:
+        """Return the tick of the first row that has not been read yet; None without one."""
+        row = next(self._output.read_rows(self._end), None)
+        return None if row is None else row[0].tick
+
     def _note(self, row: OutputRow) -> None:
         number = len(self._ticks)
         self._ticks.append(row.tick)
