@@ -210,6 +210,8 @@ class LessonController:
             try:
                 x_mm = self._run_controller.pose.x_mm
                 change = self.session.answer(text, x_mm, self._look())
+            except TuisimError as error:
+                raise TuisimError(self._app.fill_keys(str(error))) from error
             finally:
                 self._follow(change)
 

@@ -154,7 +154,7 @@ UNREADY = {
     "not looked": (
         SEEN,
         Typed("1", seen=frozenset()),
-        "Look first: Instrumentation or Chart shows it.",
+        "Look first: Instrumentation (key {panel-instrumentation}) or Chart (key {panel-chart}) shows it.",
     ),
     "no run": (
         RAN,

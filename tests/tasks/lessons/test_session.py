@@ -168,7 +168,7 @@ def test_a_likely_wrong_answer_is_told_its_reason(home: Path) -> None:
 
 def test_a_panel_shown_since_a_lessons_step_began_counts_as_seen(home: Path) -> None:
     session = _session(replace(PLACED, at_x_mm=(), where="", seen=("chart",)))
-    with pytest.raises(TuisimError, match="Look first: Chart shows it"):
+    with pytest.raises(TuisimError, match=r"Look first: Chart .key {panel-chart}. shows it"):
         session.answer("5", 0.0, Sight(frozenset({"output"})))
     session.look(Sight(frozenset({"chart"})))
     assert session.answer("5", 0.0, Sight(frozenset())) is Change.GO_ON

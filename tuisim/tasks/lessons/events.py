@@ -214,7 +214,10 @@ def _is_answer(question: QuestionCheck, text: str, answer: float | str) -> bool:
 
 
 def explain_unready(question: QuestionCheck, event: Typed) -> str:
-    """Return in a sentence what a student must do before a typed answer is checked; empty if nothing."""
+    """Return in a sentence what a student must do before a typed answer is checked; empty if nothing.
+
+    An id of an action in braces stands for its key.
+    """
     if question.run and not event.has_run:
         return "Run the program first: the question is about that run."
     if event.printed is not None and not any(
@@ -222,12 +225,18 @@ def explain_unready(question: QuestionCheck, event: Typed) -> str:
     ):
         return "This run has not printed that: do what the step says, and run again."
     if event.seen is not None and question.seen and not event.seen & set(question.seen):
-        return f"Look first: {' or '.join(view.capitalize() for view in question.seen)} shows it."
+        return f"Look first: {' or '.join(map(_name_view, question.seen))} shows it."
     places = question.at_x_mm
     x_mm = event.x_mm
     if x_mm is not None and places and not any(left <= x_mm <= right for left, right in places):
         return f"The robot is at x = {x_mm:.0f} mm. The question is about {question.where}."
     return ""
+
+
+def _name_view(view: str) -> str:
+    """Return the title of a panel or of the analyser, with the id of the action that shows it, for its key."""
+    action = "analyse" if view == "analyser" else f"panel-{view}"
+    return f"{view.capitalize()} (key {{{action}}})"
 
 
 def explain_wrong(question: QuestionCheck, wrong: Mapping[str, str], text: str) -> str:
