@@ -105,6 +105,15 @@ def test_where_room_is_short_the_pose_is_shown_before_names_of_colours(
     assert ("White" in first, "x 1000" in first) == (names, pose)
 
 
+def test_the_pose_stands_in_the_row_of_the_gyro_if_its_column_has_no_room() -> None:
+    robot = replace(SPEC.robot, ultrasonic=None, color_sensors=SPEC.robot.color_sensors[:1])
+    now = moment(spec=replace(SPEC, robot=robot), ultrasonic_mm=None)
+    shown = text(now, 35, 3)
+    assert shown[2].split() == ["Gyro", *shown[2].split()[1:2], "x", "1000", "y", "500", "h", "0"]
+    assert all(len(line) <= 35 for line in shown)
+    assert "x" not in text(now, 24, 3)[2]
+
+
 def test_a_narrow_panel_names_the_pen() -> None:
     assert "pen down" in text(moment(), 34, 11)[-1]
 

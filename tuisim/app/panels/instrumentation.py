@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 from tuisim.app.panels.instrumentation_lines import (
     COLUMN,
     MAX_NAME_CELLS,
@@ -189,7 +191,24 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
         used += column + _GAP * bool(used)
     if detail < 2 and (below := max(map(len, columns))) < height:
         lines[below] = _build_color_names(now, width, with_sensor_names=is_named)
+    if used < _measure_columns(widths):
+        _add_pose(lines, columns[:sensing], columns[sensing:], width)
     return lines
+
+
+def _add_pose(
+    lines: list[Line], columns: list[list[Line]], places: list[list[Line]], width: int
+) -> None:
+    """Put the pose, whose columns have no room, into the last row with only one reading, if it fits there."""
+    pose: Line = []
+    for place in itertools.chain.from_iterable(places):
+        pose += [format_unit(" " * (_GAP if not pose else 1)), *place]
+    for row in reversed(range(len(lines))):
+        readings = [cells[row] for cells in columns if row < len(cells)]
+        is_single = len(readings) == 1 and row < len(columns[0])
+        if is_single and _measure_line(readings[0]) + _measure_line(pose) <= width:
+            lines[row] = [*readings[0], *pose]
+            return
 
 
 def _measure_columns(widths: list[int]) -> int:
