@@ -312,6 +312,19 @@ def test_feedback_of_a_program_that_could_not_be_run_says_so() -> None:
     assert "did not run to its end: there is no Python file" in " ".join(text.split())
 
 
+def test_feedback_says_only_once_why_a_program_does_not_compile() -> None:
+    row = replace(
+        SHEET.rows[3],
+        failure="SyntaxError: '(' was never closed (line 2)",
+        cells=tuple(
+            replace(cell, reason="The program does not compile: '(' was never closed.", line=2)
+            for cell in SHEET.rows[3].cells
+        ),
+    )
+    text = build_feedback(SHEET, row, TEXT)
+    assert text.count("was never closed") == 1 and "Line 2:" not in text and "[missed]" in text
+
+
 def test_feedback_names_an_error_without_control_characters() -> None:
     text = build_feedback(SHEET, SHEET.rows[3], TEXT)
     assert "did not run to its end: \ufffd[2J" in text and not re.search(

@@ -58,6 +58,10 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 
+UNCOMPILED = "The program does not compile"
+"""How the reason begins for which such a program misses each goal."""
+
+
 def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Return whether, at the end of a span, the pen's drawing is near enough to the picture, or how it differs."""
     import numpy as np
@@ -279,9 +283,7 @@ class _Judge:
                 GoalState.MISSED, reason=f"It does not count: {self._evidence.falsified}."
             )
         if fault := read_facts(self._evidence.program).fault:
-            return _Outcome(
-                GoalState.MISSED, reason=f"The program does not compile: {fault[0]}.", line=fault[1]
-            )
+            return _Outcome(GoalState.MISSED, reason=f"{UNCOMPILED}: {fault[0]}.", line=fault[1])
         for name in (goal.before, goal.after, goal.until):
             if isinstance(name, str) and self._find_outcome(name).state is GoalState.UNKNOWN:
                 return self._build_unknown(f"Whether “{name}” was met is not known.")

@@ -12,6 +12,7 @@ from tuisim.base.atomic import replacing
 from tuisim.base.errors import ExportError, printable
 from tuisim.base.faults import describe_fault
 from tuisim.base.source import source_lines
+from tuisim.tasks.goals.judge import UNCOMPILED
 from tuisim.tasks.goals.judgement import format_points
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.marks.sheet import Cell, Sheet, SheetRow
@@ -80,7 +81,11 @@ def _build_feedback(sheet: Sheet, row: SheetRow, source: str) -> str:
     quoted = source_lines(source)
     cells = list(zip(sheet.columns, row.cells, strict=True))
     for column, cell in cells:
-        parts += [*_describe_goal(column, cell, row.runs, quoted), ""] if not column.hidden else []
+        # Why a program does not compile is said above, once for all goals.
+        is_explained = bool(row.failure) and cell.reason.startswith(UNCOMPILED)
+        if not column.hidden:
+            parts += _describe_goal(column, cell, row.runs, quoted, is_explained=is_explained)
+            parts.append("")
     parts += _describe_hidden([(column, cell) for column, cell in cells if column.hidden])
     lines = "\n".join(parts).rstrip("\n").split("\n")
     return "".join(f"{printable(line)}\n" for line in lines)
@@ -116,7 +121,10 @@ def _describe_hidden(cells: Sequence[tuple[Goal, Cell]]) -> list[str]:
     )
 
 
-def _describe_goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) -> list[str]:
+def _describe_goal(
+    column: Goal, cell: Cell, runs: int, lines: Sequence[str], *, is_explained: bool
+) -> list[str]:
+    """Return the paragraphs on a goal, without the reason if `is_explained`: it is said above."""
     if math.isnan(cell.points):
         return [_wrap(f"[could not be judged] {column.say}")]
     if column.points < 0 and not cell.met:
@@ -143,9 +151,10 @@ def _describe_goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) ->
         paragraphs.append(
             _wrap(f"Met in {cell.met} of {runs} runs; missed with seed {cell.seed}.", "    ")
         )
-    if cell.reason and not cell.hidden:
+    has_why = not (cell.hidden or is_explained)
+    if cell.reason and has_why:
         paragraphs.append(_wrap(f"Why: {cell.reason}", "    "))
-    if 0 < cell.line <= len(lines) and not cell.hidden:
+    if 0 < cell.line <= len(lines) and has_why:
         paragraphs.append(f"    Line {cell.line}: {lines[cell.line - 1].strip()[:WIDTH]}")
     if column.hint:
         paragraphs.append(_wrap(f"Hint: {column.hint}", "    "))
