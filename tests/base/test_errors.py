@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.cases import cases
-from tuisim.base.errors import MOST_LISTED, listed, printable
+from tuisim.base.errors import MOST_LISTED, listed, nearest, printable
 from tuisim.cli import run_command
 
 EVIL = "a\x1b[31m\x9bb\x07"
@@ -126,3 +126,8 @@ def test_stored_text_is_shown_without_control_characters(
     own = [line for line in said if line != EVIL and not line.startswith(raised)]
     assert own
     assert not [line for line in own if not line.isprintable()]
+
+
+def test_a_name_that_is_only_half_like_a_wrong_one_is_not_suggested() -> None:
+    assert nearest("nope", ["Loop", "Square"]) == "one of Loop, Square"
+    assert nearest("Sqare", ["Loop", "Square"]) == "did you mean Square?"

@@ -74,7 +74,7 @@ def closest(name: str, known: Iterable[str], most: int = 3, likeness: float = 0.
 def nearest(name: str, allowed: Iterable[str]) -> str:
     """Return the hint for an unknown name: the allowed names most similar to it, or all if none is similar."""
     names = list(allowed)
-    return did_you_mean(closest(name, names, 3, 0.5)) or f"one of {', '.join(names)}"
+    return did_you_mean(closest(name, names, 3, 0.55)) or f"one of {', '.join(names)}"
 
 
 def among(name: str, allowed: Iterable[str], unlisted: Iterable[str] = ()) -> str:

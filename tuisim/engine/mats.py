@@ -161,7 +161,7 @@ def own_background(path: Path) -> Background:
 
 def names_hint(name: str, known: list[str]) -> str:
     """Return the hint for an unknown mat: the closest match or, if there is none, all names."""
-    guess = did_you_mean(closest(name, known, 1, 0.5))
+    guess = did_you_mean(closest(name, known, 1))
     return guess or f"one of {', '.join(known)}, or the path of an image"
 
 

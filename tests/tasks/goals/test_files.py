@@ -45,7 +45,7 @@ BAD = {
     "no condition": (goal(), "line 5: goal[2]: has no condition (one of reach, pass,"),
     "unknown key": (
         goal("finsh = true"),
-        "line 7: goal[2].finsh: no such key (did you mean finish or ",
+        "line 7: goal[2].finsh: no such key (did you mean finish?)",
     ),
     "unknown key of a condition": (
         goal("reach = { x_m = 5 }"),
