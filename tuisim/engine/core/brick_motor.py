@@ -130,7 +130,7 @@ class BrickMotor:
         return self.mode, self.sign, self.target_dps, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which an obstacle stopped the wheel; see `Motor.hold_back`."""
+        """Undo the rest of a tick in which an obstacle stopped the wheel; arguments as for `Motor.hold_back`."""
         mode, sign, target_dps, position_deg = before
         if mode == STOPPED or turned_deg == 0.0:
             return
@@ -274,7 +274,7 @@ class BrickMotor:
         return ENDLESS
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Advance the motor by one tick, and return the rotation of the wheel in degrees; see `Motor.step`."""
+        """Advance the motor by one tick; return the rotation of the wheel in degrees. Arguments as for `Motor.step`."""
         mode = self.mode
         if mode == FOREVER and not noise_dps:
             # The common case: only the ramp matters.

@@ -100,7 +100,7 @@ class BrowserMotor:
     # Ticks
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Advance the motor by one tick, and return the rotation of the wheel in degrees; see `Motor.step`."""
+        """Advance the motor by one tick; return the rotation of the wheel in degrees. Arguments as for `Motor.step`."""
         speed = self.speed_dps
         if speed != self.speed_sp or noise_dps:
             self.speed_dps = speed = self._step_register(speed, noise_dps)
@@ -294,7 +294,7 @@ class BrowserMotor:
         return self.mode, self._direction, self._aim, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which an obstacle stopped the wheel; see `Motor.hold_back`."""
+        """Undo the rest of a tick in which an obstacle stopped the wheel; arguments as for `Motor.hold_back`."""
         mode, *_, position_deg = before
         if mode == STOPPED or turned_deg == 0.0:
             return

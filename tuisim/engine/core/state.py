@@ -43,7 +43,10 @@ class Instant:
     """How many degrees the program counts for one of each motor; empty if this was not requested."""
 
     def get_scale(self, number: int) -> float:
-        """Return how many degrees the program counts for one of a motor; `number` is its number among all motors."""
+        """Return how many degrees the program counts while a motor turns by one.
+
+        `number` is the motor's number among all motors.
+        """
         return self.scales[number] if number < len(self.scales) else 1.0
 
     @property

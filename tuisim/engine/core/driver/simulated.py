@@ -209,7 +209,7 @@ class SimulatedMotor(DriverMotor):
         return -(-tick * NS_PER_S // self._hz)
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Advance the motor by one tick, and return the rotation of the wheel in degrees; see `Motor.step`."""
+        """Advance the motor by one tick; return the rotation of the wheel in degrees. Arguments as for `Motor.step`."""
         end_ns = self._end_ns(tick)
         if self._cruise_dps:
             if end_ns < self._cruise_end_ns and not noise_dps:
@@ -346,7 +346,10 @@ class SimulatedMotor(DriverMotor):
         return STOPPED, 1.0, 0.0, self._angle_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Set the axle to the angle at which an obstacle stopped it in the last tick; see `Motor.hold_back`."""
+        """Set the axle to the angle at which an obstacle stopped it in the last tick.
+
+        The arguments are as for `Motor.hold_back`.
+        """
         if turned_deg == 0.0:
             return
         if self._cruise_dps:

@@ -122,7 +122,7 @@ class Controller:
         return self.trajectory.find_segment(then_us).find_milli(then_us) - self._behind_milli
 
     def find_target(self, now_us: int, _motor: object) -> int:
-        """Return the position that a motor should have, in half thousandths of a count; see `motor.Guide`."""
+        """Return the position that a motor should have at a time in µs, in half thousandths of a count."""
         return 2 * self.milli(now_us)
 
     def rate(self, now_us: int, _motor: object = None) -> int:
@@ -390,5 +390,8 @@ class Controller:
         return near and abs(rate) < self.settings.speed_tolerance
 
     def lets_go(self, now_us: int, rate: int) -> bool:
-        """Return whether a motor whose motion has ended stops following this controller; see `motor.Guide`."""
+        """Return whether a motor whose motion has ended stops following this controller.
+
+        The arguments are as for `motor.Guide.lets_go`.
+        """
         return self.done(now_us, self.milli(now_us), rate if self.settings.speed_window_ms else 0)

@@ -203,7 +203,10 @@ class DriveBase:
         return windowed and self._ending in (Ending.COAST, Ending.BRAKE)
 
     def lets_go(self, now_us: int, _rate: int) -> bool:
-        """Return whether a motor whose motion has ended stops following this drive base; see `motor.Guide`."""
+        """Return whether a motor whose motion has ended stops following this drive base.
+
+        The arguments are as for `motor.Guide.lets_go`.
+        """
         return self.done(now_us)
 
     @property
@@ -368,7 +371,7 @@ class DriveBase:
         return None if one is None or other is None else max(one, other)
 
     def find_target(self, now_us: int, motor: ServoMotor) -> int:
-        """Return the position that a motor should have; see `motor.Guide`."""
+        """Return the position that a motor should have at a time in µs, in half thousandths of a count."""
         if now_us != self._at_us:
             self._follow_gyro()
             self._at_us, self._millis = (

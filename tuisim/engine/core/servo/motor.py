@@ -323,7 +323,7 @@ class ServoMotor:
         return self.mode, self.sign, 0.0, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which an obstacle stopped the wheel; see `Motor.hold_back`."""
+        """Undo the rest of a tick in which an obstacle stopped the wheel; arguments as for `Motor.hold_back`."""
         if turned_deg == 0.0:
             return
         position_deg = before[-1]
@@ -417,7 +417,7 @@ class ServoMotor:
         return Glide(turns, positions[1:])
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Advance the motor by one tick, and return the rotation of the wheel in degrees; see `Motor.step`."""
+        """Advance the motor by one tick; return the rotation of the wheel in degrees. Arguments as for `Motor.step`."""
         self._tick = tick
         if self.mode == STOPPED:
             return 0.0

@@ -154,7 +154,13 @@ def _patch_moves(motor: Any) -> None:
         start(self, "run_timed", brake, block)
 
     def on(self: Any, speed: Any, brake: bool = True, block: bool = False) -> None:
-        """Rotate the motor at a speed until the next command; `block` waits until it has stopped."""
+        """Rotate the motor at a speed until the next command.
+
+        Args:
+            speed: In percent, or an object such as `SpeedDPS`.
+            brake: Whether the motor brakes when it is stopped; otherwise it coasts.
+            block: Whether the call returns only when the motor has stopped.
+        """
         self.speed_sp = round_half_up(self._speed_native_units(speed))
         start(self, "run_forever", brake, block)
 

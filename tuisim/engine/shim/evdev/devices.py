@@ -86,7 +86,14 @@ def numbered(names: str) -> Iterator[tuple[str, int]]:
 
 
 def codes_module(name: str) -> types.ModuleType:
-    """Return the module with the number of each name of a code, and a table of names by number for each group."""
+    """Return a module with the codes of input events, like `evdev.ecodes`.
+
+    In it each code has a name, whose value is its number; for each group of codes there is a table of the names by
+    number.
+
+    Args:
+        name: The name of the module.
+    """
     module = types.ModuleType(name, "Types and codes of input events.")
     codes: dict[str, int] = {}
     tables: dict[str, dict[int, str | list[str]]] = {}
@@ -296,7 +303,7 @@ _looked = _Looked()
 
 
 def point_at_gamepads(error: BaseException) -> None:
-    """Add a note to an error that only the brick's buttons exist, if the program has listed devices.
+    """Add a note to an error if the program has listed the input devices: that only the brick's buttons exist.
 
     Such a program probably looks for a gamepad.
     """
