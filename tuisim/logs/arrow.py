@@ -91,7 +91,7 @@ def convert_to_texts(column: pa.ChunkedArray) -> pa.ChunkedArray:
 
 
 def match_text(column: pa.ChunkedArray, text: str) -> BoolArray:
-    """Return for each cell whether it contains a text, shape (n,); case is ignored."""
+    """Return for each cell whether it contains a text, in upper or lower case, shape (n,)."""
     return _convert_mask(pc.match_substring(convert_to_texts(column), text, ignore_case=True))
 
 

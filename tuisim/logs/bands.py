@@ -218,7 +218,7 @@ def distance_mm(x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
 
 
 def describe_levels(report: BandReport) -> str:
-    """Return the levels of the bands in a report, in words."""
+    """Return the levels of a report's bands as text."""
     if not report.count:
         return f"{report.variable}: no level: its values stand still nowhere"
     levels = _group_levels(report)
@@ -292,10 +292,18 @@ def measure_widths(values: FloatArray, driven_mm: FloatArray, levels: Levels) ->
 def _find_edges(
     values: FloatArray, driven_mm: FloatArray, levels: Levels, pairs: tuple[IntArray, IntArray]
 ) -> FloatArray:
-    """Return where samples pass the middle between each level and the next level, in mm, shape (n - 1,).
+    """Return the position in mm at which samples pass the middle between each level and the next, shape (n - 1,).
 
-    With noise, samples may pass the middle several times: the edge is in the middle between the first and the last
-    time.
+    With noise, samples may pass the middle several times: the edge is then midway between the first and the last time.
+
+    Args:
+        values: Samples, shape (m,).
+        driven_mm: The distance driven at each of them, shape (m,).
+        levels: The n levels of the samples.
+        pairs: The pairs of neighbouring samples between the levels, from `_find_pairs`.
+
+    Returns:
+        NaN where samples of a third level lie between two levels.
     """
     level, row = pairs
     middles = (levels.true_level[:-1] + levels.true_level[1:]) / 2.0
@@ -328,6 +336,9 @@ def _find_pairs(last: IntArray, first: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def _measure_reach(levels: Levels) -> FloatArray:
-    """Return by how much a sample between two successive levels may differ from their middle, shape (n - 1,)."""
+    """Return how far a sample may be from the middle between a level and the next without being of a third level.
+
+    The shape is (n - 1,).
+    """
     spread = np.maximum(levels.spread[:-1], levels.spread[1:])
     return _FAR_OF_STEP * np.abs(np.diff(levels.true_level)) + _FAR_OF_SPREAD * spread

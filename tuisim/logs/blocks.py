@@ -70,9 +70,12 @@ class LineCutter:
             raise LogError(f"no encoding {encoding!r}", hint) from error
 
     def feed(self, data: bytes) -> Block | None:
-        """Add bytes, or empty bytes at the end of the file; return the lines that are now complete, None without any.
+        """Decode further bytes of the file; return the lines that are complete now, or None if there are none.
 
-        The first block has two lines if the text has them: a single one may be a heading or a row.
+        The first block has two lines if the text has them: from a single line one cannot tell a heading from a row.
+
+        Args:
+            data: The bytes; empty at the end of the file.
 
         Raises:
             LogError: a line is too long.
@@ -110,7 +113,7 @@ class LineCutter:
             return self._guess(self._decoder.getstate()[0] + data)
 
     def _find_utf_16(self, data: bytes) -> None:
-        """Choose UTF-16 as the encoding if the first bytes of the text are in it."""
+        """If the first bytes of the text show that it is UTF-16, choose that encoding."""
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             self._choose("utf-16")
             return
@@ -129,7 +132,7 @@ class LineCutter:
         )
 
     def _guess(self, data: bytes) -> str:
-        """Choose an encoding for a text that is not UTF-8, and return bytes decoded with it."""
+        """Choose an encoding for a text that is not UTF-8; return the text of some bytes in that encoding."""
         for encoding in _GUESSES:
             try:
                 codecs.getincrementaldecoder(encoding)().decode(data)

@@ -102,11 +102,11 @@ def _trim(cells: pa.Array) -> tuple[Any, Any]:
 
 
 def find_form(cells: pa.Array, separator: str, decimal: str) -> NumberForm | None:
-    """Return the number form of most cells of a column; None if most are not numbers.
+    """Return the form in which most cells of a column are numbers; None if most are not numbers.
 
     Args:
         cells: Texts, at least one of which is not empty.
-        separator: The separator of cells: if it is a comma, 1,000 is a thousand, else 1.
+        separator: The separator of the table's cells. If it is a comma, 1,000 in a cell means a thousand, otherwise 1.
         decimal: The decimal sign; empty to find it.
     """
     texts = _trim(cells)[0].drop_null()[:_JUDGED_CELLS]

@@ -69,7 +69,7 @@ UNIT_NAMES = {seconds: words[-1] for seconds, words in _UNIT_WORDS_S.items()}
 
 
 class TimeName(NamedTuple):
-    """The name of a column, split into its base and its unit of time."""
+    """The name of a column, split into a word and a unit of time."""
 
     base: str
     """Lower case, without its unit and without surrounding punctuation."""
@@ -78,7 +78,7 @@ class TimeName(NamedTuple):
 
 
 def parse_time_name(name: str) -> TimeName:
-    """Return a column's name as its base and its unit; a name such as `ms` is its own unit."""
+    """Return a column's name split into a word and a unit of time; of a name such as `ms`, both are the unit."""
     text = name.strip().lower()
     match = _UNIT.search(text, max(0, len(text) - _LONGEST_UNIT))
     unit_s = None
@@ -277,11 +277,12 @@ def _list_moments(table: pa.Table) -> list[str]:
 
 
 def guess_columns(table: pa.Table) -> Layout:
-    """Guess the roles of the columns from their names and types.
+    """Return the roles of the columns as guessed from their names and types.
 
-    The time is the column with the most certain name, else a column with a type for times, else the number of the row.
-    If no column has a name, the first column is the time if its numbers rise. A text column with a known name next to a
-    column `value` has the variables; otherwise every other numeric column is a variable.
+    The time is the column with the most certain name for it. Without such a name, it is a column with a type for times;
+    if no column has a name, it is the first column if its numbers rise; else it is the number of the row. A text column
+    with a known name next to a column `value` has the names of variables; otherwise every other numeric column is a
+    variable.
     """
     names = table.column_names
     named = _find_named_time(table)
@@ -304,7 +305,15 @@ def guess_columns(table: pa.Table) -> Layout:
 
 
 def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataType], bool]) -> str:
-    """Return the column with the first of some names, ignoring case, if its type fits; empty if there is none."""
+    """Return the column that has the first of some names, in upper or lower case, and a fitting type.
+
+    Empty without one.
+
+    Args:
+        table: The table.
+        names: The names in lower case, the most wanted first.
+        fits: Returns whether a type fits.
+    """
     columns = {field.name.strip().lower(): field.name for field in table.schema if fits(field.type)}
     return next((columns[name] for name in names if name in columns), "")
 
@@ -339,11 +348,11 @@ def _find_named_time(table: pa.Table) -> str:
 
 
 def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:
-    """Yield the names of the text columns in which at least half of the first cells fit.
+    """Yield the names of the text columns in which at least half of the first cells meet a condition.
 
     Args:
         table: The table.
-        fits: Returns whether a cell fits.
+        fits: Returns whether a cell meets the condition.
     """
     for field in table.schema:
         if is_text(field.type):
@@ -366,7 +375,7 @@ def find_unread_time(table: pa.Table, layout: Layout) -> str:
 
 
 def has_guessed_order(table: pa.Table, layout: Layout) -> bool:
-    """Return whether the times are dates such as 03/04/2024, of which it is only guessed that the day comes first."""
+    """Return whether the times are dates such as 03/04/2024, in which only a guess tells the day from the month."""
     if not layout.time or not is_text(table.field(layout.time).type):
         return False
     return order_is_guessed(table.column(layout.time).cast(pa.string()))
@@ -381,7 +390,7 @@ def time_in_words(layout: Layout) -> str:
 
 
 def _find_rising(table: pa.Table) -> str:
-    """Return the name of the first column if its numbers rise and no column has a heading; else `ROW`."""
+    """Return the name of the first column if its numbers rise and the table has no headings; else `ROW`."""
     names = table.column_names
     nameless = all(name == f"column {number}" for number, name in enumerate(names, 1))
     return names[0] if nameless and len(names) > 1 and _is_rising(table, names[0]) else ROW

@@ -68,9 +68,10 @@ def is_clock(cell: str) -> bool:
 
 
 def normalize_dates(texts: Any) -> Any:
-    """Return texts with dates as year-month-day, without blanks and brackets around them; other texts may change, too.
+    """Return texts in which each date is year-month-day, without the blanks and brackets around it.
 
-    Dates with the year at the end are read as day first, unless in one of the texts only the month can be first.
+    In dates with the year at the end, the day is first, unless a date among the texts shows that the month is. Texts
+    that are no dates may change, too.
     """
     texts = pc.utf8_trim_whitespace(texts)
     if not pc.any(pc.invert(pc.match_substring_regex(texts, _USUAL))).as_py():
@@ -82,7 +83,7 @@ def normalize_dates(texts: Any) -> Any:
 
 
 def order_is_guessed(texts: Any) -> bool:
-    """Return whether it is a guess that dates with the year at the end begin with the day, not the month."""
+    """Return whether dates with the year at the end leave open if the day or the month is first."""
     texts = _replace_patterns(texts, _REWRITTEN[:1])
     first, second = _find_largest_parts(texts)
     if not 0 < max(first, second) <= _LAST_MONTH:

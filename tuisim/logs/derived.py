@@ -130,7 +130,7 @@ def _compute_series(log: Log, definition: Definition, names: Sequence[str], base
 
 
 def _sample_column(log: Log, name: str, base: Series) -> FloatArray:
-    """Return the values of a variable or column at each sample of another series."""
+    """Return the values of a variable or column at each sample of the series `base`, shape (n,)."""
     for candidate in (name, f"{name} #{base.run}"):
         if candidate in log.names:
             series = log.series(candidate)
@@ -161,7 +161,7 @@ def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
 
 
 def list_expression_words(log: Log) -> Iterator[str]:
-    """Yield the words that an expression may contain: variables, columns, functions."""
+    """Yield the words that an expression on a log may contain: its variables and columns, and the functions."""
     yield from (name if name.isidentifier() else f"`{name}`" for name in _list_names(log))
     yield from find_computed_columns(log)
     yield from (f"{name}(" for name in (*SIGNALS, *FUNCTIONS))

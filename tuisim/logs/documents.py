@@ -91,7 +91,7 @@ class DocumentReader:
         return build_json_reader(self._notes).build_table(objects) if any(objects[0][1]) else None
 
     def _build_from_lists(self, rows: Sequence[Any]) -> pa.Table | None:
-        """Return a table of rows that are lists, the first of which may be the names, or single values.
+        """Return a table of rows that are lists or single values; the first list may be the column names.
 
         The result is None without rows.
         """
@@ -102,7 +102,13 @@ class DocumentReader:
         return CsvReader(self._notes, self._choices).read(Block(1, text.getvalue()))
 
     def _list_rows(self, value: Mapping[str, Any]) -> list[Any]:
-        """Return the rows in a JSON object: the rows of its only table or of its columns, or else the object itself."""
+        """Return the rows in a JSON object: those of the only table in it, or those of its columns.
+
+        Else the object as one row.
+
+        Raises:
+            LogError: the object has several tables.
+        """
         inner = [name for name, cells in value.items() if _is_table(cells)]
         if len(inner) > 1:
             raise LogError(f"has several tables: {listed(map(repr, inner))}", _ALLOWED)
@@ -122,7 +128,7 @@ class DocumentReader:
 
 
 def _is_table(value: Any) -> bool:
-    """Return whether a value in a document is a list of objects, or an object with lists."""
+    """Return whether a value in a JSON document is a table: a list of objects, or an object with at least one list."""
     if isinstance(value, list):
         return bool(value) and all(isinstance(cell, dict) for cell in value)
     return isinstance(value, dict) and any(isinstance(cell, list) for cell in value.values())

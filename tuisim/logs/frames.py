@@ -132,7 +132,12 @@ def _read_exported(source: Path, notes: Notes) -> pa.Table:
 
 
 def _build_column(name: str, rows: Sequence[Mapping[str, Any]]) -> pa.Array:
-    """Return a column of exported rows with a type that fits all its cells."""
+    """Return a column of exported rows as an array whose type fits all its cells; a missing number becomes NaN.
+
+    Args:
+        name: The name of the column.
+        rows: The rows.
+    """
     if not rows:
         return pa.nulls(0, pa.string() if name in (*TIMEDELTA, *TEXT) else pa.float64())
     column = pa.array([row[name] for row in rows])
@@ -144,11 +149,13 @@ def _build_column(name: str, rows: Sequence[Mapping[str, Any]]) -> pa.Array:
 def build_even_frame(
     all_series: Sequence[Series], period_s: float, between: Between
 ) -> pd.DataFrame:
-    """Return the values of each series at a fixed period: one column for each series, with unique names.
+    """Return the values of each series at even times, from the first sample of all to the last.
+
+    The frame has one column for each series, with unique names.
 
     Args:
         all_series: The series.
-        period_s: The period in seconds.
+        period_s: The time between two rows in seconds.
         between: The interpolation between samples.
     """
     start_s = min(float(series.time_s.min()) for series in all_series)

@@ -164,7 +164,15 @@ def find_heading(
 
 
 def _skip_to(lines: Sequence[tuple[int, str]], row: int) -> Sequence[tuple[int, str]]:
-    """Return the lines from the line with a number on; raise LogError if no line has that number."""
+    """Return the lines from the one with a number on.
+
+    Args:
+        lines: Lines, each with its number in the file.
+        row: The number.
+
+    Raises:
+        LogError: no line has that number.
+    """
     lines = [line for line in lines if line[0] >= row]
     if not lines or lines[0][0] != row:
         raise LogError(f"has no line {row} for --header", "lines count from 1")
@@ -194,9 +202,14 @@ def _split_comments(
 
 
 def _read_comment(comment: tuple[int, str], below: _Line, separator: str) -> _Line | None:
-    """Return a comment as a line of column names.
+    """Return a comment as the line of the column names; None if it cannot be one.
 
-    The result is None if the comment has another number of words than the next line has cells.
+    It cannot if it has numbers, or another number of cells than the line below it.
+
+    Args:
+        comment: Line number and text.
+        below: The next line.
+        separator: The separator of cells.
     """
     row, text = comment
     names = [name.strip() for name in split_cells(text.lstrip("#%/; \t"), separator)]
@@ -320,7 +333,11 @@ def _has_inner_commas(lines: Sequence[str]) -> bool:
 
 
 def _find_table(table: Sequence[_Line]) -> _Run:
-    """Return the lines that are the table: the first long run that begins with numbers, else the most certain run."""
+    """Return the run of lines that is the table.
+
+    It is the first long run whose rows begin with a number or a time; without one, the run that most certainly is a
+    table.
+    """
     runs = list(_find_runs(table))
     best = max(runs, key=lambda run: run.rank._replace(is_table=run.rank.numbers > 0))
     strong = [run for run in runs if run.kinds[0] in "nt" and run.rank.is_table]
@@ -385,6 +402,12 @@ def _find_names(
     """Return the names of a table's columns, the lines above its heading, and the index of its first row.
 
     The names are None if the table has no heading.
+
+    Args:
+        table: The lines of the table.
+        above: The lines above it.
+        start: The index of the first line that may be a row.
+        run: The table's typical rows.
     """
     width = len(run.kinds)
     if above:
@@ -426,7 +449,7 @@ def _has_units(cells: Sequence[str], names: _Line) -> bool:
 
 
 def _has_names(rows: Sequence[_Line]) -> bool:
-    """Return whether the first row is a heading, given that it has the same kinds of cells as the other rows."""
+    """Return whether the first of some rows is a heading, although it has the same kinds of cells as the others."""
     first = rows[0]
     if first.kinds[0] == "t" and (len(rows) < 2 or rows[1].kinds[0] == "t"):
         return False

@@ -23,13 +23,14 @@ Row = Mapping[str, Any]
 
 
 class ObjectReader:
-    """Reads a file block by block, in which each line has objects.
+    """Reads a file block by block whose lines contain objects, such as JSON.
 
-    The first block fixes names and types of the columns.
+    The first block fixes the columns and their types.
 
     Args:
-        parse: Returns the objects in a line, given its number and text; none if it has none.
-        kind: What a line must be, in the singular and in the plural.
+        notes: Receives warnings.
+        parse: Returns the objects in a line, given its number and text; empty if it has none.
+        kind: What a line must be, in the singular and in the plural, for warnings.
     """
 
     def __init__(

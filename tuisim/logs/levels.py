@@ -75,11 +75,11 @@ def undo_clamping(percents: FloatArray, noise: int) -> FloatArray:
 
 
 def _undo_end_clamping(below: FloatArray, noise: int) -> FloatArray:
-    """Return the true distances of levels from one end of the scale, from the distances after clamping.
+    """Return how far levels really are from one end of the scale, given how far they seem to be after clamping.
 
     Args:
-        below: The distances after clamping.
-        noise: Light noise of the run.
+        below: The distances from the end after clamping.
+        noise: Light noise of the run, in the same unit.
     """
     undone = np.maximum(0.0, 2.0 * np.sqrt(noise * np.maximum(below, 0.0)) - noise)
     return np.where(below >= noise, below, undone)

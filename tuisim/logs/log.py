@@ -181,10 +181,10 @@ class Log:
         return cache.members
 
     def series(self, name: str) -> Series:
-        """Return the series of a name. Its arrays must not be modified, as they may be shared.
+        """Return the series with a name. Its arrays must not be modified, as they may be shared.
 
         Raises:
-            LogError: the log has no series of that name.
+            LogError: the log has no series with that name.
         """
         if name in self.derived:
             return self.derived[name]
@@ -256,11 +256,12 @@ class Log:
         return log
 
     def add_derived(self, column: str, series: Sequence[Series]) -> Log:
-        """Return the same log with additional derived series.
+        """Return a log with further derived series, which replace earlier ones of that name.
 
         Args:
-            column: Name of the new column of the table; it is not added if a series has several samples in one row.
-            series: One series, or one per run.
+            column: Name of a new column of the table with their values; the table gets no column if a series has
+                several samples in one row.
+            series: One series, or one for each run.
         """
         bare = self.drop_derived(column)
         derived = {**bare.derived, **{member.name: member for member in series}}

@@ -50,9 +50,9 @@ def count_samples(pieces: Pieces) -> IntArray:
 
 
 def group_by_length(values: FloatArray, pieces: Pieces) -> Iterator[tuple[IntArray, FloatArray]]:
-    """Yield groups of pieces of the same length: the pieces' indices, and their samples, shape (m, length).
+    """Yield pieces in groups of the same length: the indices of m pieces, and their samples, shape (m, length).
 
-    A group has a limited number of samples: many pieces of one length are yielded in several groups.
+    A group is limited in size, so that many pieces of one length are yielded in several groups.
     """
     lengths = count_samples(pieces)
     order = np.argsort(lengths, kind="stable")
@@ -137,9 +137,11 @@ def _join_seams(
 
 
 def _find_firsts(count: int, seams: IntArray) -> IntArray:
-    """Return for each piece the index of the first piece that it is joined to.
+    """Return for each piece the index of the first of the pieces with which it is joined.
 
-    Seams inside earlier seams are ignored.
+    Args:
+        count: The number of pieces.
+        seams: The seams to join, as for `_join_seams`; a seam inside an earlier one is ignored.
     """
     taken = []
     reached = -1
@@ -209,7 +211,7 @@ def _fit_lines(values: FloatArray, pieces: Pieces, sigma: float) -> _Lines:
 
 
 def _sum_products(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the sum of the products of two arrays in each row, without creating an array of the products."""
+    """Return for each row the sum of the products of two arrays, shape (n, length), without storing all products."""
     sums: FloatArray = np.einsum("ij,ij->i", left, right)
     return sums
 

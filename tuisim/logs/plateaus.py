@@ -211,9 +211,14 @@ def _join_pieces(
 def _settle(
     values: FloatArray, plateaus: PlateauArray, parts: PlateauArray, ground: Ground, min_step: float
 ) -> PlateauArray:
-    """Return plateaus that are extended at their ends and joined where one continues another, if they have a level.
+    """Return plateaus that are extended at their ends and joined where one continues another, without moving ones.
 
-    The parts in `parts`, the level parts of slopes, are added if they overlap none of the plateaus.
+    Args:
+        values: The log.
+        plateaus: The plateaus.
+        parts: Level parts of slopes; those that overlap none of the plateaus are added.
+        ground: Range and noise of the log.
+        min_step: The smallest step between levels.
     """
     if len(plateaus):
         # After they were extended, two plateaus may be separated only by a stray, so they are joined again.
@@ -226,7 +231,7 @@ def _settle(
 
 
 def _find_extremes(values: FloatArray) -> tuple[float, float]:
-    """Return the lowest and the highest level of a log, ignoring strays."""
+    """Return the lowest and the highest value of a log, where a few strays in a row do not count."""
     if len(values) > STRAY_SAMPLES:
         windows = sliding_window_view(values, STRAY_SAMPLES + 1).T
         low, high = float(windows.max(axis=0).min()), float(windows.min(axis=0).max())
@@ -247,12 +252,15 @@ def _cut(values: FloatArray, sigma: float) -> Pieces:
 
 
 def _choose_places(scaled: FloatArray) -> IntArray:
-    """Return the positions of possible cuts, from 0 to the length, both included.
+    """Return the positions at which a log may be cut, from 0 to its length, both included.
 
     In a long log, these are the positions where the means of the samples before and after differ most, by more than
     `CERTAINTY` standard deviations. Each width of the means is about three times the one before it, so that one of them
     fits into a level of any length without losing much of its weight; 24 samples show a step of 1.2 times the noise.
-    The neighbours of a peak may be cuts, too: noise shifts it.
+    The neighbours of such a position may be cuts, too, since noise shifts it.
+
+    Args:
+        scaled: The log in units of the noise.
     """
     count = len(scaled)
     if count <= MAX_SAMPLES_CUT_ANYWHERE:
@@ -373,9 +381,14 @@ def _find_ramps(values: FloatArray, plateaus: PlateauArray, sigma: float) -> Boo
 
 
 def _add_ends(values: FloatArray, plateaus: PlateauArray, min_step: float) -> PlateauArray:
-    """Return plateaus; the first and the last sample become plateaus, too, if they are a step away from the nearest.
+    """Return plateaus in order; the first and the last sample of the log also become plateaus if they are a step away.
 
-    A program that logs until it meets a value ends its log at the first sample of that level.
+    They are so for a program that logs until it meets a value: its log ends at the first sample of that level.
+
+    Args:
+        values: The log.
+        plateaus: Its plateaus.
+        min_step: The smallest step between levels.
     """
     if not len(plateaus):
         return plateaus

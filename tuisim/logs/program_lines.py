@@ -64,7 +64,10 @@ class ProgramLine(NamedTuple):
 
 
 def parse_line(line: str) -> ProgramLine | None:
-    """Return the contents of a line that a program printed; None if it has neither samples nor a time with numbers."""
+    """Return the time and the samples or numbers in a line that a program printed.
+
+    The result is None if the line has no samples, and no numbers after a time.
+    """
     if len(line) > _MAX_CHARACTERS:
         return None
     if (sample := parse_sample(line)) is not None:
@@ -74,13 +77,16 @@ def parse_line(line: str) -> ProgramLine | None:
     time, rest, certain = _split_time(line.strip())
     if samples := _ITEM.findall(_strip_prefixes(rest, _ITEMS)):
         return ProgramLine(time, samples)
-    # Without a certain time, the first number of a line may be a value, so the line is left out.
+    # If it is not certain that the first number is a time, it may be a value: numbers are then not read.
     numbers = _strip_prefixes(rest, _VALUES) if certain else ""
     return ProgramLine(time, (), numbers) if numbers else None
 
 
 def _split_time(line: str) -> tuple[str | None, str, bool]:
-    """Return the time at the start of a line, None without one; the rest; and whether it is certainly a time."""
+    """Return the time with which a line may begin, the rest of the line, and whether the time certainly is one.
+
+    Without a time, the first result is None, and the rest the whole line.
+    """
     match = _STAMPED.fullmatch(line)
     if match is None:
         return None, line, False
@@ -89,7 +95,10 @@ def _split_time(line: str) -> tuple[str | None, str, bool]:
 
 
 def _strip_prefixes(text: str, pattern: re.Pattern[str]) -> str:
-    """Return a text without prefixes such as a logger's; empty if the rest does not match a pattern."""
+    """Return the part of a text that matches a pattern after prefixes, such as a logger's, are removed.
+
+    Empty without one.
+    """
     while pattern.fullmatch(text) is None:
         prefix = _PREFIX.match(text)
         if prefix is None:
@@ -108,11 +117,12 @@ def _is_row(line: str) -> bool:
 def choose_reader(
     lines: Sequence[str], is_table: bool, notes: Notes, choices: ReadChoices
 ) -> CsvReader | ObjectReader | None:
-    """Return a reader for a file of lines that a program printed; None if its first lines have another form.
+    """Return a reader for a file of lines that a program printed; None if its first lines are not like that.
 
     Args:
         lines: The first lines.
-        is_table: Whether the file has the name of a table; its lines then must have times to be read as printed lines.
+        is_table: Whether the file has the suffix of a table; its lines must then have times to be read as printed
+            lines.
         notes: Receives warnings.
         choices: The user's choices for reading the file.
     """
@@ -156,7 +166,10 @@ def strip_brackets(line: str) -> str:
 
 
 def _split_stamped(line: str) -> str:
-    """Return a line with tabs between its time and the numbers, or between their names; other lines unchanged."""
+    """Return a line with tabs between its time and its numbers; for a heading, with tabs between the names.
+
+    Other lines are returned unchanged.
+    """
     parsed = parse_line(line)
     if parsed is not None and parsed.rest:
         return "\t".join((str(parsed.time), *_SEPARATOR.split(parsed.rest)))

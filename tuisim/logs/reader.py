@@ -74,7 +74,7 @@ _JUDGED_LINES = 30
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """A log that is being read: the part that has been read, and the log so far."""
+    """A log while it is being read: the fraction that has been read, and the log so far."""
 
     part: float
     """Fraction of the file that has been read, 0 to 1; NaN if the size is unknown."""
@@ -238,7 +238,12 @@ def _fill_types(table: pa.Table) -> pa.Table:
 def read_parts(
     source: str | Path, notes: Notes, choices: ReadChoices = NO_CHOICES
 ) -> Iterator[tuple[float, pa.Table | None]]:
-    """Yield the fraction of a log file that has been read, with the new rows; None if there are none.
+    """Read a log file in parts: yield the fraction that has been read, and the new rows, or None if there are none.
+
+    Args:
+        source: Path of the file; `-` is the standard input.
+        notes: Receives warnings.
+        choices: The user's choices for reading the file.
 
     Raises:
         LogError: it cannot be read.
@@ -300,7 +305,7 @@ def _read_file(
 def read_text_parts(
     handle: Readable, size: int, suffix: str, notes: Notes, choices: ReadChoices = NO_CHOICES
 ) -> Iterator[tuple[float, pa.Table | None]]:
-    """Yield the fraction of a text that has been read, with the new rows; None if there are none.
+    """Read a text in parts: yield the fraction that has been read, and the new rows, or None if there are none.
 
     Args:
         handle: The stream of its bytes.
@@ -333,7 +338,11 @@ def read_text_parts(
 
 
 def _refuse_binary(data: bytes) -> None:
-    """Raise LogError if the first bytes of a file show a binary format."""
+    """Check that the first bytes of a stream do not belong to a binary format.
+
+    Raises:
+        LogError: they do.
+    """
     if data.startswith((*arrow.FORMATS, *MAGICS)):
         raise LogError(
             "only text can be read from a pipe or inside a compressed file",

@@ -73,14 +73,14 @@ def measure_noise_of_slopes(values: FloatArray) -> float:
 
 
 def estimate_noise(differences: FloatArray, variance: float) -> float:
-    """Return the standard deviation of the noise that causes absolute differences, shape (n,).
+    """Return the standard deviation of the noise that explains differences between samples.
 
-    The median of absolute differences, times 1.4826, is the standard deviation of normal noise, even if up to
-    half of them are steps (Rousseeuw and Croux 1993).
+    The median of absolute differences, times 1.4826, is the standard deviation of normal noise, even if up to half of
+    them are steps (Rousseeuw and Croux 1993).
 
     Args:
-        differences: By how much samples differ from what their neighbours predict; at least one.
-        variance: Their variance divided by that of the noise: 2 for first differences, 6 for second ones.
+        differences: Absolute differences of samples from what their neighbours predict, shape (n,), at least one.
+        variance: Variance of such differences in units of the noise's: 2 for first differences, 6 for second ones.
     """
     by_median = 1.4826 * float(np.median(differences)) / np.sqrt(variance)
     # If values jump between two steps of a coarse scale, the median difference may be 0: the calm ones are used, too.
@@ -149,7 +149,7 @@ class Ground(NamedTuple):
 
 
 def drop_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> PlateauArray:
-    """Return the pieces that have a level, without those that rise, fall or bend, or are a few samples far apart."""
+    """Return the plateaus that have a level, without those that rise, fall or bend, or are a few samples far apart."""
     return plateaus[~_find_moving(values, plateaus, ground)]
 
 

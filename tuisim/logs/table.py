@@ -218,7 +218,7 @@ class Rows:
             )
 
     def restore(self, other: Rows) -> None:
-        """Show the same columns and conditions as another table of the same log."""
+        """Show the columns and the rows that another table of the same log shows, in its order."""
         self.columns = other.columns
         self.frozen = other.frozen
         self.column = other.column
@@ -232,15 +232,16 @@ class Rows:
     def find(
         self, text: str, from_place: int, step: int, task: TableTask | None = None
     ) -> int | None:
-        """Return the next position whose row contains a text in a shown column, wrapping around; None if none does.
+        """Return the next position whose row contains a text in a shown column; None if no row does.
 
-        Case is ignored. This is slow for a long log without a match.
+        Upper and lower case are the same. After the last position, the search goes on at the first. It is slow for a
+        long log without a match.
 
         Args:
             text: The text.
-            from_place: Position to begin at; searched last.
+            from_place: Position next to which the search begins; it is searched last.
             step: 1 for forwards, -1 for backwards.
-            task: Receives the progress; can stop the search.
+            task: Receives the progress, and can stop the search.
         """
         seen = 0
         for first, last in _split_places(from_place, len(self), step):
@@ -263,7 +264,13 @@ class Rows:
 
 
 def _split_places(from_place: int, count: int, step: int) -> Iterator[tuple[int, int]]:
-    """Yield ranges (first, one after the last) of all positions: they begin next to a position, and wrap around."""
+    """Yield all positions in ranges (first, one after the last), in the order in which a search visits them.
+
+    Args:
+        from_place: The position next to which the search begins; it is in the last range.
+        count: The number of positions.
+        step: 1 for forwards, -1 for backwards.
+    """
     middle = from_place + 1 if step > 0 else from_place
     onwards = [(first, min(first + _STRETCH, count)) for first in range(middle, count, _STRETCH)]
     before = [(first, min(first + _STRETCH, middle)) for first in range(0, middle, _STRETCH)]

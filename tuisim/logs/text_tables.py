@@ -51,7 +51,9 @@ class CsvReader:
     """Reads a text table block by block; the first block fixes names and types of the columns.
 
     Args:
-        rewrite: Returns a line with separators between its cells; a line of unknown form is unchanged.
+        notes: Receives warnings.
+        choices: The user's choices for reading the file.
+        rewrite: Returns a line with separators between its cells; None if all lines have them already.
     """
 
     def __init__(
@@ -152,9 +154,9 @@ class CsvReader:
     # Where the table ends
 
     def _cut_table(self, block: Block) -> tuple[Block, Block | None]:
-        """Return the rows of this table, and the rest from another table's heading on; the rest is None without one.
+        """Return the rows of this table in a block, and the lines from the heading of another table on.
 
-        A repeated heading does not end the table.
+        None if there is no other. If the heading of this table is repeated, it is left out.
         """
         if not has_numbers(self._heading.kinds) or not _MAY_BE_NAMES.search(block.text):
             return block, None
@@ -213,7 +215,7 @@ class CsvReader:
         return [c.chunk(0) if c.num_chunks == 1 else c.combine_chunks() for c in table.columns]
 
     def _parse_lines(self, block: Block) -> tuple[list[pa.Array], list[int]]:
-        """Return rows parsed line by line, and their rows in the file.
+        """Return the columns of rows that are parsed line by line, and the number of each row in the file.
 
         Short rows are filled, long rows are cut, both with a note.
         """
@@ -254,7 +256,7 @@ def _has_infinite(cells: pa.Array) -> bool:
 
 
 def _list_rows(block: Block) -> list[int]:
-    """Return the row in the file of each line that pyarrow has read: also a line of blanks, but not an empty one."""
+    """Return the number in the file of each line of a block that pyarrow reads as a row: all except empty lines."""
     lines = enumerate(block.text.split("\n"), block.first_row)
     return [row for row, line in lines if line]
 

@@ -84,9 +84,9 @@ def _join_parts(table: pa.Table, seconds: str, parts: str, unit_s: float) -> pa.
 
 
 def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
-    """Return the unit in s of a time column that names no unit, if its times are whole numbers with large steps.
+    """Return the unit in s of a time column that names no unit; None if it cannot be guessed.
 
-    The steps must be too large for seconds. Otherwise the result is None.
+    It is guessed for whole numbers whose steps are too large for seconds.
     """
     if layout.time in (ROW, *COUNTS) or layout.since_first or "line" in table.column_names:
         return None
@@ -174,7 +174,7 @@ def _name_rows(rows: IntArray) -> str:
 
 
 def _find_restarts(seconds: FloatArray, back: IntArray) -> IntArray:
-    """Return the rows at which the time begins again.
+    """Return the rows at which time begins again near its start, not those at which it only goes back a little.
 
     Args:
         seconds: The time of each row.

@@ -82,7 +82,12 @@ class TypedColumns:
         )
 
     def _find_columns(self, texts: Mapping[str, pa.Array], separator: str) -> None:
-        """Set the types and number forms of columns that have their first cells."""
+        """Set the types and number forms of new columns.
+
+        Args:
+            texts: The first cells of each of these columns, by name.
+            separator: The separator of cells in a line.
+        """
         forms = {name: find_form(cells, separator, self._decimal) for name, cells in texts.items()}
         if DECIMAL_COMMA in forms.values():
             # If one column has decimal commas, points in the others separate thousands.
@@ -122,7 +127,7 @@ class TypedColumns:
 
 
 def _choose_text_kind(cells: pa.Array) -> pa.DataType:
-    """Return the type for a text column: `CODED` if its first cells often repeat, else the type of strings."""
+    """Return the type for a column of texts: `CODED` if the given first cells often repeat, else strings."""
     count = len(cells)
     often = count > _MIN_CELLS and _MIN_REPEATED * pc.count_distinct(cells).as_py() <= count
     return CODED if often else pa.string()

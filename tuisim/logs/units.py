@@ -72,7 +72,7 @@ def names_level(name: str) -> bool:
 
 
 def can_be_light(name: str) -> bool:
-    """Return whether the name of a variable allows it to be the reading of a colour sensor."""
+    """Return whether a variable may be the reading of a colour sensor, as its name does not say otherwise."""
     name = name.partition(" #")[0]
     return bool(_LIGHT.search(name)) or not (
         _OTHER.search(name) or parse_unit(name).sign not in ("", "%")
@@ -80,10 +80,10 @@ def can_be_light(name: str) -> bool:
 
 
 def begins_at_zero(name: str, low: float, high: float) -> bool:
-    """Return whether a variable is a reading whose scale starts at 0.
+    """Return whether the scale of a variable begins at 0, as for readings of light and percentages.
 
     Args:
-        name: Name of a variable, checked for words of light readings or percentages.
+        name: Name of the variable, which must say what it is.
         low, high: Minimum and maximum of its values, which must be within 0 to 255.
     """
     name = name.partition(" #")[0]
