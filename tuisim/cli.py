@@ -43,7 +43,7 @@ class CommandEntry:
     does: str
 
     def load(self) -> click.Command:
-        """Import the command."""
+        """Import the command and return it."""
         module, _, name = self.path.partition(":")
         return cast("click.Command", getattr(import_module(f"tuisim.{module}"), name))
 
@@ -123,7 +123,11 @@ def _find_commands(word: str, others: Sequence[str]) -> list[str]:
 
 
 def _check_command(word: str, others: Sequence[str]) -> None:
-    """Raise ConfigError if a word looks like a misspelt command, or like one of a group, and is not a program."""
+    """Check the first word of the command line, unless it is a program.
+
+    Raises:
+        ConfigError: it looks like a misspelt command, or like a command of a group.
+    """
     from tuisim.programs.program_file import find_program
 
     if "." in word or os.path.exists(find_program(word)):
@@ -133,7 +137,11 @@ def _check_command(word: str, others: Sequence[str]) -> None:
 
 
 def _check_open_files() -> None:
-    """Raise HostError if the shell's limit of open files is too low; raise the soft limit if it can be raised."""
+    """Raise the soft limit of open files if it is too low.
+
+    Raises:
+        HostError: it is too low and cannot be raised.
+    """
     import resource
 
     allowed, hard_limit = resource.getrlimit(resource.RLIMIT_NOFILE)
@@ -192,7 +200,7 @@ click.version_option(
     """,
 )
 def completion(shell: str) -> int:
-    """Print the script."""
+    """Print the shell's completion script."""
     scripts = get_completion_class(shell)
     assert scripts is not None
     print(scripts(ROOT, {}, "tuisim", _COMPLETE).source())

@@ -157,7 +157,7 @@ def _build_space(columns: Sequence[str]) -> Box[Any]:
 
 
 def check_call(function: Callable[..., object] | None, call: str, *values: str) -> None:
-    """Check that a function takes as many values as it will be called with.
+    """Check that a function can be called with a number of values.
 
     Args:
         function: The function; None is not checked.
@@ -165,7 +165,7 @@ def check_call(function: Callable[..., object] | None, call: str, *values: str) 
         values: The names of the values, for errors.
 
     Raises:
-        ConfigError: the function takes others.
+        ConfigError: the function takes another number of values.
     """
     if function is None:
         return

@@ -133,7 +133,7 @@ class Threshold(ValueCondition):
         return f"{float(self.value):g}" if self.value else ""
 
     def select_series(self, series: Sequence[Series]) -> list[Series]:
-        """Return the series of the threshold's variable, either of all runs or of the run that the threshold names."""
+        """Return the series of the threshold's variable: of all runs or, if the threshold names a run, of that run."""
         return [
             candidate
             for candidate in series
@@ -213,7 +213,7 @@ def parse_threshold(text: str) -> Threshold | None:
 
 
 def parse_event(text: str) -> EventChoice | None:
-    """Return the threshold or the search for commands that a text stands for; None if it is neither."""
+    """Return the threshold, or the search for commands, that a text means; None if it means neither."""
     threshold = parse_threshold(text)
     if threshold is None and (words := parse_command_search(text)) is not None:
         return CommandChoice(words)
@@ -278,7 +278,7 @@ def _find_commands(
         run: The run.
         choice: The search.
         series: The variables of the run in the log.
-        run_number: As of `CommandRow.run`.
+        run_number: The number of the run, for `CommandRow.run`.
     """
     index = CommandIndex(run)
     index.read_all()
@@ -295,10 +295,10 @@ def _find_commands(
 
 
 class Events:
-    """The events of a log that the user has chosen; if the log changes, the events are found again.
+    """The events of a log that the user has chosen to see; when the log changes, they are searched for again.
 
     Args:
-        runs: As of `find_events`.
+        runs: The runs of the log; empty for a file.
     """
 
     def __init__(self, runs: Sequence[StoredRun] = ()) -> None:

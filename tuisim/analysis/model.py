@@ -127,13 +127,19 @@ class AnalysisModel:
 
     @staticmethod
     def _sample(trace: LogTrace, row: int) -> int:
-        """Return the index of a variable's sample in a row of the log, or of its next sample after that row."""
+        """Return the index of a variable's sample in a row of the log.
+
+        If it has none there, of its next sample, or its last.
+        """
         rows = trace.series.rows
         return min(int(np.searchsorted(rows, row)), len(rows) - 1)
 
     @property
     def sample(self) -> int:
-        """The index of the selected variable's sample in the row of the cursor, or of its next sample."""
+        """The index of the selected variable's sample in the row of the cursor.
+
+        If it has none there, of its next sample.
+        """
         return self._sample(self.trace, self.row)
 
     def sample_variable(self, name: str) -> FloatArray:
@@ -175,7 +181,7 @@ class AnalysisModel:
             self.row = int(series.rows[int(np.nanargmin(np.abs(series.time_s - time_s)))])
 
     def step(self, samples: int) -> None:
-        """Move the cursor by a number of samples of the selected variable."""
+        """Move the cursor by a number of samples of the selected variable; a negative number moves it back."""
         rows = self.trace.series.rows
         if len(rows):
             # The row may be one of another variable, between two samples.
@@ -187,7 +193,7 @@ class AnalysisModel:
             self.row = int(rows[min(max(index, 0), len(rows) - 1)])
 
     def restore(self, other: AnalysisModel) -> None:
-        """Copy the state of another model, which was made when the same log was shorter."""
+        """Copy cursors, selection and settings of another model, which was made when the same log was shorter."""
         self.row = other.row
         self.mark_s = other.mark_s
         self.limits = other.limits
@@ -206,7 +212,7 @@ class AnalysisModel:
             self._align_again(other.alignment)
 
     def copy_definitions(self, other: AnalysisModel) -> None:
-        """Derive the variables that another model of the same log has.
+        """Compute the derived variables that another model of the same log has.
 
         This is slow for a long log: call it in a thread.
         """
@@ -287,7 +293,7 @@ class AnalysisModel:
         self._move_limits(self.cursor_s - share * width, width)
 
     def pan(self, share: float) -> None:
-        """Move the visible range of the x axis by a share of its width."""
+        """Move the visible range of the x axis by a share of its width; a negative share moves it to smaller values."""
         low, high = self.find_x_limits()
         if self.limits:
             self._move_limits(low + share * (high - low), high - low)
@@ -333,11 +339,11 @@ class AnalysisModel:
         ]
 
     def describe_bands(self) -> list[str]:
-        """Return the band reports of the visible variables in words, one sentence each."""
+        """Return a sentence about the bands of each visible variable."""
         return [self._words[report.variable] for report in self.list_reports()]
 
     def bands(self) -> Sequence[Band]:
-        """Return the bands of the visible variables in which they have been searched for."""
+        """Return the bands of the visible variables, without variables in which bands were not searched for yet."""
         reports = self.list_reports()
         if reports != self._reported[0]:
             self._reported = (

@@ -39,7 +39,7 @@ class Pin:
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """The position of the text beside a ring, in pixels of the picture."""
+    """The position of the text beside a ring, which is to the right or to the left of it, in pixels of the picture."""
 
     left_px: float
     right_px: float
@@ -111,9 +111,9 @@ def encode_data(kind: str, content: bytes) -> str:
 
 
 def clamp_to_picture(view: Viewport, x_mm: float, y_mm: float) -> tuple[float, float, str]:
-    """Return where a place is marked on a picture: column and row in pixels, and in words how far off the mat it is.
+    """Return where to mark a place on a picture: column and row in pixels, and how far off the mat it is, as text.
 
-    A place that the picture does not show is marked at its edge; for other places the words are empty.
+    A place outside the picture is marked at its edge. For a place inside, the text is empty.
     """
     at_px = view.to_px(x_mm, y_mm)
     sizes_px = view.width_px, view.height_px

@@ -167,10 +167,12 @@ def _find_bands(opened: OpenedLog, names: Sequence[str], search: Search) -> Anal
 
 
 def _choose_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
-    """Return the log to report on, and a sentence about it.
+    """Return the log to report on, and a sentence about the choice.
 
-    If the program has printed no samples, the log is the telemetry of the run, and the sentence says so; otherwise the
-    sentence is empty.
+    It is the given log, with an empty sentence. If that has no samples, it is the telemetry of the run.
+
+    Raises:
+        LogError: the log is empty and has no run.
     """
     if opened.log.rows:
         return opened, ""

@@ -79,7 +79,7 @@ def is_readable_again(file: str) -> bool:
 
 
 def _look_up(file: str) -> _Reading | None:
-    """Return the path, size and time of a file, without choices; None if it is not a regular file."""
+    """Return the path, size and time of a file, without choices of how to read it; None if it is not a regular file."""
     try:
         status = os.stat(file) if is_readable_again(file) else None
     except OSError:
@@ -167,7 +167,7 @@ class OpenedLog:
         return (find_notes_file(file),) if file.is_file() else ()
 
     def stamp(self) -> object:
-        """Return an object that differs from the object of an earlier call if the source of the log has grown since."""
+        """Return an object that is equal to that of an earlier call if the log's source has not grown since then."""
         if self.runs:
             return tuple(
                 (run.telemetry.count if self.request.telemetry else run.output.length)

@@ -61,7 +61,7 @@ class LogTrace(Trace):
         return self.name in log.derived and log.derived[self.name] is not self.series
 
     def is_legible(self, others: Sequence[LogTrace]) -> bool:
-        """Return whether a common scale would make neither the trace nor other traces a flat line."""
+        """Return whether neither this trace nor the others would look flat if all were drawn to one scale."""
         own = self._find_extremes()
         left = [other._find_extremes() for other in others if not other.scale]
         low, high = (
@@ -140,7 +140,10 @@ class LogTraces(Traces):
         self._by_log_name = {trace.name: trace for trace in (*remaining, *new)}
 
     def _show_light_columns(self) -> None:
-        """Show only the red light of the colour sensors among the columns of telemetry; without it, change nothing."""
+        """If columns of telemetry have the red light of colour sensors, show only these columns.
+
+        Else change nothing.
+        """
         light = [trace for trace in self if trace.name.endswith(_LIGHT)]
         for trace in self:
             trace.on = trace in light[:MAX_VISIBLE] if light else trace.on

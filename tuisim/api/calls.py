@@ -26,10 +26,10 @@ _NO_NAME = frozenset("\n(=:")
 
 
 def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:
-    """Return the program that a file, an example's name, a text or a function gives.
+    """Return the program that is given as a file, the name of an example, a text or a function.
 
     Args:
-        program: Its file, the name of an example, its text, or a function.
+        program: One of these.
 
     Raises:
         ConfigError: there is no such program, or its first line is wrong.

@@ -35,7 +35,10 @@ TIME = "time"
 
 
 class Description:
-    """Values, by name, that a script chooses for a world or a robot. Descriptions with the same values are equal."""
+    """Values, by name, that a script chooses for a world or a robot.
+
+    Two descriptions with the same values are equal.
+    """
 
     __slots__ = ("_values",)
 
@@ -122,12 +125,12 @@ def plain(value: Any) -> Any:
 
 
 def warn_all(remarks: Iterable[str], depth: int = 5) -> None:
-    """Warn of each remark.
+    """Issue a warning for each of some sentences.
 
     Args:
-        remarks: Sentences.
-        depth: Which call is to blame; by default that of `simulate` or `experiment`, whose body calls the caller of
-            this function.
+        remarks: The sentences.
+        depth: How many calls up the stack the warning points to. By default it is the line that calls `simulate` or
+            `experiment`, if their body calls the caller of this function.
     """
     for remark in remarks:
         warn(remark, stacklevel=depth)

@@ -48,7 +48,7 @@ class Measures:
 
     @property
     def identity(self) -> list[str]:
-        """A hash of the code of each metric, and the names of the columns: equal if all values will be equal."""
+        """A hash of the code of each metric, and the names of the columns; if equal, the values will be equal."""
         metrics = (f"{name} {describe(metric)}" for name, metric in self._metrics.items())
         return [*(sha256(text.encode()).hexdigest() for text in metrics), *self._columns]
 
@@ -142,11 +142,11 @@ def take_columns(rows: Mapping[int, Row]) -> dict[int, pd.DataFrame]:
 
 
 def describe(value: Any, known: frozenset[int] = frozenset()) -> str:
-    """Return a text that identifies a value: for a function its code, defaults, and what it uses of its file.
+    """Return a text that identifies a value: for a function, its code, its defaults, and what it uses from its file.
 
     Args:
         value: The value.
-        known: Ids of the functions that are being described, to stop at recursion.
+        known: Ids of the functions that are already being described, at which a recursion ends.
     """
     if isinstance(value, partial):
         return describe([value.func, *value.args, *value.keywords.items()], known)

@@ -122,7 +122,7 @@ def build_workers(jobs: int, scheduler: str) -> Workers:
 
 
 def warn_unknown(until: str, margins: Sequence[float]) -> None:
-    """Warn that some means are less precise than `until` requires.
+    """Warn that the means of some combinations are less precise than `until` requires.
 
     Args:
         until: The column and its margin.
@@ -228,7 +228,13 @@ class Study:
     def _build_subject(
         self, source: ProgramSource, name: str, variant: Mapping[str, Any]
     ) -> Subject:
-        """Return a program with its settings for one combination of constants and options."""
+        """Return a program with its settings for one combination of constants and options.
+
+        Args:
+            source: The program.
+            name: Its name in the table.
+            variant: The values of the constants and options.
+        """
         options = {name: value for name, value in variant.items() if name not in self._constants}
         values = {name: plain(value) for name, value in variant.items() if name not in options}
         world = options.pop("world", None)

@@ -106,7 +106,7 @@ class ClusterWatch:
             self._sleep(self.EVERY_S)
 
     def look(self) -> None:
-        """Check the cluster, unless the last check was just before.
+        """Check the cluster, unless it was checked just before.
 
         Raises:
             HostError: it has had no scheduler or no worker for a while, or a worker has no tuisim or another version.
@@ -126,7 +126,11 @@ class ClusterWatch:
             raise HostError(f"{self.name}: {wrong}", hint)
 
     def explain(self) -> None:
-        """Raise HostError with the fault of the cluster, if it has one at this moment."""
+        """Check whether the cluster has a fault at this moment.
+
+        Raises:
+            HostError: it has one.
+        """
         wrong, hint = self._find_fault()
         if wrong:
             raise HostError(f"{self.name}: {wrong}", hint)
@@ -152,7 +156,11 @@ class ClusterWatch:
         return "", ""
 
     def _check(self, workers: list[str]) -> None:
-        """Raise HostError if one of some workers has no tuisim, or another version."""
+        """Check that workers have the same version of tuisim.
+
+        Raises:
+            HostError: one of them has none, or another version.
+        """
         run = self._client.run
         versions = call_within_s(
             PATIENCE_S, run, eval, _VERSION, workers=workers, on_error="return"

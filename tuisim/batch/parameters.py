@@ -267,7 +267,12 @@ def _split_pieces(text: str) -> list[str]:
 
 
 def _expand_piece(piece: str, key: str) -> Sequence[Value]:
-    """Return the values of one piece of a list: a range, a number, a truth value or a word."""
+    """Return the values that one part of a list of values means: a range, a number, a truth value or a word.
+
+    Args:
+        piece: The part, without commas.
+        key: The option, for errors.
+    """
     if span := _SPAN.fullmatch(piece):
         return _expand_range(Decimal(span[1]), Decimal(span[2]), Decimal(1), piece, key)
     if limits := _RANGE.fullmatch(piece):

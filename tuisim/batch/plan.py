@@ -89,7 +89,11 @@ class Plan:
             self._check(subject)
 
     def _check(self, subject: Subject) -> None:
-        """Raise ConfigError if a combination of a program's parameters is wrong; seeds are not checked."""
+        """Check the combinations of a program's parameters, except for the seeds.
+
+        Raises:
+            ConfigError: one is wrong.
+        """
         own = [axis for axis in self.grid.axes if axis.names != (SEED,)]
         for name in self.choices:
             if name in subject.given:
@@ -112,7 +116,7 @@ class Plan:
 
     @property
     def remarks(self) -> list[str]:
-        """What is chosen for runs of the batch without effect on them, in sentences."""
+        """Sentences about chosen values that have no effect on the runs of the batch."""
         return [
             *dict.fromkeys(text for spec in self._specs.values() for text in list_ineffective(spec))
         ]
@@ -180,9 +184,9 @@ class Plan:
                 yield self.task(index)
 
     def count_seeds(self) -> int:
-        """Return how many runs with consecutive indices differ only in the seed.
+        """Return how many successive runs differ only in their seed.
 
-        The number is 1 if the seed does not vary fastest.
+        1 if another parameter varies faster than the seed.
         """
         last = self.grid.axes[-1] if self.grid.axes else None
         return len(last.points) if last and last.names == (SEED,) else 1

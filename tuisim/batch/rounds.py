@@ -92,7 +92,7 @@ class Rounds(Iterator[int]):
         return self._due.popleft()
 
     def _ask(self, indices: range) -> None:
-        """Add further runs of a combination if all of its runs are done and its mean is not precise enough."""
+        """If all runs of a combination so far are done and its mean is not precise enough, request further runs."""
         rows = self._sweep.rows
         while all(index in rows for index in indices[: self._counts[indices]]):
             count = self._counts[indices]

@@ -174,7 +174,14 @@ def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -
 
 
 def _read(name: str, value: Any) -> Any:
-    """Return a cell of a table with its original type: beside empty cells, a whole number is read as a float."""
+    """Return a cell of a stored table with its original type.
+
+    A whole number is stored as a float if other cells of its column are empty.
+
+    Args:
+        name: The name of the column.
+        value: The stored value.
+    """
     if value != value:
         return None
     return int(value) if name.endswith("_count") and isinstance(value, float) else value

@@ -99,7 +99,7 @@ def _move_statistics(columns: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _build_column(values: Sequence[Any]) -> Any:
-    """Return a column of the narrowest type for all values: truth value, whole number, number or text."""
+    """Return values as a column with the first type that fits all: truth value, whole number, number, text."""
     import numpy as np
     import pandas as pd
 

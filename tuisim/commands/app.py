@@ -58,7 +58,7 @@ class Opened:
 
 
 def read_opened(arguments: Arguments, *, can_begin: bool = False) -> Opened | None:
-    """Return what the arguments say the app opens; None if the programs of a notebook were listed instead.
+    """Return the content with which the app opens; None if the command only lists the programs of a notebook.
 
     Args:
         arguments: The arguments of the command line.
@@ -228,7 +228,10 @@ def _load_world_goals(world: WorldFile | None, mats: str | None) -> GoalsFile | 
 
 
 def _list_words(arguments: Arguments, goals: GoalsFile | None) -> tuple[str, ...]:
-    """Return the words of the command line; if they name no world, with the goals file in front, as the world."""
+    """Return the words of the command line.
+
+    If they name no world, and there are goals, the path of the goals file comes first, as the world.
+    """
     from tuisim.settings.worlds import is_world_name
 
     words: tuple[str, ...] = arguments.words

@@ -125,7 +125,7 @@ class _Batch:
         return max([code, *map(_exit_code, self.rows.values())])
 
     def _rate(self) -> Any:
-        """Return a function that shows after each run how many are finished, their rate and the time left."""
+        """Return a function to call after each run, which shows how many are finished, their rate and the time left."""
         total, before, begun = len(self.request.plan), len(self.rows), time.monotonic()
 
         def tell_row(_: Row) -> None:

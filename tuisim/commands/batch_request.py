@@ -198,7 +198,15 @@ def _take_batch_file(arguments: Arguments) -> BatchFile:
 def _prepare_subjects(
     arguments: Arguments, file: BatchFile, goals: GoalsFile | None
 ) -> tuple[Subject, ...]:
-    """Return the programs of a batch with their settings; without another world, they run in the world of the goals."""
+    """Return the programs of a batch with their settings.
+
+    If no world is named, they run in the world of the goals.
+
+    Args:
+        arguments: The arguments of the command line.
+        file: The batch file.
+        goals: The goals; None for none.
+    """
     check_arguments(arguments.programs, arguments)
     world = file.world
     if world is None and goals is not None:

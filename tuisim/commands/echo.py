@@ -164,7 +164,12 @@ class FigureCell(float):
     """The format spec, such as `.2f`."""
 
     def __new__(cls, value: float, how: str) -> Self:
-        """Return a number with a format specification `how`, such as `.2f`."""
+        """Return a number with its format.
+
+        Args:
+            value: The number.
+            how: The format specification, such as `.2f`.
+        """
         figure = super().__new__(cls, value)
         figure.how = how
         return figure
@@ -231,10 +236,12 @@ def draw_table_lines(
 def _fit_cells(
     heads: Sequence[str], body: Sequence[Sequence[str]], room: int | None
 ) -> tuple[list[list[str]], list[int], str]:
-    """Return the headings and texts of columns, as narrow as necessary, their widths, and the text between columns.
+    """Return the cells of a table, narrowed until a row fits: headings and texts, widths of the columns, and the gap.
+
+    The gap is the text between two columns.
 
     Args:
-        heads: One for each column.
+        heads: One heading for each column.
         body: The texts of each column.
         room: The length of a row in characters; None for any length.
     """
@@ -273,7 +280,7 @@ def _fit_cells(
 
 
 def _stack_heads(heads: Sequence[str]) -> list[list[str]]:
-    """Return headings as rows with one word of each; a heading with fewer words begins in a later row."""
+    """Return headings as rows with one word of each heading; shorter headings are in the last rows."""
     words = [head.split() for head in heads]
     count = max(map(len, words), default=0) or 1
     return [[([""] * (count - len(word)) + word)[row] for word in words] for row in range(count)]

@@ -33,7 +33,7 @@ EXIT_LIMIT = 3
 
 
 def choose_exit_code(end: End, exit_code: int) -> int:
-    """Return the shell's exit code for the end of a run.
+    """Return the exit code that the shell gets for a run.
 
     Args:
         end: How the run ended.
@@ -103,7 +103,11 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
 
 
 def describe_last_state(facts: dict[str, Any]) -> str:
-    """Return the status line of a run, given the result of `describe`."""
+    """Return the status line of a run: how it ended, and the robot's last pose.
+
+    Args:
+        facts: The run, from `describe`.
+    """
     # The traceback tells the error itself: this line only says where it was.
     line = f" in line {facts['error_line']}" if facts["error_line"] else ""
     what = (

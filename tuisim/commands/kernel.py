@@ -92,9 +92,9 @@ kernel = Group.of(
 def _place(
     user: bool, sys_prefix: bool, prefix: str | None, name: str | None
 ) -> tuple[KernelSpecManager, str | None, str | None]:
-    """Return Jupyter's manager of kernels, the user's folder for kernels, and the user's name for the kernel.
+    """Return where a kernel is to be installed: Jupyter's manager of kernels, the chosen folder, and the chosen name.
 
-    Folder and name are None if the user chose none.
+    Folder and name are None if the user has chosen none.
     """
     options = {"--user": user, "--sys-prefix": sys_prefix, "--prefix": prefix is not None}
     places = [flag for flag, is_given in options.items() if is_given]

@@ -315,7 +315,12 @@ def _list_gradebooks(arguments: Arguments) -> dict[str, Path]:
 
 
 def _check(arguments: Arguments, task: GoalsFile) -> None:
-    """Raise ConfigError or ExportError for a fault that would otherwise only be noticed after the runs."""
+    """Check the arguments before the runs, for faults that would otherwise be found only after them.
+
+    Raises:
+        ConfigError: an argument is wrong.
+        ExportError: a file cannot be written.
+    """
     if not arguments.folders:
         raise ConfigError("no folder of programs is named", "tuisim mark GOALS FOLDER…")
     if arguments.input and any(world.answers for world in task.worlds):

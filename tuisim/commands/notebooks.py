@@ -18,13 +18,13 @@ NOT_RUN = "not_run"
 
 
 def find_listed(words: Sequence[str], *, run_all: bool = False) -> list[NotebookProgram]:
-    """Return the programs of a notebook to list; empty if there is nothing to list.
+    """Return the programs of a notebook that are to be listed, not run; empty if there are none.
 
-    Programs are listed if the notebook is the only word, has several programs, and no cell is named.
+    They are listed if the notebook is the only word, has several programs, and the word names no cell.
 
     Args:
         words: The words of the command line.
-        run_all: Whether all programs are run instead.
+        run_all: Whether the user wants to run all programs.
     """
     if run_all or len(words) != 1 or not is_notebook(words[0]) or "#" in words[0]:
         return []

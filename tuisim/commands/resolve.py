@@ -137,7 +137,7 @@ def _find_effective_defaults(
     plain: Settings,
     *above: Mapping[str, Any],
 ) -> tuple[str, ...]:
-    """Return in words which defaults of the user change a run; empty if none do, or if it has a world file.
+    """Return a sentence for each default of the user that changes a run; empty if the run has a world file.
 
     Args:
         spec: The run with the defaults.
@@ -207,7 +207,7 @@ def prepare_app(
         words: The programs and worlds that the user named.
         arguments: The arguments of the command line.
         config: The user's defaults.
-        can_begin: Whether a Python file that does not exist, in a folder that does, is a new, empty program.
+        can_begin: Whether to open a new, empty program for a Python file that does not exist; its folder must exist.
 
     Raises:
         ConfigError: program, magic line, world or options are wrong, or there are two programs.

@@ -243,10 +243,7 @@ class BreakpointReporter:
         """Whether a breakpoint has ended the run."""
 
     def handle(self, event: Message) -> None:
-        """Handle an event: request the values of a paused run.
-
-        When they arrive, report them and resume or stop the run.
-        """
+        """When a run has paused, request its values; when these have come, report them, and resume or stop the run."""
         match event:
             case Paused():
                 self._paused = event
@@ -377,7 +374,10 @@ def _build_progress(number: int, count: int) -> Callable[[RunHandle], None]:
 
 
 def _choose_options(prepared: Prepared, arguments: Arguments) -> RunOptions:
-    """Return the options of a program's run; without answers, a pipe or a file on stdin answers `input()`."""
+    """Return the options of a program's run.
+
+    If no answers are given, the lines of a pipe or file on stdin answer `input()`.
+    """
     speed = prepared.settings["speed"] or 0.0
     answers = arguments.input or (prepared.world.inputs if prepared.world else ())
     asks_pipe = not answers and is_piped()

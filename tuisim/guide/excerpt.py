@@ -78,9 +78,9 @@ def _cut_lines(lines: list[Line], max_lines: int) -> list[Line]:
 
 
 def _cut_code(code: list[str], max_lines: int, pattern: re.Pattern[str] | None) -> list[str]:
-    """Return at most `max_lines` consecutive lines of code, those with most words of a question.
+    """Return up to `max_lines` successive lines of code: those with most words of a question.
 
-    An ellipsis stands for later lines.
+    If further lines follow, an ellipsis stands for them.
     """
     if len(code) <= max_lines or max_lines < _MIN_LINES:
         return code[:max_lines]
@@ -122,7 +122,7 @@ def _draw_item(item: str, width: int) -> list[Line]:
 
 
 def _cut_beginning(text: str, letters: int, pattern: re.Pattern[str]) -> str:
-    """Return a text from the sentence whose next `letters` characters have most words of the question."""
+    """Return the end of a text from the sentence after which `letters` characters have most words of the question."""
     starts = [0, *(match.end() for match in _SENTENCE_END.finditer(text))]
     start = max(
         starts,
@@ -147,9 +147,13 @@ def _count_words(text: str, pattern: re.Pattern[str]) -> int:
 
 
 def _add_heads(passage: str, head: str) -> str:
-    """Return a table's row with the column's heading before each cell but the first.
+    """Return a row of a table in which each cell, except the first, follows the heading of its column.
 
-    A row of few columns is unchanged.
+    A row of few columns is returned unchanged.
+
+    Args:
+        passage: The row.
+        head: The row with the headings.
     """
     cells = split_cells(passage)
     heads = split_cells(head)

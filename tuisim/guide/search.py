@@ -112,11 +112,12 @@ class SearchResult:
 
 
 class _Postings:
-    """An index of texts by their stems, which finds the texts that are most similar to a question.
+    """An index of texts, which finds those that are most similar to a question by their words' stems.
 
     Args:
         texts: The stems of each text, with their weights.
-        power: 1 compares by the cosine; below 1, longer texts count more, as their length is divided out only in part.
+        power: Exponent of the text's length by which similarity is divided: 1 gives the cosine, less favours longer
+            texts.
     """
 
     def __init__(self, texts: Sequence[Mapping[str, float]], power: float = 1.0) -> None:
@@ -177,12 +178,12 @@ class _Index:
         self.all_asks = _Postings(self._sum_questions(question_stems))
 
     def _find_row(self, name: str, key: str) -> int:
-        """Return the row of the passage of a page that contains a text.
+        """Return the index of the passage of a page that contains a text.
 
-        The result is -1 if none does, as users may change the questions.
+        The result is -1 if no passage does, as users may change the questions.
 
         Args:
-            name: The page.
+            name: The name of the page.
             key: The text.
         """
         return next(

@@ -38,7 +38,7 @@ class CellState:
 
 
 class AppView:
-    """An app in a notebook, shown by the page that last requested it. It shares no panels or texts with other apps.
+    """The app of a notebook, in the page that last requested it; its panels and texts are not shared with other apps.
 
     Args:
         words: What the app opens, as words of `tuisim open`.
@@ -85,11 +85,11 @@ class AppView:
         return not self._visit.has_ended
 
     def ask(self, what: str, **details: Any) -> None:
-        """Send a request to the app as soon as it has started; see `do_asked`.
+        """Send a request to the app, as soon as it has started.
 
         Args:
-            what: The kind of request.
-            details: Its other values.
+            what: The name of the request, see `notebook_cells.do_asked`.
+            details: The values of the request.
 
         Raises:
             HostError: the app does not start.

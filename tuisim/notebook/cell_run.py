@@ -128,7 +128,7 @@ class AppRun:
         """Do nothing: the run belongs to the app."""
 
     def stored(self) -> StoredRun:
-        """Return the run from the store."""
+        """Return the run as it is in the store."""
         return RunStore().load_run(self.run_id)
 
 
@@ -303,9 +303,10 @@ class Interruption:
             raise KeyboardInterrupt
 
     def call(self, act: Callable[[], Result]) -> Result | None:
-        """Call a user's function, which an interrupt ends immediately.
+        """Call a user's function; an interrupt ends it immediately.
 
-        Return its result, or None if it was interrupted.
+        Returns:
+            Its result; None if it was interrupted.
         """
         self._allowed = True
         try:
@@ -412,7 +413,9 @@ class _Follower:
         self._take_text("roboSim.pyresponder", call(partial(listener.responder, heard)))
 
     def _take_text(self, who: str, answer: object) -> None:
-        """Print an answer in the old simulator's form; if it begins with `JSON_PREFIX`, the program gets the rest.
+        """Print an answer as the old simulator did.
+
+        If it begins with `JSON_PREFIX`, send the rest of it to the program.
 
         Args:
             who: The name of the function that gave the answer, for errors.

@@ -263,7 +263,7 @@ class Lab:
         self._show(plan, words, listener, runs=runs)
 
     def _show(self, plan: _CellPlan, words: Arguments, listener: Listener, *, runs: bool) -> None:
-        """Run the program of a cell, or show its world; if a page shows the app, this happens in the app."""
+        """Run the program of a cell, or show its world: in the app if a page shows that, else in the cell."""
         from tuisim.notebook.display import Stage
 
         stage = Stage(plan.settings, self._build_captions(words, plan))
@@ -354,9 +354,9 @@ class Lab:
         return Listener(responder, self._in_texts, None if handler is None else call_handler)
 
     def _build_captions(self, words: Arguments, plan: _CellPlan) -> dict[str, dict[str, Any]]:
-        """Return what a cell displays below its picture, as bundles by name.
+        """Return what a cell displays below its picture, as bundles of MIME data by name.
 
-        If the cell draws no picture, only the app can be there, and only if the cell asks for it.
+        A cell without a picture can only display the offer of the app, and only if its words request that.
         """
         app_words = words.app if words.app is not None and not words.app.off else None
         if words.app is not None:
@@ -366,7 +366,7 @@ class Lab:
         return self._live.build_captions(plan.spec.world.background, app_words)
 
     def _catch_up(self) -> None:
-        """Add the runs that the user started in the app to the log, with the part that is recorded so far."""
+        """Add the runs that the user has started in the app to the log, as far as they are recorded."""
         if self._live.view is None:
             return
         while not self._live.view.begun.empty():
@@ -456,7 +456,7 @@ class Lab:
 
 
 def _select_given(plan: _CellPlan, words: Arguments) -> Mapping[str, Any]:
-    """Return the settings, by path, that the cells have set and that also apply in the app."""
+    """Return the settings, by path, that cells have set and that the app is to use as well."""
     from tuisim.settings.options import merge_settings
 
     presses = {"press": plan.settings["press"]}

@@ -116,8 +116,8 @@ class LiveRobot:
     def _is_due(self, kernel: Any) -> bool:
         """Return whether to offer the app below a picture although the cell does not request it.
 
-        The offer is due below the first picture, below another picture of the same cell, and after the page that showed
-        the app has gone.
+        This is so below the first picture of the notebook, below further pictures of the same cell, and once the page
+        that showed the app has gone.
         """
         if not self.is_wanted:
             return False
@@ -162,9 +162,9 @@ class LiveRobot:
         return self.view.create_address(self._origins)
 
     def turn(self, *, on: bool) -> None:
-        """Turn the offer of the app on or off.
+        """Turn the offer of the app on or off; turning it off ends the app.
 
-        Turning it off ends the app. After it is turned on, a new app can start if the last one has ended.
+        After it is turned on, a new app can start if the last one has ended.
         """
         self.is_wanted = on
         if self.view is not None and not (on and self.view.is_alive):

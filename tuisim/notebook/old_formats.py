@@ -255,7 +255,7 @@ def build_robot_state(
 
 
 def _wrap_heading(heading_deg: float, highest_deg: float) -> float:
-    """Return a heading as the old simulator counts it: less 360° for each full turn that `highest_deg` exceeds."""
+    """Return a heading as the old simulator counts it: reduced by 360° for each full turn in `highest_deg`."""
     return heading_deg - 360 * max(0, math.ceil(highest_deg / 360) - 1)
 
 

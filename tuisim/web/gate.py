@@ -81,7 +81,7 @@ class Door:
                 timer.cancel()
 
     def admit(self, request: web.BaseRequest) -> None:
-        """Keep the connection of a request with the token, which would otherwise be closed after a time."""
+        """Mark the connection of a request that has the token, so that it is not closed after a time."""
         if (timer := self._strangers.pop(request.protocol, None)) is not None:
             timer.cancel()
 

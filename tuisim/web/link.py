@@ -81,7 +81,7 @@ class Link:
             await close(before, reason, TAKEN_OVER)
 
     def leave(self, socket: web.WebSocketResponse) -> bool:
-        """Forget the connection to a browser that has disconnected; return whether no other browser shows the app."""
+        """Forget the connection to a browser that has disconnected; return whether no browser shows the app now."""
         if self.socket is socket:
             self.socket = None
         return self.socket is None

@@ -180,7 +180,7 @@ class Server:
         self._lives: dict[str, asyncio.Task[None]] = {}
 
     def build_application(self) -> web.Application:
-        """Return the web application, which gives the same answer to all requests that the gate does not allow."""
+        """Return the web application; to every request that the gate refuses, it gives the same answer."""
         application = web.Application(middlewares=[self._guard])
         # The router accepts any token, which may change; the gate compares it.
         application.router.add_routes(

@@ -212,7 +212,7 @@ class WebSession(AppService):
 
 
 async def _do_nothing() -> None:
-    """Do nothing when the app announces its end: the socket is closed after the app has ended."""
+    """Ignore the app's announcement of its end: the socket is closed after the app has ended."""
 
 
 async def _read_last_bytes(stream: asyncio.StreamReader) -> bytes:

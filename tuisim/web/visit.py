@@ -35,7 +35,7 @@ _MOVE = re.compile(r"\x1b\[<(3[59]|4[37]|5[159]|63);\d+;\d+M")
 
 
 def is_done_by_a_person(text: str) -> bool:
-    """Return whether terminal input contains a key, the mouse or pasted text, not only answers of the terminal."""
+    """Return whether terminal input has a key, the mouse or pasted text, not only answers of the terminal."""
     return _ANSWER.sub("", text) != ""
 
 
@@ -219,7 +219,7 @@ class Visit:
                 )
 
     async def open_file(self, path: Path) -> None:
-        """Open a file in the app that the visitor has dropped on the page."""
+        """Open a file in the app; the visitor has dropped the file on the page."""
         self._note_use()
         await self.ask({"what": "open", "path": str(path)})
 

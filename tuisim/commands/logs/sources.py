@@ -133,12 +133,15 @@ def _read_runs(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
 def _name_columns(
     arguments: Arguments, known: Container[str], runs: Sequence[StoredRun]
 ) -> set[str]:
-    """Replace variables in the arguments by the telemetry columns that they mean; return the names of all columns.
+    """Replace the variables in the arguments by the columns of telemetry that they mean.
 
     Args:
         arguments: The arguments, which are changed.
         known: Names of samples: a variable of such a name is not replaced.
-        runs: The runs, whose columns are meant.
+        runs: The runs whose columns are meant.
+
+    Returns:
+        The names of all columns that the arguments name.
     """
     run = runs[0].spec
     words: Sequence[str] = getattr(arguments, "variable", None) or ()

@@ -128,7 +128,7 @@ def _iterate_reports(arguments: Arguments) -> Iterator[tuple[str, BandReport]]:
 
 
 def _join_columns(columns: Sequence[Column]) -> Column:
-    """Return one column with the values of several columns, one column after the other."""
+    """Return one column with the values of all given columns, those of the first column first."""
     if isinstance(columns[0], np.ndarray):
         return np.concatenate(columns)
     return [item for column in columns for item in column]

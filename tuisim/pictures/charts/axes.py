@@ -16,7 +16,7 @@ Limits = tuple[float, float]
 
 
 def choose_step(span: float, count: int) -> float:
-    """Return a round step that divides a span above 0 into at most about `count` parts."""
+    """Return a round number that divides a span, which is above 0, into at most about `count` parts."""
     # The minimum is 1e-300, since a part of the smallest span would be 0.
     rough = max(span / max(count, 1), 1e-300)
     magnitude = 10.0 ** math.floor(math.log10(rough))
@@ -129,7 +129,10 @@ def widen_times(low_s: float, high_s: float) -> Limits:
 
 
 def find_column(x: float, limits: Limits, columns: int) -> int:
-    """Return the character column of a value on a horizontal axis: 0 to `columns` - 1 for values inside the limits."""
+    """Return the character column of a value on a horizontal axis.
+
+    For values inside the limits, it is from 0 to `columns` - 1.
+    """
     low, high = limits
     return math.floor((x - low) / (high - low) * (columns - 0.5))
 
@@ -210,12 +213,12 @@ Places = TypeVar("Places", float, "FloatArray")
 
 
 def measure_row(values: Places, limits: Limits, rows: int) -> Places:
-    """Return how many rows below the top of a canvas values are.
+    """Return for values how many rows of characters, as a fraction, they are below the top of a canvas.
 
     Args:
         values: The values.
-        limits: Those of the vertical axis, in the middle of the lowest and the highest row.
-        rows: Height of the canvas.
+        limits: The values in the middle of the lowest and of the highest row.
+        rows: Height of the canvas in characters.
     """
     low, high = limits
     return 0.5 + (high - values) / (high - low) * (rows - 1)

@@ -64,7 +64,7 @@ def find_spans(trace: Trace, light: Light) -> tuple[Span, ...]:
 
 
 def _find_steps(levels: Levels, times_s: FloatArray) -> list[bool]:
-    """Return for each level whether it is a step of a slope: short, and between the levels before and after it."""
+    """Return for each level whether it is only a step of a slope: short, and between its neighbours in value."""
     steps = np.diff(levels.level)
     is_between = np.zeros(len(levels.level), bool)
     is_between[1:-1] = steps[:-1] * steps[1:] > 0

@@ -115,14 +115,14 @@ def draw_canvas(
 
 
 def choose_owners(covered: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.bool_]:
-    """Return which curve is visible at each place; several curves at a place take turns along the row.
+    """Return which curve is visible at each place of a canvas; curves at the same place take turns along the row.
 
     Args:
         covered: Shape (curves, rows, columns): where each curve is, the topmost last.
-        width: Columns of a turn.
+        width: After how many columns the next curve is visible.
 
     Returns:
-        The same shape; at most one curve is true at a place.
+        The same shape; at most one curve is True at a place.
     """
     count = covered.sum(axis=0)
     turn = np.arange(covered.shape[2]) // width % np.maximum(count, 1)
@@ -162,7 +162,7 @@ def _place_points(
 def _clip_places(
     across: FloatArray, down: FloatArray, columns: int, rows: int
 ) -> tuple[IntArray, IntArray]:
-    """Return positions on a canvas as whole cells, without those outside it."""
+    """Return positions on a canvas as columns and rows of cells, without those outside the canvas."""
     indices = np.floor(across).astype(np.int64), np.floor(down).astype(np.int64)
     good = (indices[0] >= 0) & (indices[0] < columns) & (indices[1] >= 0) & (indices[1] < rows)
     return indices[0][good], indices[1][good]

@@ -106,7 +106,12 @@ class CellScales:
         return self.ends_width + sum(map(_measure_width, self.labels[1:]))
 
     def curve(self, trace: Trace, marks: bool) -> Curve:
-        """Return a trace as a curve whose values are on the left scale; with `marks`, its points are drawn."""
+        """Return a trace as a curve whose values are converted to the left scale.
+
+        Args:
+            trace: The trace.
+            marks: Whether its points are drawn, with the trace's mark, in place of a line.
+        """
         values = self.scales.on_left(trace.values, self.scales.find_scale(trace.name))
         return Curve(trace.times_s, values, trace.rgb, trace.mark if marks else BRAILLE)
 
@@ -184,9 +189,13 @@ def _round_value(value: float, scale: Scale) -> str:
 
 
 def _separate_rows(ends: Sequence[tuple[int, Run]], rows: int) -> dict[int, Run]:
-    """Return texts by row: each in its own row or, if that is taken, in a row next to it; else it is left out.
+    """Return texts by row, at most one in each; a text whose row is taken is moved to a row next to it, or left out.
 
-    Equal texts of a row appear once.
+    Equal texts of a row appear only once.
+
+    Args:
+        ends: Row and text of each.
+        rows: Number of rows.
     """
     taken: dict[int, Run] = {}
     row_of: dict[int, int] = {}

@@ -319,9 +319,15 @@ def _measure_right_width(scales: Scales) -> float:
 def _draw_legend(
     lines: Sequence[Line], scales: Scales, width: int, top: float
 ) -> tuple[list[Shape], int]:
-    """Return the shapes of the legend, and its number of rows.
+    """Return the shapes of a chart's legend, and how many rows it has.
 
-    Each line has a stroke and its name, with a note if it is drawn to a right scale.
+    Each line of the chart has a stroke and its name there, with a note if a right scale applies to it.
+
+    Args:
+        lines: The lines of the chart.
+        scales: The scales of the chart.
+        width: Width of the chart in pixels.
+        top: The upper edge of the legend in pixels.
     """
     shapes: list[Shape] = []
     x = float(PAD)
@@ -404,7 +410,7 @@ class Scales:
 
 
 def _is_flat(values: FloatArray, others: FloatArray) -> bool:
-    """Return whether a common scale would make one of two variables a flat line."""
+    """Return whether one of two variables would look like a flat line if both were drawn to one scale."""
     smaller, larger = sorted(float(np.abs(series).max(initial=0.0)) for series in (values, others))
     return 0.0 < smaller * _SEEN < larger
 

@@ -54,13 +54,23 @@ class Plot:
         return self.rows + self.has_time_line, 1 + self.columns
 
     def measure_across(self, times_s: FloatArray, width: int) -> _Points:
-        """Return how many points times are to the right of the image's left edge, for cells of a width in points."""
+        """Return how many points of the image times are to the right of the image's left edge.
+
+        Args:
+            times_s: The times.
+            width: Width of a cell in points.
+        """
         # Place times as `axes.find_column` does, so that a label is below its tick.
         low, high = self.x_limits
         return (times_s - low) / (high - low) * (self.columns - 0.5) * width + 1
 
     def down(self, values: FloatArray, height: int) -> _Points:
-        """Return how many points values are below the canvas's top; `height` is the height of a cell in points."""
+        """Return how many points of the image values are below the top of the canvas.
+
+        Args:
+            values: The values.
+            height: Height of a cell in points.
+        """
         return axes.measure_row(values, self.y_limits, self.rows) * height
 
     def draw(self, cell: tuple[int, int], inks: PlotInks) -> Pixels:

@@ -226,7 +226,7 @@ def _style_runs(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
 
 
 def _style_of_names(drawn: Sequence[Trace], spans: Sequence[Span]) -> Style:
-    """Return the style of the names of bands; with several curves, in the colour of the curve with the bands."""
+    """Return the style for the names of bands: if there are several curves, the colour of the curve with the bands."""
     names = {span.name for span in spans}
     of_bands = [trace for trace in drawn if {trace.name} == names]
     return build_style(of_bands[0].rgb) if of_bands and len(drawn) > 1 else NAME
@@ -252,9 +252,9 @@ def _draw_cursors(runs: list[Run], columns: Sequence[int]) -> list[Run]:
 def _draw_tick_boxes(
     traces: Traces, selected: str | None, by_mark: bool, width: int
 ) -> tuple[list[list[Run]], tuple[Box, ...]]:
-    """Return the row of tick boxes, and the position of each; without traces, no row.
+    """Return the row of tick boxes as a list of one row, and the position of each box; both are empty without traces.
 
-    The row ends with the number of boxes for which there is no room.
+    If some boxes have no room, the row ends with their number.
     """
     every = [*traces]
     if not every:
@@ -430,7 +430,10 @@ def _trace(line: Line) -> Trace:
 
 
 def _on_any_ground(run: Run) -> Run:
-    """Return a piece of text that is legible in light and dark terminals: only data keep their colour."""
+    """Return a piece of text in the default colour of the terminal, unless it has a colour of data.
+
+    It is then legible in light and dark terminals.
+    """
     text, style = run
     return run if style.color and style.color.triplet in COLORS else (text, Style())
 

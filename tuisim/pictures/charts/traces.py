@@ -39,9 +39,9 @@ _THINNED = 4
 
 
 def find_scale_name(name: str) -> str:
-    """Return the name of the scale to which a variable is drawn: its unit, or the word for its reading.
+    """Return the name of the scale to which a variable is drawn: its unit, or the word for what it measures.
 
-    The result is empty for light in any unit, and for unknown variables.
+    The result is empty for light in any unit, and for variables without a known unit.
     """
     name = name.partition(" #")[0]
     sign = parse_unit(name).sign
@@ -101,7 +101,7 @@ class Trace:
             self._drop_points()
 
     def _drop_points(self) -> None:
-        """Remove two of every four points; the least and the greatest value stay, in their order."""
+        """Of every four successive points, keep only those with the least and the greatest value, in their order."""
         whole = self._count // _THINNED * _THINNED
         values = self._values[:whole].reshape(-1, _THINNED)
         offsets = np.sort(
@@ -329,7 +329,10 @@ class Pyramid:
         )
 
     def find_nearest(self, time_s: float) -> int:
-        """Return the index, among all given points, of the finite point nearest to a time; there must be one."""
+        """Return the index of the finite point nearest to a time, counted among all points given at first.
+
+        There must be a finite point.
+        """
         index = int(np.searchsorted(self.times_s, time_s))
         if index == len(self.times_s) or (
             index and time_s - self.times_s[index - 1] <= self.times_s[index] - time_s

@@ -68,7 +68,7 @@ def count_shots(start_s: float, stop_s: float, speed: float, fps: float) -> int:
 
 @dataclass(frozen=True, slots=True)
 class ClipMoment:
-    """The state of a run at one instant: its record, and the values printed so far."""
+    """The state of a run at one instant: its record, and the newest printed value of each variable."""
 
     time_s: float
     tick: int

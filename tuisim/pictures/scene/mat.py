@@ -76,10 +76,10 @@ def shrink(
 def _end_at_cells(
     lines: Pixels, inside: slice, step: int, outside_rgb: tuple[int, int, int]
 ) -> None:
-    """Move both ends of the mat in a picture to the nearest ends of cells, in place.
+    """Move both ends of the mat in a picture to the nearest ends of cells: extend the mat, or cut it.
 
     Args:
-        lines: The rows, or the columns, of the picture.
+        lines: The rows, or the columns, of the picture; changed in place.
         inside: The lines that show the mat.
         step: Number of lines in a cell.
         outside_rgb: Colour of what lies off the mat.

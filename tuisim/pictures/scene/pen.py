@@ -124,7 +124,7 @@ class Piece:
         return cls(xs_mm, ys_mm, parse_pen_color(pen.color), pen.width_mm)
 
     def lift(self) -> Piece:
-        """Return the same piece with a lifted pen before it, so that it is not joined to the piece before."""
+        """Return the piece with NaN as its first point, so that it is not joined to the piece before it."""
         return replace(
             self, xs_mm=np.insert(self.xs_mm, 0, np.nan), ys_mm=np.insert(self.ys_mm, 0, np.nan)
         )

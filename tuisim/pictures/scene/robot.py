@@ -253,7 +253,15 @@ def _mount(
     px_mm: float,
     pressed: tuple[bool, ...],
 ) -> None:
-    """Write the numbers of bumpers and other sensors into `parts`, except below the heading marker."""
+    """Change `parts` where a bumper or another sensor covers a sample, except below the heading marker.
+
+    Args:
+        parts: The number of the robot's part at each sample; changed in place.
+        outline: Shape of the robot.
+        side, ahead: Where the samples are: to the right of the robot's axis, and ahead, in mm.
+        px_mm: Width of a pixel.
+        pressed: Whether each bumper is pressed.
+    """
     free = parts != _MARKER
     for number, (x_mm, y_mm, half) in enumerate(outline.bumpers_mm):
         # A bar is at least half a pixel thick and long, to stay visible.

@@ -133,7 +133,7 @@ def follow_robot(
 
 
 def _shift_view(view: Viewport, zoom: int, pose: Pose) -> Viewport:
-    """Return a view that is moved by thirds of its size until the robot is not near its edges."""
+    """Return a view that is moved, by multiples of a third of its size, until the robot is not near its edges."""
     share = _KEEP_ON_FLOOR if zoom == 1 else _KEEP_INSIDE
     col, row = view.to_px(pose.x_mm, pose.y_mm)
     right_px = _count_steps(col, view.width_px, share, view.cell.cols)
@@ -143,7 +143,9 @@ def _shift_view(view: Viewport, zoom: int, pose: Pose) -> Viewport:
 
 
 def _count_steps(at_px: float, size_px: int, share: float, cell_px: int) -> int:
-    """Return by how many pixels a view has to move along an axis, so that a point is not near its edges.
+    """Return by how many pixels to move a view along an axis, so that a point is not near its edges.
+
+    The result is a multiple of about a third of the size; negative is to the left or up, and 0 is for no move.
 
     Args:
         at_px: Position of the point in the view.
@@ -177,7 +179,13 @@ def _center_view(
 
 
 def _clamp_center(centre_mm: float, shown_mm: float, field_mm: float) -> float:
-    """Return the centre of a view along an axis, moved so that as little as possible off the field is shown."""
+    """Return the centre of a view along an axis, moved so that the view shows as little as possible off the field.
+
+    Args:
+        centre_mm: The centre.
+        shown_mm: Size of the view.
+        field_mm: Size of the field.
+    """
     if shown_mm >= field_mm:
         return field_mm / 2
     return min(max(centre_mm, shown_mm / 2), field_mm - shown_mm / 2)
