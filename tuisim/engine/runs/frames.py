@@ -95,7 +95,7 @@ FieldAt: TypeAlias = Callable[[tuple[float, ...]], Field]
 
 
 class RecordedRun(CommandedRun, Protocol):
-    """A run with a folder, either running or stored, with its present spec."""
+    """A run, running or stored, with its folder and its spec, which includes parts that were plugged in so far."""
 
     @property
     def spec(self) -> RunSpec: ...

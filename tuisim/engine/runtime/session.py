@@ -292,7 +292,7 @@ class Session:
         self.spend(wait_ns)
 
     def show(self, row: str, stream: Stream) -> None:
-        """Record a row that describes what the brick shows."""
+        """Record a row of output that describes what the brick shows; arguments as for `DeviceSession.show`."""
         self.output.row(row, stream)
 
     def messages(self) -> list[Any]:

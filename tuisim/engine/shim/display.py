@@ -50,7 +50,7 @@ class Screen:
         self._shown: tuple[str, Stream] | None = None
 
     def show(self, row: str, stream: Stream) -> None:
-        """Record an image or a text, in the format of `engine.runs.brick_state`, if it differs from the last one."""
+        """Record an image or a text if it differs from the last one; arguments as for `DeviceSession.show`."""
         if (row, stream) != self._shown:
             self._shown = (row, stream)
             self._session.show(row, stream)

@@ -185,7 +185,7 @@ class Plugs:
         return not sim.has_driven and not any(map(sim.has_turned, range(first, len(others))))
 
     def _is_there(self, part: str, port: str) -> bool:
-        """Return whether the robot has a motor on a port whose class is called `part`."""
+        """Return whether the robot has a motor of the class with the name `part` on a port."""
         kind = MOTOR_KIND_OF[part]
         return any(
             (motor.port, motor.kind) == (port, kind)

@@ -79,7 +79,12 @@ class DeviceSession(Protocol):
         """Return all answers of the notebook's responder; waits for pending answers without simulated time."""
 
     def show(self, row: str, stream: Stream) -> None:
-        """Record what the brick shows; `row` has the format of `engine.runs.brick_state`."""
+        """Record what the brick shows: a row of output in the format of `engine.runs.brick_state`.
+
+        Args:
+            row: The text of the row.
+            stream: The stream of the row, which says what part of the brick it is about.
+        """
 
     def tell_plugged(self, parts: Sequence[PluggedPart]) -> None:
         """Report to the process that started the run which parts have been plugged in."""

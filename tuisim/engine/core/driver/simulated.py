@@ -183,7 +183,10 @@ class SimulatedMotor(DriverMotor):
         return 0 if self.is_at_rest or self._cruise_dps else 1
 
     def read_turn(self, now_ns: int) -> tuple[float, float]:
-        """Advance the driver to a time, and return the position and the speed that it reports, in degrees."""
+        """Advance the driver to a time in ns, and return the position and the speed that it reports.
+
+        The position is in degrees, the speed in degrees per second.
+        """
         if not self.is_at_rest:
             self.run_until(now_ns)
         return self.position, self.speed_dps

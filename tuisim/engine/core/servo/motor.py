@@ -189,7 +189,10 @@ class ServoMotor:
         return self.counts_per_s if self._course is None else round(self._guide.rate(now_us, self))
 
     def read_turn(self, now_ns: int) -> tuple[float, float]:
-        """Return position and speed in degrees, as a program reads them at a time after the last tick."""
+        """Return position and speed as a program reads them at a time, in ns, after the last tick.
+
+        The position is in degrees, the speed in degrees per second.
+        """
         now_us = now_ns // 1000
         rate = self.find_counts_per_s(now_us, self.control.settings.speed_window_ms)
         deg = self.sign / COUNTS_PER_DEG
