@@ -92,7 +92,12 @@ class Lab:
 
     @classmethod
     def of_run(cls, run: Run, columns: Sequence[str] = MOTION) -> Lab:
-        """Return a lab in the state at the beginning of a run; arguments as of `Lab`."""
+        """Return a lab in the state at the beginning of a run.
+
+        Args:
+            run: The run.
+            columns: As for `Lab`.
+        """
         lab = cls.__new__(cls)
         lab._open(run.stored.first_spec, columns)
         return lab

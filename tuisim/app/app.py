@@ -327,7 +327,9 @@ class LabApp(PanelMessages):
     # A run
 
     def start_run(self, paused: bool = False) -> bool:
-        """Start the program, or let it start when the mat is ready. Return whether it has started.
+        """Start the program; if the mat is not prepared yet, start it when the mat is.
+
+        Return whether it has started now.
 
         Args:
             paused: Whether the program pauses at its first line.
@@ -534,7 +536,7 @@ class LabApp(PanelMessages):
 
     @on(Driver.SignalResume)
     def pace_again(self) -> None:
-        """Stop waiting for the terminal's answers: the app was suspended, or another browser page shows it now."""
+        """Stop waiting for the terminal's answers, which no longer come, as after a suspension of the app."""
         self.pacer.record_interruption()
 
     def handle_situation_change(self) -> None:

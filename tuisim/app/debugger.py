@@ -480,7 +480,10 @@ class DebugController:
     # Steps
 
     def _find_position(self) -> Position | None:
-        """Return the position in view, with the executed line if that is known; None before the first tick."""
+        """Return the position in the run that is in view, with the executed line as far as it is known.
+
+        None before the first tick.
+        """
         timeline = self._run_controller.timeline
         if self.position is not None:
             return self.position

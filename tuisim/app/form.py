@@ -120,7 +120,7 @@ class EntryPanel(FormPanel):
             self._apply(event.widget)
 
     def _apply(self, entry: Input) -> None:
-        """Apply the value of a field, or show why it is invalid."""
+        """Apply the value of a field; if the value is invalid, show why."""
 
 
 class Row(Vertical):
@@ -142,7 +142,7 @@ class Row(Vertical):
 
     @dataclass
     class Entered(Message):
-        """Posted when the user has typed a value into the row, or asks for another choice."""
+        """Posted when the user has typed a value into the row, or has asked for another of its choices."""
 
         row: Row
         text: str

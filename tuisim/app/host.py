@@ -61,7 +61,9 @@ class LabHost(ActionHost, TerminalApp):
 
     @abstractmethod
     def start_run(self, paused: bool = False) -> bool:
-        """Start the program, or let it start when the mat is ready. Return whether it has started.
+        """Start the program; if the mat is not prepared yet, start it when the mat is.
+
+        Return whether it has started now.
 
         Args:
             paused: Whether the program pauses at its first line.

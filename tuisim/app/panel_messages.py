@@ -168,7 +168,7 @@ class PanelMessages(LabHost):
         self.context.runs.place(message.pose)
 
     def on_settings_edited(self, message: Settings.Edited) -> None:
-        """Apply the value of a field in the settings panel, or show the error below the field."""
+        """Apply the value of a field in the settings panel; if it is invalid, show the error below the field."""
         try:
             self.context.loader.set_next_run(self.context.loader.change(message.apply))
         except TuisimError as error:

@@ -423,7 +423,7 @@ class RunController:
         self.send(protocol.SetSpeed(speed))
 
     def set_pen(self, down: bool) -> None:
-        """Put the pen down or lift it, in the live run and in the next run."""
+        """Put the pen down, or lift it if `down` is False, in the live run and in the next run."""
         if self.propose(protocol.SetPen(down)):
             return
         self._send_action(protocol.SetPen(down))

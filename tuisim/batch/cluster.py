@@ -97,7 +97,7 @@ class ClusterWatch:
         """Block until the cluster has a worker, and all workers have been checked.
 
         Raises:
-            HostError: as `look`.
+            HostError: as for `look`.
         """
         while True:
             self.look()

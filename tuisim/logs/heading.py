@@ -449,7 +449,7 @@ def _has_units(cells: Sequence[str], names: _Line) -> bool:
 
 
 def _has_names(rows: Sequence[_Line]) -> bool:
-    """Return whether the first of some rows is a heading, although it has the same kinds of cells as the others."""
+    """Return whether the first of some rows has the names of the columns, although its cells are of the same kinds."""
     first = rows[0]
     if first.kinds[0] == "t" and (len(rows) < 2 or rows[1].kinds[0] == "t"):
         return False

@@ -259,7 +259,7 @@ def _trim(values: FloatArray, parts: Pieces, far: float) -> Pieces:
 
 
 def add_apart(plateaus: PlateauArray, parts: PlateauArray) -> PlateauArray:
-    """Return plateaus, and those parts that overlap none of them, in order."""
+    """Return plateaus together with those of `parts` that overlap none of them, in the order of the log."""
     after = np.searchsorted(plateaus["start"], parts["start"], side="right")
     stops = np.append(0, plateaus["stop"])
     starts = np.append(plateaus["start"], np.iinfo(np.int64).max)

@@ -184,7 +184,7 @@ class Rows:
         self.frozen = self.column = 0
 
     def freeze(self) -> None:
-        """Pin the selected column at the left, or unpin it."""
+        """Pin the selected column at the left of the table; if it is pinned already, unpin it."""
         name = self.columns.pop(self.column)
         if self.column < self.frozen:
             self.frozen -= 1

@@ -139,9 +139,10 @@ def order_times(
 def keep_timed_rows(
     table: pa.Table, layout: Layout, notes: Notes
 ) -> tuple[pa.Table, Layout, Times | None]:
-    """Return the rows of a table that have a time, its layout, and these times; None if the rows are counted.
+    """Return the rows of a table that have a time, the table's layout, and the times.
 
-    If no row has a time, the rows are counted.
+    If no row has a time, or the layout names no column with times, all rows are returned, the times are None, and the
+    number of the row is used as the time.
 
     Args:
         table: The table.
@@ -191,13 +192,13 @@ def _find_restarts(seconds: FloatArray, back: IntArray) -> IntArray:
 
 
 def _is_one_clock(table: pa.Table, layout: Layout, back: IntArray) -> bool:
-    """Return whether the rows were written in order of time, not one variable after another.
+    """Return whether the rows were written in order of time by one clock, not one variable after another.
 
     Args:
         table: The table.
         layout: The roles of its columns.
-        back: The rows at which time is less than in the row before. If no variable has rows on both sides of such a
-            row, the samples of another variable begin there.
+        back: The rows at which time is less than in the row before. If no variable has samples both before and after
+            such a row, another variable begins there.
     """
     if not layout.variable:
         return True

@@ -49,12 +49,12 @@ class Remarks:
         self._lines = source_lines(text)
 
     def find_color(self, first_line: int, last_line: int, others: Iterable[int] = ()) -> str:
-        """Return `black` or `white` if the lines around a loop name only this colour; empty otherwise.
+        """Return `black` or `white` if the lines in and around a loop name only this colour; empty otherwise.
 
         Args:
             first_line: The first line of the loop.
             last_line: The last line of the loop.
-            others: The first lines and the last ones of other loops; what is beyond them is not about this one.
+            others: The first and last lines of other loops, at which the search for colours ends.
         """
         others = [*others]
         start = max([line + 1 for line in others if line < first_line], default=0)

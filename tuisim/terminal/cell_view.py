@@ -553,7 +553,7 @@ class PictureStrip(CellStrip):
 
     @property
     def cells(self) -> Sequence[int]:  # type: ignore[override]  # a slot of the base class
-        """The half blocks that stand for the parts where pixels cannot be shown."""
+        """The cells of the strip as half blocks, which are drawn where pixels cannot be shown."""
         if not self.parts:
             return ()
         first = self.parts[0]

@@ -48,7 +48,7 @@ class ResilientOutput:
         """Whether a write has failed; later output is dropped."""
 
     def write(self, text: str) -> int:
-        """Write a text, or drop it if the terminal is lost. Return its length."""
+        """Write a text, and return its length; if the terminal is lost, drop the text."""
         if not self.gone:
             try:
                 self._file.write(text)

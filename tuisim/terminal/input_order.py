@@ -97,7 +97,7 @@ class Turn:
             self.end()
 
     def end(self) -> None:
-        """End the turn, so that the next key can begin its own."""
+        """End the turn, so that the next key is handled."""
         if not self.is_over:
             self.is_over = True
             self._left.clear()
@@ -259,7 +259,7 @@ class InputOrder:
 
     @property
     def is_idle(self) -> bool:
-        """Whether all events were handled, and no turn goes on."""
+        """Whether all events of the user were handled, with everything that followed from them."""
         return not self._held and self._turn is None
 
     async def take(self, event: events.Event) -> None:

@@ -44,10 +44,10 @@ class Recoloring(TypingProtocol):
     """A mapping from the app's own colours to other colours, such as those of a theme."""
 
     def rgb(self, own: Rgb) -> Rgb:
-        """Return the colour in place of one of the app's own; any other colour is returned unchanged."""
+        """Return the colour that replaces one of the app's own colours; any other colour is returned unchanged."""
 
     def choose_text_rgb(self, own: Rgb) -> Rgb:
-        """Return the colour for text or lines in place of one of the app's own colours, legible on the background."""
+        """Return the colour that replaces one of the app's own colours in text and lines, legible on the background."""
 
 
 @dataclass(slots=True)

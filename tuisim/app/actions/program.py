@@ -70,9 +70,10 @@ def run_to_cursor(context: ActionContext) -> None:
 
 
 def toggle_break(context: ActionContext) -> None:
-    """Set or remove a breakpoint: on the line of the cursor if the code has the focus, else on the current line.
+    """Set a breakpoint or, if there is one, remove it.
 
-    Without a current line, give the code the focus, so that the user can choose a line.
+    Its line is that of the cursor if the code has the focus, else the current line. Without a current line, give the
+    code the focus, so that the user can choose a line.
     """
     code = context.panels.code
     current = context.debugger.current_line

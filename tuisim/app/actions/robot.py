@@ -165,7 +165,10 @@ def find_world_panel(context: ActionContext) -> World | None:
 
 
 def switch_earlier(context: ActionContext) -> None:
-    """Show or hide the robot of the earlier run beside the robot of the run in view."""
+    """Show the robot of the earlier run beside the robot of the run in view.
+
+    If earlier runs are shown already, hide it.
+    """
     runs = context.runs
     runs.shows_earlier = not runs.shows_earlier
     if runs.earlier is None:
@@ -179,7 +182,7 @@ def switch_earlier(context: ActionContext) -> None:
 
 
 def switch_rays(context: ActionContext) -> None:
-    """Show or hide the ultrasonic rays."""
+    """Show the rays of the ultrasonic sensor; if they are shown already, hide them."""
     if world := find_world_panel(context):
         world.show_rays = not world.show_rays
         context.app.draw(force=True)

@@ -263,7 +263,12 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.chart.set_model(self.model)
 
     def lay_out(self, chart: bool, pane: bool) -> None:
-        """Show the chart, the pane, or both."""
+        """Show or hide the chart and the pane.
+
+        Args:
+            chart: Whether to show the chart.
+            pane: Whether to show the pane.
+        """
         self.chart.display = chart
         self.pane.display = pane
         self.call_after_refresh(self.update)

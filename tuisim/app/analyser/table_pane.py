@@ -124,7 +124,10 @@ def build_heading(model: AnalysisModel, column: str) -> str:
 
 
 def count_rows(model: AnalysisModel) -> str:
-    """Return in words how many rows the table shows, its filter, and what the chosen column of a run's log counts."""
+    """Return as text how many rows the table shows, and its filter.
+
+    If the selected column is `index` of a log of stored runs, the text also says what it means.
+    """
     rows = model.rows
     if rows.columns and rows.chosen == "index" and model.opened.runs:
         return f"index: s since the first sample  {_count_shown_rows(model)}"

@@ -127,7 +127,7 @@ class _TextList(_List[None], Generic[Entry]):
             field.focus()
 
     def action_switch(self) -> None:
-        """Enable or disable the selected entry."""
+        """Disable the selected entry; if it is disabled already, enable it."""
 
     @on(Input.Submitted)
     def _add_entry(self, event: Input.Submitted) -> None:

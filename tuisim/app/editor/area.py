@@ -101,15 +101,15 @@ class CodeArea(TextArea):
 
     @dataclass
     class Wanted(Message):
-        """Posted when a key for the code panel was pressed, see `EditorCommand`."""
+        """Posted when a key was pressed that the code panel handles; it has the `EditorCommand`."""
 
         command: EditorCommand
 
     class LookedUp(Message):
-        """Posted when a look-up of names begins or ends, see `is_completing`."""
+        """Posted when a look-up of names begins, and when it ends; `is_completing` says which."""
 
     class LettersChanged(Message):
-        """Posted when letters begin to be typed into the text, or become keys of the app again."""
+        """Posted when typed letters begin to go into the text, and when they become keys of the app again."""
 
     @dataclass
     class GutterClicked(Message):

@@ -440,7 +440,10 @@ class GuideScreen(Dialog[None]):
         self._search.select_all()
 
     def action_down(self) -> None:
-        """Move the focus from the field to the contents, or to the second answer of a search."""
+        """Move the focus from the search field down to the contents.
+
+        With the answers of a search, to the second answer.
+        """
         if self._search.has_focus and len(self._found) > 1:
             self._answers.highlighted = 1
         self.action_contents()
@@ -470,7 +473,7 @@ class GuideScreen(Dialog[None]):
             self.action_contents()
 
     def action_leave(self) -> None:
-        """Return from an answer's page to the answers, or from a search to the contents, or close the guide."""
+        """Go one step back: from an answer's page to the answers, from a search to the contents, else close."""
         if self._found and self._page.has_focus:
             self.action_contents()
         elif self._search.value:

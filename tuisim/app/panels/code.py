@@ -51,7 +51,7 @@ class FindBar(Horizontal):
 
     @dataclass
     class Asked(Message):
-        """Posted to find the typed text, or to go to the typed line."""
+        """Posted when the user wants to find the typed text or, in the mode for lines, to go to the typed line."""
 
         mode: str
         text: str
@@ -77,7 +77,7 @@ class FindBar(Horizontal):
         """Open the bar.
 
         Args:
-            mode: Whether to find a text or go to a line.
+            mode: `FIND` for a field for a search; any other mode is for a field for a line number.
         """
         self.mode = mode
         self.display = True
@@ -90,7 +90,7 @@ class FindBar(Horizontal):
         field.focus()
 
     def say(self, text: str) -> None:
-        """Show the result of the search, or what is wrong with it."""
+        """Show a message about the search, such as the number of matches, in the bar."""
         self.query_one("#found", Static).update(text)
 
     def action_close(self) -> None:
@@ -151,7 +151,7 @@ class Code(Vertical):
 
     @dataclass
     class Wanted(Message):
-        """Posted when a key for the whole program was pressed, see `ProgramCommand`."""
+        """Posted when a key was pressed that concerns the whole program; it has the `ProgramCommand`."""
 
         command: ProgramCommand
 
@@ -163,7 +163,10 @@ class Code(Vertical):
 
     @dataclass
     class BreakpointToggled(Message):
-        """Posted when the user has clicked a line number, to set or remove a breakpoint there."""
+        """Posted when the user has clicked a line number.
+
+        A breakpoint is then to be set there or, if there is one, removed.
+        """
 
         line: int
 

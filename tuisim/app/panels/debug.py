@@ -42,12 +42,12 @@ class Debug(LinesPanel, can_focus=True):
 
     @dataclass
     class FrameWanted(Message):
-        """Posted to show the variables of the caller of the current frame, or of the function that it called."""
+        """Posted when the user wants to see the variables of the calling frame, or of the called one."""
 
         by: int
 
     class ThreadWanted(Message):
-        """Posted to show the variables of the next thread."""
+        """Posted when the user wants to see the variables of the next thread."""
 
     def __init__(self) -> None:
         super().__init__()

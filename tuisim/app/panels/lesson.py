@@ -111,7 +111,7 @@ class LessonPanel(LinesPanel, can_focus=True):
 
     @property
     def reads_on(self) -> bool:
-        """Whether the text goes on above or below the visible rows."""
+        """Whether the text of the lesson has more rows above or below the visible ones."""
         return self._picture.first > 0 or self._picture.below > 0
 
     def set_typing(self, is_typing: bool, is_low: bool = False) -> None:

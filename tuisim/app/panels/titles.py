@@ -44,7 +44,13 @@ def _count_columns(panel: str, width: int) -> int:
 
 
 def name_mat(mat: str, layout: str, width: int) -> str:
-    """Return the words in the title of the world: the mat, and if there is room the preset of the panels."""
+    """Return the words in the title of the world: the mat and the name of the panels' preset, as far as there is room.
+
+    Args:
+        mat: The title of the mat.
+        layout: The name of the preset; empty for none.
+        width: Columns of the panel.
+    """
     room = _count_columns("world", width)
     wordings = (f"{mat} · {layout}", layout) if layout else ()
     return next((words for words in wordings if cell_len(words) <= room), mat)

@@ -103,7 +103,12 @@ class World(Widget, can_focus=True):
         yield self.time_bar
 
     def edit_boxes(self, on: bool, marked: int | None = None) -> None:
-        """Set whether the mouse draws and moves obstacles; `marked` is the index of the selected obstacle."""
+        """Set whether the mouse draws and moves obstacles.
+
+        Args:
+            on: Whether it does.
+            marked: The index of the selected obstacle; None for none.
+        """
         self._edits_boxes = on
         self._view.edit_boxes(on, marked)
         self._say_below()
@@ -258,7 +263,12 @@ class WorldView(PixelView):
         self.repaint_scene()
 
     def edit_boxes(self, on: bool, marked: int | None) -> None:
-        """Set whether the mouse draws and moves obstacles; `marked` is the index of the selected obstacle."""
+        """Set whether the mouse draws and moves obstacles, see `World.edit_boxes`.
+
+        Args:
+            on: Whether it does.
+            marked: The index of the selected obstacle; None for none.
+        """
         if (on, marked) != (self._edits_boxes, self._marked):
             self._edits_boxes = on
             self._marked = marked

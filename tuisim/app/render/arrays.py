@@ -193,7 +193,15 @@ def _ring_lines(face: DiscFace, width: int) -> list[Line]:
 
 
 def list_border_names(names: Sequence[str], where: Arrangement, *, has_limits: bool) -> str:
-    """Return the names of the sensors for the frame; if the lines already show them, words for which side is up."""
+    """Return the text for the frame of the panel: the names of the sensors.
+
+    If there is only one sensor, or the lines beside the discs have the names, the text says that up is up on the mat.
+
+    Args:
+        names: The names of the sensors.
+        where: The arrangement of the discs.
+        has_limits: Whether there is a line for thresholds.
+    """
     if len(names) < 2 or where.text_rows > _MAX_LINES - 2 + has_limits:
         return UP_WORDS
     return (" │ " if where.across else " above ").join(names)

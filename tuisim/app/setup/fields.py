@@ -254,7 +254,15 @@ def _find_free_port(robot: RobotSpec, preferred: str) -> str:
 
 
 def _move_sensor(plan: NextRun, text: str, name: str) -> NextRun:
-    """Return a plan in which a colour sensor has another x; the positions that the mat gives other sensors stay."""
+    """Return a plan in which the user has moved a colour sensor sideways.
+
+    The other colour sensors keep the positions that the mat gives them.
+
+    Args:
+        plan: The plan.
+        text: The new x in mm, as typed.
+        name: The name of the sensor.
+    """
     on_mat = {sensor.name: sensor for sensor in plan.spec.robot.color_sensors}
     robot = plan.robot_choice.spec
     x_mm = _parse_value(list_values(ColorSensorSpec)["x_mm"], text)

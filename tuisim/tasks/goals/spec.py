@@ -116,7 +116,10 @@ class ReachCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class AreaCondition(Condition):
-    """A part of the field: a rectangle from its lower left corner, or a circle around its centre."""
+    """The base class of conditions about an area of the field: a rectangle, or a circle.
+
+    `x_mm` and `y_mm` are the lower left corner of the rectangle, or the centre of the circle.
+    """
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
 

@@ -112,7 +112,7 @@ class WorldTrial:
     folder: Path
 
     def run(self) -> WorldJudgements:
-        """Run the program in each of the other worlds, and return the judgements; blocks meanwhile.
+        """Run the program in each of the other worlds, and return the judgements. This blocks.
 
         Raises:
             TuisimError: the run is damaged, or the program's magic line is wrong in another world.

@@ -130,7 +130,7 @@ def run_model(lesson: Lesson, step: LessonStep | None) -> Recording:
 
 
 def find_faults(lesson: Lesson) -> list[str]:
-    """Run all programs of a lesson, and return the faults of the lesson, one line each; blocks meanwhile.
+    """Run all programs of a lesson, and return the faults of the lesson as texts of one line. This blocks.
 
     Raises:
         ConfigError: a program's magic line, or the world, is wrong.

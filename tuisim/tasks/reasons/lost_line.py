@@ -250,7 +250,10 @@ class _Way:
         return np.flatnonzero(long_enough).tolist() if len(gaps) else []
 
     def find_gap(self, number: int) -> tuple[int, int]:
-        """Return the last tick of a dark stretch and the first tick of the next one, or else the run's last tick."""
+        """Return the last tick of a dark stretch, and the first tick of the next one.
+
+        After the last stretch, the run's last tick.
+        """
         index = int(self._next[number])
         end = self._ticks[index] if index < len(self._ticks) else self._last_tick
         return int(self._ticks[self._ends[number] - 1]), int(end)

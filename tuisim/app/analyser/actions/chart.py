@@ -39,7 +39,7 @@ def fit(screen: LogScreen) -> None:
 
 
 def tick(screen: LogScreen) -> None:
-    """Draw the selected variable in the chart, or remove it from the chart."""
+    """Draw the selected variable in the chart; if it is drawn already, remove it from the chart."""
     if screen.model.selected:
         screen.model.trace.on = not screen.model.trace.on
 
@@ -57,7 +57,7 @@ def switch_facets(screen: LogScreen) -> None:
 
 
 def switch(screen: LogScreen, option: str) -> None:
-    """Switch one of the `ChartOptions` on or off."""
+    """Switch one of the `ChartOptions` on if it is off, and off if it is on."""
     options = screen.chart.options
     setattr(options, option, not getattr(options, option))
     screen.redraw_chart()

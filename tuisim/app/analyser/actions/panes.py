@@ -65,7 +65,7 @@ def cycle_sizes(screen: LogScreen) -> None:
 
 
 def switch_world(screen: LogScreen) -> None:
-    """Show or hide the world beside the log."""
+    """Show the world beside the log; if it is shown already, hide it."""
     if not has_poses(screen.model.opened):
         screen.say(NO_POSES)
         return
@@ -102,7 +102,7 @@ def sort(screen: LogScreen) -> None:
 
 
 def _arrange(screen: LogScreen, model: AnalysisModel, arrangement: TableView) -> None:
-    """Show the rows of the table after a filter or a sort, with the cursor on one of them.
+    """Show other rows of the table, after a filter or a sort, with the cursor on one of these rows.
 
     Do nothing if another log was opened in the meantime.
     """
@@ -197,7 +197,7 @@ _PLACES = (
 
 
 def rows(screen: LogScreen, step: int) -> None:
-    """Move the cursor in the table, or the selection in another pane, by a number of rows."""
+    """Move the cursor in the table by a number of rows; if another pane is shown, move the selection in it."""
     model = screen.model
     pane = screen.pane
     if pane.name_shown == "table":
@@ -210,17 +210,20 @@ def rows(screen: LogScreen, step: int) -> None:
 
 
 def move_pages(screen: LogScreen, step: int) -> None:
-    """Move the cursor in the table, or the selection in another pane, by a number of pages."""
+    """Move the cursor in the table by a number of pages; if another pane is shown, move the selection in it."""
     rows(screen, step * screen.pane.lines)
 
 
 def go_to_end(screen: LogScreen, last: bool) -> None:
-    """Go to the first row of the pane, or if `last` to its last row."""
+    """Go to the first row of the pane; if `last`, go to its last row."""
     rows(screen, screen.model.log.rows if last else -screen.model.log.rows)
 
 
 def columns(screen: LogScreen, step: int) -> None:
-    """Move the cursor by a number of columns of the chart, but at least to the next or previous sample."""
+    """Move the cursor by a number of columns of the chart, but at least to the next sample.
+
+    A negative number moves it back.
+    """
     model = screen.model
     before = model.row
     model.go_to_time(screen.chart.time_beside(model.cursor_s, step))
