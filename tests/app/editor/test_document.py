@@ -29,6 +29,7 @@ from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.text_file import find_draft, keep_draft
 from tuisim.app.panels.code import Code
 from tuisim.app.snapshot import RunPhase
+from tuisim.base.folders import programs_folder
 from tuisim.programs.program_file import build_program, list_programs, read_program
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
@@ -280,6 +281,16 @@ async def test_an_edit_is_stored_as_draft_soon_and_the_draft_goes_when_undone(
         await pilot.press("ctrl+z")
         await until(pilot, lambda: find_draft(str(path)) is None)
         assert not app.document.dirty
+
+
+async def test_an_opened_example_is_called_one_and_says_where_its_changes_go() -> None:
+    async with open_code(own(programs_folder() / "square.py")) as (pilot, app, code):
+        await until(pilot, lambda: any("the example square.py" in word for word in notices(app)))
+        assert f"saves a copy into {Path.cwd().name}/" in "".join(notices(app))
+        await typed(pilot, code, "x", "escape")
+        app.document.run_when_saved(lambda: None)
+        await asked(pilot)
+        assert "Save them into a file of yours" in screen_text(app)
 
 
 @pytest.mark.quick_cases("mine")

@@ -13,6 +13,7 @@ from tuisim.app.editor.text_file import (
     TextFormat,
     drop_draft,
     find_draft,
+    is_example,
     is_protected,
     keep_draft,
     read_text,
@@ -97,6 +98,15 @@ class Document:
         self.open_at_mistake()
         if self._path and not (self._text or os.path.lexists(self._path)):
             self._app.say(describe_new_file(Path(self._path)))
+        elif (
+            self._path
+            and is_example(Path(self._path))
+            and self._run_controller.timeline.recording is None
+        ):
+            self._app.say(
+                f"the example {self._name}: {{edit}} edits it, ctrl+s then saves a copy into"
+                f" {Path.cwd().name}/"
+            )
         if asks and self._program is None and (draft := find_draft("")):
             self._offer(draft)
 
@@ -298,7 +308,8 @@ class Document:
                 self._discard()
                 do()
 
-        answers = (("s", "Save them"), ("d", "Discard them"))
+        place = "" if self._has_own_file else " into a file of yours"
+        answers = (("s", f"Save them{place}"), ("d", "Discard them"))
         question = Question(
             "Unsaved changes",
             f"{self._name} has changes that are not saved.",

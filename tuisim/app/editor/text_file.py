@@ -100,12 +100,14 @@ def _is_declared(encoding: str, text: str) -> bool:
     return encoding == "utf-8" or encoding in "\n".join(text.split("\n", 2)[:2])
 
 
+def is_example(path: Path) -> bool:
+    """Return whether a program's file is one of the examples."""
+    return path.resolve().parent == programs_folder().resolve()
+
+
 def is_protected(path: Path) -> bool:
     """Return whether the app must not write to a program's file: it is an example, or read-only."""
-    examples = programs_folder().resolve()
-    return path.resolve().parent == examples or (
-        os.path.exists(path) and not os.access(path, os.W_OK)
-    )
+    return is_example(path) or (os.path.exists(path) and not os.access(path, os.W_OK))
 
 
 FOLDER = "drafts"
