@@ -63,6 +63,9 @@ NAMED = (
 )
 """Files that the app names when it saves a world or a log, and nobody types another name."""
 
+MANY_TICKS = 1_000_000
+"""A longer run is stopped: a robot that is blocked at full speed would record gigabytes, which the model compares."""
+
 Shown = dict[tuple[str, int], object]
 
 
@@ -91,6 +94,11 @@ class AppSteps:
             await self._pilot.press("escape")
             await self._pilot.pause(0.01)
         await self._pilot.pause(random.choice((0.0, 0.05, 0.2)))
+
+    async def stop_long_run(self) -> None:
+        """Stop the run in view if its recording is long."""
+        if self._app.run_controller.timeline.newest > MANY_TICKS and not is_over(self._pilot):
+            await self._pilot.press("S")
 
     def _outside(self, name: str, random: Random) -> None:
         model = self._model
@@ -165,6 +173,7 @@ async def _in_app(model: RunModel, steps: Sequence[int], seed: str) -> None:
             name = one.choice(names)
             model.done.append(f"{step} {name}")
             await todo.do(name, one)
+            await todo.stop_long_run()
             if app._exception:
                 raise FaultError(f"the app failed: {app._exception!r}")
             todo.check()
