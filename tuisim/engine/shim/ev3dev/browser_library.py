@@ -109,12 +109,12 @@ def _patch_moves(motor: Any) -> None:
     def on_for_degrees(
         self: Any, speed: Any, degrees: float, brake: bool = True, block: bool = True
     ) -> None:
-        """Rotate the motor by an angle at a speed; a negative speed or angle changes the direction.
+        """Rotate the motor by an angle at a speed; a negative speed changes the direction.
 
         Args:
             speed: In percent, or an object such as `SpeedDPS`.
-            degrees: The angle.
-            brake: Whether the motor brakes at the end; otherwise it coasts.
+            degrees: The angle; a negative one also changes the direction.
+            brake: Whether the stop action is `hold`; otherwise it is `coast`.
             block: Whether the call returns only when the motor has stopped.
         """
         native = self._speed_native_units(speed)
@@ -128,12 +128,12 @@ def _patch_moves(motor: Any) -> None:
     def on_for_rotations(
         self: Any, speed: Any, rotations: float, brake: bool = True, block: bool = True
     ) -> None:
-        """Rotate the motor by a number of rotations at a speed; a negative speed or number changes the direction.
+        """Rotate the motor by a number of rotations at a speed; a negative speed changes the direction.
 
         Args:
             speed: In percent, or an object such as `SpeedDPS`.
-            rotations: The number.
-            brake: Whether the motor brakes at the end; otherwise it coasts.
+            rotations: The number; a negative one also changes the direction.
+            brake: Whether the stop action is `hold`; otherwise it is `coast`.
             block: Whether the call returns only when the motor has stopped.
         """
         self.on_for_degrees(speed, rotations * 360, brake, block)
@@ -146,7 +146,7 @@ def _patch_moves(motor: Any) -> None:
         Args:
             speed: In percent, or an object such as `SpeedDPS`.
             seconds: The time.
-            brake: Whether the motor brakes at the end; otherwise it coasts.
+            brake: Whether the stop action is `hold`; otherwise it is `coast`.
             block: Whether the call returns only when the motor has stopped.
         """
         _refuse_negative(seconds)
@@ -158,7 +158,7 @@ def _patch_moves(motor: Any) -> None:
 
         Args:
             speed: In percent, or an object such as `SpeedDPS`.
-            brake: Whether the motor brakes when it is stopped; otherwise it coasts.
+            brake: Whether the stop action is `hold`; otherwise it is `coast`.
             block: Whether the call returns only when the motor has stopped.
         """
         self.speed_sp = round_half_up(self._speed_native_units(speed))
@@ -172,7 +172,7 @@ def _patch_moves(motor: Any) -> None:
         Args:
             speed: In percent, or an object such as `SpeedDPS`.
             position: The position in degrees.
-            brake: Whether the motor brakes at the end; otherwise it coasts.
+            brake: Whether the stop action is `hold`; otherwise it is `coast`.
             block: Whether the call returns only when the motor has stopped.
         """
         self.speed_sp, self.position_sp = round_half_up(self._speed_native_units(speed)), position
