@@ -63,7 +63,7 @@ class Guide(Protocol):
 
         Args:
             now_us: The present time.
-            passed_us: How long the motor has lagged behind, until now.
+            passed_us: How long the motor has lagged behind, but no longer than since the last call.
             milli, rate: The motor's position in thousandths of a count, and its speed in counts per second.
         """
 
