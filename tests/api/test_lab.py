@@ -84,6 +84,50 @@ def test_a_lab_given_a_runs_commands_and_time_ends_at_the_runs_pose() -> None:
     assert lab.pose == run.pose
 
 
+TWO_MOVES = (
+    "import time\ntank_drive.on(30, 30)\ntime.sleep(1)\ntank_drive.on(10, 20)\ntime.sleep(1)\n"
+)
+
+
+@cases(
+    "begin_s, words",
+    {
+        "after": (0, "a command at 1 s lies outside the step from 0 to 0.5 s"),
+        "before": (1.5, "a command at 1 s lies outside the step from 1.5 to 2 s"),
+    },
+)
+def test_a_command_outside_of_a_step_is_refused_and_nothing_moves(
+    begin_s: float, words: str
+) -> None:
+    run = tuisim.simulate(TWO_MOVES, world=SMOOTH)
+    lab, other = tuisim.Lab.of_run(run), tuisim.Lab.of_run(run)
+    if begin_s:
+        assert lab.step(period_s=begin_s) == other.step(period_s=begin_s)
+    with pytest.raises(ConfigError, match=f"^{words}$"):
+        lab.step(300, 300, period_s=0.5, commands=iter(run.commands))
+    assert lab.time_s == begin_s
+    assert lab.step(period_s=0.5) == other.step(period_s=0.5)
+
+
+def test_a_command_at_the_very_end_of_a_run_is_replayed_with_it() -> None:
+    run = tuisim.simulate(TWO_MOVES + "tank_drive.off()\n", world=SMOOTH)
+    last_s = run.telemetry["time"].iloc[-1]
+    assert run.commands[-1].time_ns == last_s * 1e9
+    lab = tuisim.Lab.of_run(run)
+    lab.step(period_s=last_s, commands=run.commands)
+    assert (lab.pose, lab.time_s) == (run.pose, last_s)
+
+
+def test_commands_of_a_step_take_effect_by_their_times_in_any_order() -> None:
+    run = tuisim.simulate(TWO_MOVES, world=SMOOTH)
+    early = [command for command in run.commands if command.time_ns < 1e9]
+    late = [command for command in run.commands if command.time_ns >= 1e9]
+    assert early and late
+    lab = tuisim.Lab.of_run(run)
+    lab.step(period_s=run.telemetry["time"].iloc[-1], commands=late + early)
+    assert lab.pose == run.pose
+
+
 def test_sensors_of_a_lab_see_the_line_that_its_pen_draws() -> None:
     pen = {"x_mm": -20, "y_mm": 30, "color": "black", "down": True}
     robot = tuisim.Robot(parts={"pen": pen})

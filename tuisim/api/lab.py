@@ -171,7 +171,8 @@ class Lab:
                 takes effect at its own time.
 
         Raises:
-            ConfigError: only one speed is given, one is no number, the period is negative, or an argument is misspelt.
+            ConfigError: only one speed is given, one is no number, the period is negative, a command lies outside the
+                step, or an argument is misspelt. The robot has not moved.
         """
         if unknown:
             raise build_keyword_error(
@@ -180,10 +181,11 @@ class Lab:
         ticks = round(period_s * self._hz) or 1 if period_s else 1
         if ticks <= 0:
             raise ConfigError(f"must not be negative, got {period_s!r}", key="period_s")
+        ordered = self._run.order(ticks, commands) if commands else ()
         if (left is not None or right is not None) and self._asked != (left, right):
             self._asked = left, right
             self._run.turn_wheels(*read_speeds(left, right))
-        self._run.advance(ticks, commands)
+        self._run.advance(ticks, ordered)
         return self.read()
 
     def read(self) -> dict[str, float]:

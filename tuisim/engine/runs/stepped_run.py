@@ -7,6 +7,7 @@ from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tuisim.base.errors import ConfigError
 from tuisim.base.source import Program
 from tuisim.engine.core.commands.calls import Call, SimulationCommand
 from tuisim.engine.core.commands.table import DRIVEN_LAWS, obey
@@ -99,8 +100,26 @@ class SteppedRun:
         self._run(time_ns, 0, left_dps)
         self._run(time_ns, 1, right_dps)
 
+    def order(self, ticks: int, commands: Iterable[SimulationCommand]) -> list[SimulationCommand]:
+        """Return commands for `advance` by their times; one of the tick at which the run then stands is allowed.
+
+        Raises:
+            ConfigError: a command lies before the present tick, or after the last one.
+        """
+        sim = self._sim
+        end = sim.tick + ticks
+        ordered = sorted(commands, key=lambda command: command.time_ns)
+        for command in ordered[-1:] + ordered[:1]:
+            if not sim.tick <= sim.count_ticks(command.time_ns) <= end:
+                times_ns = command.time_ns, sim.compute_due_ns(sim.tick), sim.compute_due_ns(end)
+                time_s, start_s, end_s = (f"{round(ns / NS_PER_S, 3):g}" for ns in times_ns)
+                raise ConfigError(
+                    f"a command at {time_s} s lies outside the step from {start_s} to {end_s} s"
+                )
+        return ordered
+
     def advance(self, ticks: int, commands: Iterable[SimulationCommand]) -> None:
-        """Advance the run by ticks; each command takes effect at its own time."""
+        """Advance the run by ticks; each command of `order` takes effect at its own time."""
         sim = self._sim
         end = sim.tick + ticks
         for command in commands:
