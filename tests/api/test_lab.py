@@ -250,9 +250,11 @@ def test_a_lab_with_wrong_arguments_is_refused(given: dict[str, Any], words: str
         "keyword": ({"period": 1}, "did you mean period_s"),
     },
 )
-def test_a_labs_step_refuses_wrong_arguments(given: dict[str, Any], words: str) -> None:
-    with pytest.raises(ConfigError, match=words):
-        tuisim.Lab().step(**given)
+def test_a_labs_step_refuses_wrong_arguments_each_time(given: dict[str, Any], words: str) -> None:
+    lab = tuisim.Lab()
+    for _ in range(2):
+        with pytest.raises(ConfigError, match=words):
+            lab.step(**given)
 
 
 def test_judging_a_lab_without_goals_is_refused() -> None:

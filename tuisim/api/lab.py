@@ -183,8 +183,8 @@ class Lab:
             raise ConfigError(f"must not be negative, got {period_s!r}", key="period_s")
         ordered = self._run.order(ticks, commands) if commands else ()
         if (left is not None or right is not None) and self._asked != (left, right):
-            self._asked = left, right
             self._run.turn_wheels(*read_speeds(left, right))
+            self._asked = left, right
         self._run.advance(ticks, ordered)
         return self.read()
 
