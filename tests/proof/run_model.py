@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import atexit
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -215,6 +214,3 @@ def again(run: StoredRun, **options: Any) -> Iterator[RunHandle]:
             yield other
         finally:
             other.close()
-
-
-atexit.register(process.end_warm_process)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
@@ -48,6 +50,20 @@ def warm(monkeypatch: pytest.MonkeyPatch) -> Iterator[WarmProcess]:
     assert mine is not None
     yield mine
     process.end_warm_process()
+
+
+def test_a_script_that_has_started_the_warm_process_leaves_nothing_open() -> None:
+    code = (
+        "from tuisim.engine.runs.child import process\n"
+        "process.start_warm_process()\n"
+        "print(process._Starts.warm._process.pid)\n"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-X", "dev", "-c", code], capture_output=True, text=True, check=True
+    )
+    assert ended.stderr == ""
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(ended.stdout), 0)
 
 
 def test_without_its_warm_process_a_run_is_started_by_itself(warm: WarmProcess) -> None:

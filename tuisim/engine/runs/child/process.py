@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import resource
 import select
@@ -131,6 +132,7 @@ def start_warm_process() -> None:
                 _Starts.warm = WarmProcess(_build_command(), _build_environment())
 
 
+@atexit.register
 def end_warm_process() -> None:
     """End the warm process and all templates; the children that they have forked go on."""
     with _Starts.lock:
