@@ -310,7 +310,7 @@ class Events:
     def set(
         self, log: Log, thresholds: tuple[EventChoice, ...], events: list[Event | CommandRow]
     ) -> None:
-        """Store the events that were found in a log for some thresholds."""
+        """Store events, and the log and the thresholds for which they were found."""
         self.thresholds = thresholds
         self._of = (log, thresholds)
         self._events = events

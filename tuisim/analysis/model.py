@@ -406,6 +406,12 @@ class AnalysisModel:
     def add_note(self, text: str, start_s: float, stop_s: float, variable: str, run: int) -> None:
         """Add a note on a run, and write it to the file with the notes.
 
+        Args:
+            text: The text of the note.
+            start_s, stop_s: The time range of the run that the note is about, in s.
+            variable: The name of the variable that it is about.
+            run: Index of the run in the log, from 0.
+
         Raises:
             LogError: it cannot be written, or the log is the standard input.
         """

@@ -74,7 +74,7 @@ class Branch:
 
     @property
     def noise(self) -> NoiseSpec:
-        """The noise of the branch from its instant on."""
+        """The noise of the branch after its instant: the one that the user sets there, else that of the former run."""
         if isinstance(self.then, protocol.SetNoise):
             return NoiseSpec(self.then.light, self.then.motor)
         return self.of.find_noise(self.of.telemetry.record(self.tick))

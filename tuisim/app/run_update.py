@@ -42,7 +42,7 @@ class RunUpdate:
     """Lines for the output, such as about a loop without a wait; ids of actions are in braces."""
 
     def __bool__(self) -> bool:
-        """Return whether the run has sent anything but a prompt that was sent before and still waits for its answer."""
+        """Return whether the run has sent anything new; a prompt that still waits for its answer is nothing new."""
         return bool(
             self.rows or self.ended or self.spoken or self.branched or self.pauses or self.remarks
         )

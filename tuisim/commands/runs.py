@@ -243,7 +243,12 @@ def rm(words: Sequence[str], older_than: str | None) -> int:
 
 
 def _find_older(store: RunStore, words: Sequence[str], age: str) -> list[str]:
-    """Return the ids of the finished runs that are older than an age such as `30d`.
+    """Return the ids of the finished runs that are older than an age.
+
+    Args:
+        store: The store with the runs.
+        words: The runs that the user has named; there must be none.
+        age: The age, such as `30d`.
 
     Raises:
         ConfigError: the age cannot be read, or runs are named, too.

@@ -122,7 +122,13 @@ def _draw_item(item: str, width: int) -> list[Line]:
 
 
 def _cut_beginning(text: str, letters: int, pattern: re.Pattern[str]) -> str:
-    """Return the end of a text from the sentence after which `letters` characters have most words of the question."""
+    """Return a text without its beginning: it begins at the sentence after which most words of a question follow.
+
+    Args:
+        text: The text.
+        letters: The number of characters in which these words are counted.
+        pattern: Matches the words.
+    """
     starts = [0, *(match.end() for match in _SENTENCE_END.finditer(text))]
     start = max(
         starts,
@@ -178,7 +184,7 @@ def flatten_passage(markdown: str) -> str:
 
 
 def _strip_marks(markdown: str) -> str:
-    """Return a passage as one line without Markdown's marks of items, between cells and in links."""
+    """Return a passage as one line of plain text: without the signs of Markdown for lists, table cells and links."""
     text = " · ".join(filter(None, split_cells(_MARK.sub("", markdown))))
     # The text becomes one line: a line that begins with a number would be drawn as an item of a list.
     return " ".join(LINK.sub(lambda link: link[1], text).split())

@@ -260,7 +260,13 @@ def _name_columns(part: pa.Table, notes: Notes) -> pa.Table:
 
 
 def _choose_type(kind: pa.DataType) -> pa.DataType:
-    """Return the type to which columns of a type are converted, such as float for decimals; the same type for most."""
+    """Return the type to which a column of some type is converted, such as float for decimals.
+
+    Most types stay the same.
+
+    Raises:
+        LogError: columns of this type cannot be read.
+    """
     if pa.types.is_decimal(kind):
         return pa.float64()
     if pa.types.is_date64(kind):

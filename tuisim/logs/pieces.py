@@ -165,7 +165,15 @@ def _find_continued(
     min_step: float,
     sigma: float,
 ) -> BoolArray:
-    """Return for each piece on the right whether it continues the piece on its left: one drift explains the step."""
+    """Return for each pair of pieces whether the right one continues the left one, as parts of one drift.
+
+    Args:
+        values: The log.
+        left, right: The pieces of each pair.
+        min_samples: Fewest samples of either piece.
+        min_step: The smallest step between levels.
+        sigma: Standard deviation of the noise.
+    """
     goes_on = np.minimum(count_samples(left), count_samples(right)) >= min_samples
     before, after = left[goes_on], right[goes_on]
     before[:, 0] = np.maximum(before[:, 0], before[:, 1] - NEAR_SAMPLES)

@@ -348,7 +348,14 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
 def _measure_again(
     values: FloatArray, pieces: Pieces, plateaus: PlateauArray, sigma: float
 ) -> PlateauArray:
-    """Return pieces as plateaus; those that `plateaus` has already are copied, the others are measured."""
+    """Return pieces as plateaus; a piece that is one of the given plateaus keeps its values, others are measured.
+
+    Args:
+        values: The log.
+        pieces: The pieces.
+        plateaus: Plateaus that were measured before.
+        sigma: Standard deviation of the noise.
+    """
     known = np.minimum(np.searchsorted(plateaus["start"], pieces[:, 0]), len(plateaus) - 1)
     measured = plateaus[known]
     changed = (read_spans(measured) != pieces).any(axis=1)
@@ -369,7 +376,7 @@ def _find_edges(plateaus: PlateauArray) -> BoolArray:
 
 
 def _find_ramps(values: FloatArray, plateaus: PlateauArray, sigma: float) -> BoolArray:
-    """Return for each plateau whether it is short and rises or falls from each sample to the next."""
+    """Return for each plateau whether it is short, and clearly rises or falls from each sample to the next."""
     ramps = count_samples(read_spans(plateaus)) <= _EDGE_SAMPLES + 1
     short = np.flatnonzero(ramps)
     for some, part in group_by_length(values, read_spans(plateaus[short])):

@@ -248,7 +248,13 @@ def _find_still_parts(
 
 
 def _trim(values: FloatArray, parts: Pieces, far: float) -> Pieces:
-    """Return parts of a log without the samples at their ends that differ from their medians by more than `far`."""
+    """Return parts of a log, shortened at both ends by the samples that are far from the median of the part.
+
+    Args:
+        values: The log.
+        parts: The parts.
+        far: By how much a sample must differ from the median to be far from it.
+    """
     trimmed = parts.copy()
     for index, (start, stop) in enumerate(parts.tolist()):
         part = values[start:stop]

@@ -235,7 +235,12 @@ class _Reader:
         return self._claim(own, self._owners[name], user)
 
     def _claim(self, name: str, owner: object, user: str) -> bool:
-        """Register a name for an object; return whether the name is new.
+        """Register that a name stands for an object in the program; return whether the name is new.
+
+        Args:
+            name: The name.
+            owner: An id of the object.
+            user: What uses it, for errors.
 
         Raises:
             ConfigError: the name stands for another object already.
@@ -263,7 +268,16 @@ class _Reader:
             self._statements.append(statement)
 
     def _add_named(self, name: str, value: Any, around: Surroundings, user: str) -> bool:
-        """Add the object of a name if it is a module, a class or a function; return whether it is one of these."""
+        """Add the object that a name stands for, if it is a module, a class or a function.
+
+        Return whether it is one of these.
+
+        Args:
+            name: The name.
+            value: The object.
+            around: The names around the code that uses it.
+            user: What uses it, for errors.
+        """
         function = inspect.unwrap(value)
         if statement := write_import(name, value):
             self._add_import(name, statement, user)

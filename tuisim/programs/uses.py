@@ -241,7 +241,13 @@ def _find_read_line(test: ast.expr, read: ast.Assign | None) -> int:
 def _read_test(
     test: ast.expr, read: ast.Assign | None, constants: Mapping[str, Word]
 ) -> LoopEnd | None:
-    """Return a test as a comparison of a reading with a constant; None if the test is something else."""
+    """Return the comparison of a reading with a constant that a test makes; None if it is another test.
+
+    Args:
+        test: The test.
+        read: An assignment before the test, whose reading the test may use; None for none.
+        constants: Values of names in the program; see `list_constants`.
+    """
     comparison = read_comparison(test, constants, is_break=True)
     if comparison is None:
         return None

@@ -464,7 +464,7 @@ class LazyStrip(MadeOnDemand):
         )
 
     def crop_extend(self, start: int, end: int, style: Style | None) -> Strip:
-        """Return the part of the strip between two columns, padded to that width if the strip is too short."""
+        """Return the columns from `start` up to `end` as a strip, padded in a style if the strip ends before."""
         return (
             self.crop(start, end)
             if end <= self.cell_length

@@ -407,7 +407,11 @@ def restore_terminal(fd: int, term: str) -> None:
 
 
 def _build_sane_modes(iflag: int, oflag: int, cflag: int, lflag: int) -> list[int]:
-    """Return the modes of a terminal in which those that apps change are as `stty sane` sets them."""
+    """Return the modes of a terminal with the flags that apps change set as `stty sane` does.
+
+    Args:
+        iflag, oflag, cflag, lflag: The present modes, as in `termios.tcgetattr`.
+    """
     iflag = (iflag | termios.BRKINT | termios.ICRNL | termios.IXON | termios.IMAXBEL) & ~(
         termios.INLCR | termios.IGNCR
     )

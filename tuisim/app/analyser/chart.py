@@ -252,9 +252,9 @@ def _select_facets(facets: list[LogTrace], selected: str, max_count: int) -> lis
 
 
 def _build_measure_line(model: AnalysisModel, unit: str, width: int) -> list[list[Run]]:
-    """Return a line about the selected variable between the two cursors: time, change, slope and statistics.
+    """Return a line of text about the selected variable between the two cursors: time, change, slope and statistics.
 
-    The result is empty without a second cursor.
+    The list of lines is empty without a second cursor.
     """
     if model.mark_s is None or not model.log.rows:
         return []

@@ -363,7 +363,7 @@ def _build_continuation(
 
 
 def _count_rows(name: str, model: AnalysisModel, width: int) -> int:
-    """Return how many lines show a whole pane; for a pane whose last column wraps, an upper bound."""
+    """Return how many lines a pane needs to be shown completely; for a pane with wrapped texts, an upper limit."""
     if name == "table":
         return 1 + len(model.rows)
     rows = PANES[name].rows(model)
@@ -378,10 +378,10 @@ def _count_rows(name: str, model: AnalysisModel, width: int) -> int:
 def _split_below(
     pane: Pane, model: AnalysisModel, width: int, height: int
 ) -> tuple[list[str], int]:
-    """Return the lines of text below the rows of a pane, and the number of rows for which there is room.
+    """Return the lines of text below the rows of a pane, and how many rows there is room for.
 
-    If all rows fit, the text gets the remaining lines, else a sixth of all lines. A text that would be cut to one line
-    is left out.
+    If all rows fit, the text gets all other lines, else a sixth of the height. It is left out if only a cut line of it
+    would remain.
     """
     spare = height - 1 - len(pane.rows(model))
     texts = pane.below(model)

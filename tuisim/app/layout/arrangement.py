@@ -309,7 +309,10 @@ def _is_cramped(width: int, height: int) -> bool:
 def _score_forms(
     panels: Sequence[str], fill: Sequence[str], preset: Preset, width: int, height: int
 ) -> Iterator[tuple[tuple[int, float], Node]]:
-    """Yield the score and the tree of the panels in each possible form; the higher the score, the better the form."""
+    """Yield a score and the arranged panels, as a tree, for each form that may be chosen.
+
+    The highest score is the best.
+    """
     plan = _PLANS[preset]
     is_standard = preset == Preset.STANDARD
     is_cramped = is_standard and "debug" in panels and _is_cramped(width, height)

@@ -145,7 +145,7 @@ def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
 
 
 def _needs_stack(panels: Sequence[str], width: int, height: int) -> bool:
-    """Return whether chart and output must be stacked beside the code, so that lines of code are visible as a whole."""
+    """Return whether to put the output below the chart, beside the code, so that whole lines of code are visible."""
     beside = _LINE_COLS + _CHART_COLS + PANELS["output"].min_cols
     return (
         set(panels) == {"output", "code", "chart"}
@@ -399,9 +399,14 @@ def build_low(panels: Sequence[str], width: int, height: int) -> Node:
 
 
 def _find_roomy_rows(roomy: Sequence[str], beside: Sequence[str], height: int) -> int:
-    """Return the rows, in an area of `height` rows, for the panels that have the whole width.
+    """Return the height in rows for the panels that have the whole width of a low area.
 
     Above them are the world and the panels beside the world.
+
+    Args:
+        roomy: The panels with the whole width.
+        beside: The panels beside the world.
+        height: Rows of the area.
     """
     fair = max(_sum_fair_rows(roomy), height // 2)
     return max(fair - _MAX_YIELDED_ROWS, min(fair, height - sum(_list_read_rows(beside))))

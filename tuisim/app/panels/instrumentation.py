@@ -139,7 +139,13 @@ def _build_tall_lines(now: Snapshot, width: int, height: int) -> list[Line]:
 
 
 def _build_further_line(column: str, value: float, width: int) -> Line:
-    """Return the line of a sensor that most robots do not have, given by its telemetry column."""
+    """Return the line with the reading of a sensor that most robots do not have.
+
+    Args:
+        column: The telemetry column of the reading, such as `bumper_pressed`.
+        value: The reading.
+        width: Columns inside the border.
+    """
     name, _, what = column.rpartition("_")
     if what == "pressed":
         value_text = "pressed" if value else "released"
@@ -199,7 +205,14 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
 def _add_pose(
     lines: list[Line], columns: list[list[Line]], places: list[list[Line]], width: int
 ) -> None:
-    """Put the pose, whose columns have no room, into the last row with only one reading, if it fits there."""
+    """Put the pose, for which the columns have no room, behind the only reading of the last such row, if it fits.
+
+    Args:
+        lines: The rows of the panel; one of them is replaced.
+        columns: The columns of readings.
+        places: The columns of the pose.
+        width: Columns inside the border.
+    """
     pose: Line = []
     for place in itertools.chain.from_iterable(places):
         pose += [format_unit(" " * (_GAP if not pose else 1)), *place]

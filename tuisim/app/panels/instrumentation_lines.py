@@ -305,7 +305,15 @@ def _build_wheel_line(now: Snapshot, name: str, short: str, width: int) -> Line:
 
 
 def _build_motor_line(name: str, short: str, counts: int, speed: Run, width: int) -> Line:
-    """Return a line with the position of a motor in degrees, and its speed or a warning."""
+    """Return a line with the position of a motor in degrees, and its speed or a warning.
+
+    Args:
+        name: The name of the motor.
+        short: A shorter name, for a narrow panel.
+        counts: The position in degrees.
+        speed: The speed in degrees/s, or the warning, as styled text.
+        width: Columns inside the border.
+    """
     warns = speed[1] is WARNING
     unit, close = (
         (format_unit(""), format_unit("")) if warns else (format_unit(" °/s"), format_unit("°/s"))

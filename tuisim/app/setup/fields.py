@@ -179,7 +179,12 @@ def _collect_sensors(robot: RobotSpec) -> dict[str, SensorSpec]:
 
 
 def _find_path(robot: RobotSpec, name: str, key: str) -> str:
-    """Return the path of a sensor's value in the robot.
+    """Return the path in the settings of a robot at which a value of a sensor is, such as `gyro.port`.
+
+    Args:
+        robot: The robot.
+        name: The name of the sensor.
+        key: The name of the value.
 
     Raises:
         LookupError: the robot has no such sensor.

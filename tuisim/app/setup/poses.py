@@ -68,7 +68,12 @@ def has_room(spec: RunSpec, pose: Pose) -> bool:
 
 
 def _overlap(first: Corners, other: Corners, heading_deg: float) -> bool:
-    """Return whether two rectangles, of which one is turned by a heading, overlap."""
+    """Return whether two rectangles overlap.
+
+    Args:
+        first, other: Their corners.
+        heading_deg: By how much one of them is turned; the sides of the other one are parallel to the axes.
+    """
     heading = math.radians(heading_deg)
     axes = (
         (1.0, 0.0),

@@ -132,16 +132,16 @@ def shade_rows(
     cursors: Sequence[int] = (),
     style: Style = NAME,
 ) -> list[list[Run]]:
-    """Return the rows of a canvas with shaded spans and their names.
+    """Return the rows of a canvas with shaded columns for spans of the x axis, and with their names.
 
-    Each name is in the lowest row where nothing is drawn.
+    Each name is in the lowest row of its span in which nothing is drawn.
 
     Args:
         rows: The canvas.
-        spans: The spans.
-        x_limits: Limits of the canvas.
+        spans: The spans to shade.
+        x_limits: Limits of the x axis.
         columns: Width of the canvas.
-        cursors: Columns of cursors, beside which names stand.
+        cursors: Columns of cursors; names are written beside these, not over them.
         style: Style of the names.
     """
     texts = ["".join(text for text, _ in row) for row in rows]

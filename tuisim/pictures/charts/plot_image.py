@@ -126,7 +126,13 @@ _LINE_SHARE, _MARK_SHARE = 1 / 9, 1 / 5
 
 
 def _find_cells(span: Span, plot: Plot, width: int) -> tuple[int, int]:
-    """Return the first column of points of a span on the canvas, and the column after its last one."""
+    """Return the first column of image points that a span of the x axis covers, and the column after the last one.
+
+    Args:
+        span: The span.
+        plot: The chart.
+        width: Width of a cell in points.
+    """
     start, stop = np.clip(
         plot.measure_across(np.array([span.start, span.stop]), width), 0, plot.columns * width
     ).astype(int)

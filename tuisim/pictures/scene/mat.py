@@ -94,7 +94,17 @@ def _end_at_cells(
 def _find_edges(
     start_mm: float, mm_per_px: float, count: int, size_mm: int
 ) -> tuple[slice, npt.NDArray[np.intp]]:
-    """Return which pixels of a picture have their middle on the mat, and the edges of these pixels in mm on the mat."""
+    """Return the pixels whose middle is on the mat, along one axis of a picture, and the edges of these pixels.
+
+    Args:
+        start_mm: Where the picture begins on the mat.
+        mm_per_px: Size of a pixel.
+        count: Number of pixels.
+        size_mm: Size of the mat.
+
+    Returns:
+        A slice of the pixels, and the edges in whole mm on the mat, one more than pixels.
+    """
     middles = start_mm + (np.arange(count) + 0.5) * mm_per_px
     inside = np.flatnonzero((middles >= 0) & (middles < size_mm))
     if not len(inside):
@@ -176,7 +186,7 @@ def _keep_detail(mean: _Numbers, low: _Numbers, high: _Numbers, middle: _Numbers
 
 
 def _find_lines(mean: _Numbers, ground: _Numbers, way: _Numbers) -> _Flags:
-    """Return the pixels that a thin line covers more of than their neighbours on both of its sides.
+    """Return which pixels show a thin line best: the line covers more of them than of the pixels on both sides of it.
 
     Args:
         mean: Mean colours, shape (rows, columns, 3).

@@ -125,7 +125,7 @@ def build_scene(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> Scen
 def build_painter(
     mat: Pixels, traces: Sequence[Piece] = (), *, has_floor: bool = False
 ) -> ScenePainter:
-    """Return a painter that draws a field and pen traces on it for files."""
+    """Return a painter that draws a field with pen traces on it, for pictures in files."""
     trace = PenTrace()
     for piece in traces:
         trace.add(piece.lift())

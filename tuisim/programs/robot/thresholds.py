@@ -75,9 +75,10 @@ def find_light_read(text: str) -> LightRead:
 
 @lru_cache(maxsize=4)
 def find_light_reads(program: Program, robot: RobotSpec) -> Mapping[str, LightRead]:
-    """Return which reading of each colour sensor a program compares first or, without one, reads first, by sensor name.
+    """Return, by sensor name, which kind of reading of each colour sensor comes first in a program.
 
-    For a sensor without a reading in the text, the result is the reading that `find_light_read` returns.
+    A reading that is compared comes before others. For a sensor without a reading in the text, it is the kind that
+    `find_light_read` returns.
     """
     usual = find_light_read(program.text)
     reads: dict[str, tuple[int, LightRead]] = {}

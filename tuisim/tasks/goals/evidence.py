@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """When a condition was met or, if it must stay true, was first violated; or why it was not met."""
+    """The result of judging a condition: when it was met or violated, or why it was not met."""
 
     moment: EvidencePoint | None = None
     """When it happened; None if it has not happened so far."""

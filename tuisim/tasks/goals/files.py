@@ -190,9 +190,14 @@ def _find_file(path: Path) -> Path:
 
 
 def _build_goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
-    """Return the task in a parsed goals file, with the goals of the world file that it names.
+    """Return the task in a goals file; its goals include those of the world file that it names.
 
     The result is None if neither file has goals.
+
+    Args:
+        data: The parsed contents of the goals file.
+        path: The goals file.
+        world: Its world.
     """
     location = Location(str(path))
     base = load_task(path.parent / user_path(data["world"]))[1] if "world" in data else None
@@ -429,7 +434,13 @@ def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
 
 
 def _find_reference(goal: Goal, name: str, location: Location) -> Location:
-    """Return the location of the key in which a goal refers to another goal; if no key does, the goal's location."""
+    """Return the location of the key in which a goal names another goal; if no key does, the location of the goal.
+
+    Args:
+        goal: The goal.
+        name: The name of the other goal.
+        location: The location of the goal.
+    """
     limits = (limit for limit in _LIMITS if getattr(goal, limit) == name)
     combined = (
         key

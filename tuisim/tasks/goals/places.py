@@ -241,7 +241,10 @@ def _find_first_wrong(
 
 
 def _compute_points(part: BodyPart, records: Array, robot: RobotSpec) -> list[tuple[Array, Array]]:
-    """Return x and y in mm of the robot's centre, or of the corners of its body, each at every tick."""
+    """Return the points that must be in or out of an area, each as x and y in mm at every tick.
+
+    They are the robot's centre, or the corners of its body, as `part` says.
+    """
     import numpy as np
 
     x_mm, y_mm = records["x_mm"], records["y_mm"]

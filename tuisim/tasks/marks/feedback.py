@@ -124,7 +124,15 @@ def _describe_hidden(cells: Sequence[tuple[Goal, Cell]]) -> list[str]:
 def _describe_goal(
     column: Goal, cell: Cell, runs: int, lines: Sequence[str], *, is_explained: bool
 ) -> list[str]:
-    """Return the paragraphs on a goal, without the reason if `is_explained`: it is said above."""
+    """Return the paragraphs of the feedback on one goal.
+
+    Args:
+        column: The goal.
+        cell: The student's result.
+        runs: Number of the student's runs.
+        lines: The lines of the program, which are quoted.
+        is_explained: Whether an earlier paragraph has the reason already, so that it is left out.
+    """
     if math.isnan(cell.points):
         return [_wrap(f"[could not be judged] {column.say}")]
     if column.points < 0 and not cell.met:

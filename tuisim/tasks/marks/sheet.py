@@ -210,7 +210,15 @@ def build_row(
     seeds: Sequence[int],
     worlds: Sequence[str],
 ) -> SheetRow:
-    """Return the row of a student."""
+    """Return the row of a student for the sheet.
+
+    Args:
+        student: The student.
+        columns: The goals that are shown.
+        outcomes: The outcomes of the student's runs so far, in any order.
+        seeds: The seeds of the runs.
+        worlds: The worlds of the task, the first one first.
+    """
     ordered = merge_worlds(outcomes, seeds, worlds)
     if not student.source or not ordered:
         return _build_empty_row(student, columns, outcomes)

@@ -227,9 +227,15 @@ class RunData:
     def _measure_sensor(
         self, loop: LoopEnd, sensor: SensorSpec, read: tuple[str, float, str], records: Array
     ) -> Array | None:
-        """Return what a sensor measures in some records.
+        """Return what a loop would read of a sensor in some records.
 
-        The result is None if it has no such measurement, or if computing it would be slow.
+        The result is None if the sensor has no such measurement, or if noise or the pen's marks would make this slow.
+
+        Args:
+            loop: The loop, or another comparison.
+            sensor: The sensor.
+            read: Column, factor and unit of the measurement.
+            records: The records, structured as `TICK_FIELDS`.
         """
         import numpy as np
 

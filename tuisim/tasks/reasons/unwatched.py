@@ -140,7 +140,7 @@ def _list_passes(
     threshold: ProgramThreshold,
     ticks: Array,
 ) -> Iterator[Unwatched]:
-    """Yield each light between two readings for which a comparison has another result than at both readings.
+    """Yield each time between two readings at which the light gave a comparison another result than at both.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`.

@@ -528,7 +528,14 @@ def _list_sought(
 
 
 def _find_sought(subject: Subject, port: str, mode: str, question: Question) -> tuple[str, ...]:
-    """Return the names of the buttons, ports or colours that a program waits for; empty for any."""
+    """Return the names of the buttons, ports or colours for which a program waits on a line; empty if any will do.
+
+    Args:
+        subject: The kind of sensor, or other source.
+        port: Its port.
+        mode: The mode of the readings.
+        question: How the program uses the value that the line reads.
+    """
     match subject:
         case Subject.BUTTONS:
             return question.find_buttons(port)
