@@ -10,7 +10,7 @@ import pytest
 from tests.app.app_help import program
 from tests.app.panel_help import SPEC, PanelApp, moment, screen_text
 from tests.cases import cases
-from tuisim.app.panels.instrumentation import Instrumentation, build_lines
+from tuisim.app.panels.instrumentation import Instrumentation, build_lines, build_subtitle
 from tuisim.app.panels.instrumentation_lines import (
     LightSeen,
     build_sensor_line,
@@ -333,6 +333,17 @@ def test_in_few_lines_the_readings_stand_side_by_side(width: int, height: int, s
     assert all(sum(len(part) for part, _ in line) <= width for line in text)
     words = {part.strip() for line in text for part, _ in line}
     assert set(shown.split()) <= words
+
+
+@pytest.mark.parametrize("height", range(1, 14))
+def test_the_frame_or_a_line_shows_the_state_at_every_height(height: int) -> None:
+    ended = moment(state=RunPhase.ENDED, end=End.FINISHED)
+    assert ended.turning
+    words = f"finished{ended.turning}"
+    subtitle = build_subtitle(ended, height)
+    in_line = any(words in row for row in text(ended, 60, height))
+    assert in_line != (subtitle == f"3.21 s {words}")
+    assert in_line or not height >= 9
 
 
 def test_readings_side_by_side_do_not_move_with_their_values() -> None:

@@ -59,9 +59,23 @@ class Instrumentation(LinesPanel, can_focus=True):
             title = build_title(self.app, "instrumentation", name)
             if title != self.border_title:
                 self.border_title = title
-            self._text.set_lines(
-                build_lines(self._snapshot, self._text.size.width, self._text.size.height)
-            )
+            width, height = self._text.size
+            self.border_subtitle = build_subtitle(self._snapshot, height)
+            self._text.set_lines(build_lines(self._snapshot, width, height))
+
+
+def build_subtitle(now: Snapshot, height: int) -> str:
+    """Return time and state for the frame of a panel with so few rows that it has no lines for them; else ""."""
+    return (
+        f"{now.time_s:.2f} s {_describe_state(now)[0]}{now.turning}"
+        if _is_small(now, height)
+        else ""
+    )
+
+
+def _is_small(now: Snapshot, height: int) -> bool:
+    robot = now.spec.robot
+    return height < 7 + len(robot.color_sensors) + len(robot.extra_motors) + len(now.further)
 
 
 def build_lines(now: Snapshot, width: int, height: int) -> list[Line]:
@@ -77,8 +91,7 @@ def build_lines(now: Snapshot, width: int, height: int) -> list[Line]:
     motors = add_states(build_wheel_lines(now, width), now, width)
     sensors = list_seen(now)
     further = [*build_extra_motor_lines(now, width), *_build_sensor_lines(now, width)]
-    small = height < 7 + len(sensors) + len(further)
-    if small:
+    if _is_small(now, height):
         short = [build_sensor_line(*sensor, width) for sensor in sensors]
         whole = [*motors, *short, _build_ranging_line(now, width), _place_and_time(now, width)]
         whole += further
