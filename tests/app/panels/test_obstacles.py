@@ -19,10 +19,10 @@ from tests.app.app_help import (
     until_shown,
 )
 from tuisim.app.app import LabApp
-from tuisim.app.panels.obstacles import BoxGrip, Obstacles, find_box
+from tuisim.app.panels.obstacles import BoxGrip, Obstacles, add_box, find_box
 from tuisim.app.panels.world import WorldView
 from tuisim.app.setup.next_run import change_obstacles
-from tuisim.engine.core.spec import Obstacle
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles
 
 
@@ -217,3 +217,18 @@ def test_a_box_stays_within_reach() -> None:
     assert moved is not None
     assert moved[0][0] == Obstacle(-100, 1043, 200, 200)
     assert moved[0][1:] == BOXES[1:]
+
+
+def test_new_obstacles_overlap_no_other_until_the_field_is_full() -> None:
+    placed: tuple[Obstacle, ...] = ()
+    for _ in range(45):
+        middle = [(box.x_mm + 100, box.y_mm + 100) for box in placed]
+        placed = add_box(placed)
+        new = placed[-1]
+        assert all(
+            max(abs(new.x_mm + 100 - x_mm), abs(new.y_mm + 100 - y_mm)) >= 220
+            for x_mm, y_mm in middle
+        )
+        assert 0 <= new.x_mm <= FIELD_WIDTH_MM - 200 and 0 <= new.y_mm <= FIELD_HEIGHT_MM - 200
+    assert (placed[1].x_mm - placed[0].x_mm, placed[1].y_mm) == (220, placed[0].y_mm)
+    assert len(add_box(placed)) == 46

@@ -28,6 +28,8 @@ Boxes: TypeAlias = tuple[Obstacle, ...]
 
 _FIELDS = {"x_mm": "X", "y_mm": "Y", "width_mm": "W", "height_mm": "H"}
 _NEW_SIZE_MM = 200.0
+_GAP_MM = 20.0
+"""Between new obstacles."""
 _NONE = "none: + or drag adds one"
 
 
@@ -36,11 +38,28 @@ def label_box(number: int, box: Obstacle) -> str:
     return f"{number:>2}  {box.width_mm:g}×{box.height_mm:g} at {box.x_mm:g}, {box.y_mm:g}"
 
 
-def _add_box(boxes: Boxes) -> Boxes:
-    middle = ((FIELD_WIDTH_MM - _NEW_SIZE_MM) // 2, (FIELD_HEIGHT_MM - _NEW_SIZE_MM) // 2)
-    # A box on top of another would be invisible.
-    shift = 20.0 * len(boxes)
-    return (*boxes, Obstacle(middle[0] + shift, middle[1], _NEW_SIZE_MM, _NEW_SIZE_MM))
+def add_box(boxes: Boxes) -> Boxes:
+    """Return the obstacles with a new one: in the middle of the field, or beside the others that are there."""
+    half_mm = _NEW_SIZE_MM / 2
+    xs_mm, ys_mm = map(_list_places_mm, (FIELD_WIDTH_MM, FIELD_HEIGHT_MM))
+    places = [(x_mm, y_mm) for y_mm in ys_mm for x_mm in xs_mm]
+    free = (
+        (x_mm, y_mm)
+        for x_mm, y_mm in places
+        if find_box(boxes, x_mm + half_mm, y_mm + half_mm, half_mm) is None
+    )
+    return (*boxes, Obstacle(*next(free, places[0]), _NEW_SIZE_MM, _NEW_SIZE_MM))
+
+
+def _list_places_mm(side_mm: float) -> list[float]:
+    """Return where a new obstacle may begin along a side of the field: in its middle, then farther and farther off."""
+    middle_mm = (side_mm - _NEW_SIZE_MM) // 2
+    step_mm = _NEW_SIZE_MM + _GAP_MM
+    steps = int(middle_mm / step_mm)
+    return [
+        middle_mm + step_mm * step
+        for step in sorted(range(-steps, steps + 1), key=lambda step: (abs(step), -step))
+    ]
 
 
 def _replace_box(index: int, by: Boxes, boxes: Boxes) -> Boxes:
@@ -168,7 +187,7 @@ class Obstacles(EntryPanel):
         self.post_message(self.Edited(partial(_replace_box, self.at, (box,))))
 
     def action_add(self) -> None:
-        self.post_message(self.Edited(_add_box))
+        self.post_message(self.Edited(add_box))
 
     def action_remove(self) -> None:
         if self.at is None:
