@@ -28,6 +28,7 @@ from tests.conftest import Command
 from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings
 from tuisim.app.dialogs.runs import (
+    Differences,
     RunChooser,
     RunsChooser,
     build_header,
@@ -39,6 +40,7 @@ from tuisim.app.snapshot import RunPhase
 from tuisim.app.terminal_app import TerminalApp
 from tuisim.engine.protocol import End, SetNoise, UserAction
 from tuisim.engine.runs.catalogue import RunInfo
+from tuisim.engine.runs.diff import RunDiff, TickDifference
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec
@@ -360,3 +362,38 @@ async def test_enter_opens_what_the_list_of_runs_shows(
         await pilot.press(*keys.split()[1:])
         await until(pilot, lambda: bool(results))
         assert results == [chosen]
+
+
+async def test_the_run_proposed_for_a_comparison_is_in_view_below_many_newer_ones(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    listed = [info(1, program="rare.py"), *(info(number) for number in range(2, 80))]
+    this = info(80, program="rare.py")
+    monkeypatch.setattr("tuisim.app.dialogs.runs._load_runs", lambda: [*listed, this])
+    monkeypatch.setattr(RunChooser, "_draw_way", lambda _: None)
+    app = TerminalApp()
+    async with app.run_test(size=(120, 40)) as pilot:
+        dialog = RunChooser()
+        dialog._left_out = this.id
+        await app.push_screen(dialog)
+        options = dialog.query_one(OptionList)
+        await until(pilot, lambda: options.highlighted == len(listed) - 1)
+        await until(pilot, lambda: options.scroll_y > 0)
+        assert options.scroll_y == options.max_scroll_y
+
+
+@cases(
+    "tick, keys",
+    {
+        "none": (None, {"esc": "close"}),
+        "one": (TickDifference(3, 0.03, ("x_mm",)), {"enter": "go", "esc": "close"}),
+    },
+)
+async def test_the_differences_offer_to_go_only_to_a_difference(
+    tick: TickDifference | None, keys: dict[str, str]
+) -> None:
+    app = TerminalApp()
+    async with app.run_test(size=(120, 40)):
+        dialog = Differences("Run 1", "run 2", RunDiff((), (), False, tick, None, None, None, None))
+        await app.push_screen(dialog)
+        assert dict(dialog.keys) == keys

@@ -216,7 +216,10 @@ class RunChooser(ListDialog):
         this = next((run for run in runs if run.id == self._left_out), None)
         if this is not None and self._runs:
             listed = find_runs(self._runs, "")[:MAX_LISTED]
-            self.query_one(OptionList).highlighted = find_likeliest(listed, this)
+            options = self.query_one(OptionList)
+            options.highlighted = find_likeliest(listed, this)
+            # The list has its height only once it is laid out with the runs.
+            options.call_after_refresh(options.scroll_to_highlight)
 
     def line(self, run: RunInfo) -> Text:
         """Return a run as a line of the list."""
@@ -362,7 +365,8 @@ class Differences(Dialog[bool]):
         samples: Whether the user may also go to the first sample that differs, if no tick differs.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", "Go there", show=False)]
+    # The footer takes the word for Enter from the hint: there may be no difference to go to.
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", show=False)]
 
     def __init__(self, first: str, second: str, diff: RunDiff, *, samples: bool = False) -> None:
         super().__init__()
