@@ -22,6 +22,19 @@ HINTS = {
         "'Colour: ' + colorLeft.reflected_light_intensity",
         'can only concatenate str (not "int") to str. `str(number)` makes text of a number',
     ),
+    "a value that is called": (
+        "x = 2 * (colorLeft.reflected_light_intensity() + 1)",
+        "'int' object is not callable. reflected_light_intensity is a value: leave out the ()",
+    ),
+    "two calls, of which either may be wrong": (
+        "ultrasonic.value() + colorLeft.reflected_light_intensity()",
+        "'int' object is not callable",
+    ),
+    "a value of the program that is called": ("x = 3\nx()", "'int' object is not callable"),
+    "a text that is no number": (
+        "int('two')",
+        "invalid literal for int() with base 10: 'two'",
+    ),
     "a number before text": (
         "1.5 + ' cm'",
         "unsupported operand type(s) for +: 'float' and 'str'. `str(number)` makes text of a number",
@@ -81,3 +94,9 @@ def test_a_name_of_pybricks_tells_its_import(run: Run, text: str, words: str) ->
 
 def test_a_name_that_no_library_has_gets_no_import(run: Run) -> None:
     assert run("colour").ended.summary == "NameError: name 'colour' is not defined (line 1)"
+
+
+def test_a_port_that_the_brick_does_not_have_tells_its_ports(run: Run) -> None:
+    text = "from pybricks.parameters import Port\nPort.G"
+    summary = run(text, prelude="none", profile="lego-micropython").ended.summary
+    assert summary == "AttributeError: G. Port has only A, B, C, D, S1, S2, S3, S4 (line 2)"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 import io
 import os
 import re
@@ -290,6 +291,12 @@ _TEXT_AND_NUMBER = re.compile(
     r"|unsupported operand type\(s\) for \+: '(?:int|float)' and 'str'"
 )
 
+_NO_FUNCTION = re.compile(r"'(?:int|float|str|bool)' object is not callable")
+_EMPTY_CALL = re.compile(r"\.(\w+)\(\)")
+"""A call of an attribute without arguments."""
+_MAX_MEMBERS = 12
+"""An enumeration with more members is not listed."""
+
 
 def add_hint(trace: Any, error: BaseException) -> None:
     """Add a hint to the message of an error, unless Python has already suggested something.
@@ -305,15 +312,25 @@ def add_hint(trace: Any, error: BaseException) -> None:
         hint = _find_import(error.name, str(trace._str))
     elif type(error) is TypeError and _TEXT_AND_NUMBER.fullmatch(str(trace._str)):
         hint = "`str(number)` makes text of a number"
+    elif type(error) is TypeError and _NO_FUNCTION.fullmatch(str(trace._str)) and trace.stack:
+        names = _EMPTY_CALL.findall(trace.stack[-1].line or "")
+        hint = f"{names[0]} is a value: leave out the ()" if len(names) == 1 else ""
     if hint:
         words = str(trace._str)
         trace._str = f"{words}{'' if words.endswith('?') else '.'} {hint}"
 
 
 def _find_meant(error: AttributeError) -> str:
-    """Return a question that suggests names similar to a wrong attribute of a library's object; empty if none."""
+    """Return a question that suggests names similar to a wrong attribute of a library's object; empty if none.
+
+    For an enumeration of Pybricks, such as `Port`, return a sentence that lists its members.
+    """
     kind = type(error.obj)
     wrong = error.name
+    if isinstance(error.obj, enum.EnumType) and "pybricks" in error.obj.__module__.split("."):
+        members = [*error.obj.__members__]
+        listed = ", ".join(members) if len(members) <= _MAX_MEMBERS else ""
+        return f"{error.obj.__name__} has only {listed}" if listed else ""
     library = str(getattr(kind, "__module__", "")).partition(".")[0]
     if not isinstance(wrong, str) or library not in _LIBRARIES:
         return ""
