@@ -14,6 +14,8 @@ from tuisim.programs.robot.source import OPERATORS, SIGNS, TURNED
 _OPPOSITE = {">=": "<", ">": "<=", "<=": ">", "<": ">=", "!=": "==", "==": "!="}
 """For the operator of a `while` condition, the one with which the loop ends."""
 _Loop = ast.For | ast.While
+_PARALLEL = {"threading", "_thread", "asyncio", "multiprocessing", "multitask"}
+"""Names of modules and functions with which parts of a program run at the same time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,14 +172,30 @@ def _find_ends(
     for step in loop.body if is_endless else ():
         if isinstance(step, ast.If) and any(isinstance(way, ast.Break) for way in step.body):
             yield from _find_end(loop, step.test, tree, constants, is_break=True)
-    computes = _has_any(loop, ast.Assign, ast.AugAssign)
-    if (
-        is_endless
-        and computes
-        and not _has_any(loop, ast.Call, ast.Attribute, ast.Break, ast.Return)
-    ):
+    if is_endless and not any(map(_does_something, ast.walk(loop))) and not _has_threads(tree):
         line = loop.lineno
         yield LoopEnd(line, line, _find_last_line(loop), "", "", read_line=line, is_silent=True)
+
+
+def _does_something(node: ast.AST) -> bool:
+    """Return whether a node in an endless loop may leave the loop, wait, read or move something."""
+    match node:
+        case ast.Call(func=ast.Name(id="print")):
+            return False
+        case ast.Call() | ast.Attribute() | ast.Break() | ast.Return() | ast.Raise():
+            return True
+    return isinstance(node, ast.Await | ast.Yield | ast.YieldFrom)
+
+
+def _has_threads(tree: ast.Module) -> bool:
+    """Return whether a program imports a module of threads or tasks, which may go on beside an endless loop."""
+    return any(
+        isinstance(node, ast.Import | ast.ImportFrom)
+        and _PARALLEL.intersection(
+            [getattr(node, "module", ""), *(each.name for each in node.names)]
+        )
+        for node in ast.walk(tree)
+    )
 
 
 def _find_end(

@@ -132,6 +132,8 @@ def test_a_loop_that_renews_no_reading_is_named_wherever_its_run_was_cut_off(
     {
         "left by a break": STALE + "    if get_clock() > 1:\n        break\n",
         "left by an exit": STALE + "    if get_clock() > 1:\n        sys.exit()\n",
+        "beside a thread": "import threading\nwhile True:\n    pass\n",
+        "with a pause": "import time\nwhile True:\n    time.sleep(0.1)\n",
         "left at once": STALE.replace("> 6", "< 6"),
     },
 )

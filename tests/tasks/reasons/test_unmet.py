@@ -62,6 +62,10 @@ VAIN = {
         f"{BANDS}x = 0\nwhile True:\n    x = x + 1\n",
         "its endless loop to end, in which nothing waits, reads or breaks",
     ),
+    "an empty endless loop": (
+        f"{DRIVES}while True:\n    pass\n",
+        "its endless loop to end, in which nothing waits, reads or breaks",
+    ),
     "steps that pass by": (
         f"{DRIVES}x = 0\nwhile x != 1:\n    x += 0.3\n",
         "x to be exactly 1, in a loop without a wait",
@@ -84,7 +88,7 @@ def test_a_wait_in_vain_is_named_with_the_values_that_came_instead(text: str, wo
 
 RIGHT = {
     "it comes": f"{DRIVES}while {LIGHT} > 55:\n    pass\ntank_drive.off()\n",
-    "it came": f"{DRIVES}while {LIGHT} > 55:\n    pass\nwhile True:\n    pass\n",
+    "it came": f"{DRIVES}while {LIGHT} > 55:\n    pass\nwhile True:\n    print({LIGHT})\n",
     "again and again": f"{TURNS}while True:\n    gyro.reset()\n    while gyro.angle > -90:\n        pass\n",
     "for ever": f"{DRIVES}while True:\n    print({LIGHT})\n",
 }
