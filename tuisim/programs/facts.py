@@ -31,9 +31,11 @@ from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_reads,
 from tuisim.programs.uses import (
     LoneStop,
     LostValue,
+    PartedMove,
     UnwaitedMove,
     list_lone_stops,
     list_lost_values,
+    list_parted_moves,
     list_stale_reads,
     list_unwaited_moves,
 )
@@ -336,6 +338,11 @@ class ProgramFacts:
     def unwaited_moves(self) -> tuple[UnwaitedMove, ...]:
         """The calls that begin a move of limited length, such as a turn by an angle, without waiting for its end."""
         return tuple(list_unwaited_moves(self._short_tree))
+
+    @cached_property
+    def parted_moves(self) -> tuple[PartedMove, ...]:
+        """The pairs of equal moves of two motors that the program makes one after the other."""
+        return tuple(list_parted_moves(self._short_tree))
 
     @cached_property
     def remarks(self) -> Remarks:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
 from typing import TypeGuard
 
 from tuisim.base.data_class import dataclass
@@ -439,3 +440,49 @@ def _find_waiting(statement: ast.stmt) -> bool:
 
 def _name_object(func: ast.expr) -> str:
     return ast.unparse(func.value) if isinstance(func, ast.Attribute) else ""
+
+
+@dataclass(frozen=True, slots=True)
+class PartedMove:
+    """Two calls, one after the other, that move two motors by the same amount, of which the first call waits."""
+
+    first_line: int
+    """The line of the first call."""
+    next_line: int
+    """That of the second call."""
+    method: str
+    option: str
+    """The argument with which the first call would not wait."""
+
+
+_OPTIONS_BY_METHOD = {
+    "run_angle": "wait=False",
+    "run_time": "wait=False",
+    "on_for_degrees": "block=False",
+    "on_for_rotations": "block=False",
+    "on_for_seconds": "block=False",
+}
+
+
+def list_parted_moves(tree: ast.Module) -> Iterator[PartedMove]:
+    """Yield each pair of equal moves of two motors, the first of which the program waits for without saying so."""
+    for block in _list_blocks(tree):
+        for first, second in pairwise(block):
+            match first, second:
+                case (
+                    ast.Expr(value=ast.Call(func=ast.Attribute(value=motor, attr=method)) as move),
+                    ast.Expr(
+                        value=ast.Call(func=ast.Attribute(value=other, attr=same)) as follower
+                    ),
+                ) if method == same and method in _OPTIONS_BY_METHOD:
+                    is_plain = not any(word.arg in _OPTIONS for word in move.keywords)
+                    is_equal = _list_arguments(move) == _list_arguments(follower)
+                    if is_plain and is_equal and ast.dump(motor) != ast.dump(other):
+                        lines = first.lineno, second.lineno
+                        yield PartedMove(*lines, method, _OPTIONS_BY_METHOD[method])
+
+
+def _list_arguments(call: ast.Call) -> list[str]:
+    """Return the arguments of a move in words, without those that say whether to wait."""
+    named = [word for word in call.keywords if word.arg not in _OPTIONS]
+    return [ast.unparse(each) for each in (*call.args, *named)]

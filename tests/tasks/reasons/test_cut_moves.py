@@ -81,3 +81,38 @@ def test_a_move_that_was_cut_off_is_named_with_what_was_done(text: str, words: s
 )
 def test_a_move_that_may_end_so_is_not_blamed(text: str) -> None:
     assert find_reasons(run_text(text)) == ()
+
+
+WHEELS = HUB.replace("56, 114)", "56, 114)\nright = Motor(Port.B)").replace("base = ", "# ")
+PARTED = {
+    "a hub": (
+        f"{WHEELS}left.run_angle(300, 360)\nright.run_angle(300, 360)\n",
+        "line 10: run_angle waits until this wheel is done before line 11 moves the other one: "
+        "wait=False on the first drives both",
+    ),
+    "a brick": (
+        f"{BRICK}left.on_for_degrees(30, 360)\nright.on_for_degrees(30, 360)\n",
+        "line 6: on_for_degrees waits until this wheel is done before line 7 moves the other one: block=False",
+    ),
+}
+
+
+@cases("text, words", PARTED)
+def test_a_straight_way_that_is_driven_wheel_after_wheel_is_named(text: str, words: str) -> None:
+    assert words in " ".join(reason.words for reason in find_reasons(run_text(text)))
+
+
+@cases(
+    "text",
+    {
+        "together": "left.on_for_degrees(30, 360, block=False)\nright.on_for_degrees(30, 360)\n",
+        "different angles": "left.on_for_degrees(30, 360)\nright.on_for_degrees(30, 180)\n",
+        "opposite signs": "left.on_for_degrees(30, 360)\nright.on_for_degrees(-30, 360)\n",
+        "one wheel": "left.on_for_degrees(30, 180)\nleft.on_for_degrees(30, 180)\n",
+        "a pause between": "left.on_for_degrees(30, 90)\ntime.sleep(1)\nright.on_for_degrees(30, 90)\n",
+        "another motor": "arm = MediumMotor(OUTPUT_A)\n"
+        "left.on_for_degrees(30, 180)\narm.on_for_degrees(30, 180)\n",
+    },
+)
+def test_wheels_that_are_moved_one_by_one_on_purpose_are_not_blamed(text: str) -> None:
+    assert find_reasons(run_text(BRICK + text)) == ()

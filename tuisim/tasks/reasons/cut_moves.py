@@ -1,4 +1,4 @@
-"""Moves with an end that a program cut off, since it did not wait for them."""
+"""Moves with an end that a program cut off, since it did not wait for them, or parted, since it waited for one."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.protocol import End
+from tuisim.engine.runs.arrays import find_spans
 from tuisim.engine.runs.command_words import CALL_WORDS, Aim
 from tuisim.programs.facts import UnwaitedMove
 from tuisim.tasks.reasons.run_data import RunData
@@ -49,6 +50,11 @@ _MAX_COMMANDS = 10_000
 _MAX_HARDLY = 2
 """Ticks after which a motor has not yet moved."""
 _SIDES = ("left", "right")
+_MIN_WHEEL_DEG = 30.0
+_MAX_IDLE_SHARE = 0.1
+"""While one wheel turns by at least this angle, the other one, which turns by at most this share of it, stands."""
+_SAME_SHARE = 0.3
+"""Turns there and back that differ by less than this share were meant as a straight way."""
 _MIN_MOVE_S = 0.3
 """A shorter move, or one that should be done in this time, is not missed."""
 
@@ -87,6 +93,54 @@ def find_cut_move(data: RunData) -> Unmet | None:
             if share:
                 return Unmet(move.end / data.hz, call.line, text)
     return None
+
+
+def find_parted_move(data: RunData) -> Unmet | None:
+    """Return the first straight move that swerved, since the program moved one wheel after the other; else None.
+
+    Args:
+        data: The run.
+    """
+    for pair in data.facts.parted_moves if len(data.records) else ():
+        stays, next_stays = (
+            find_spans(data.records["line"] == line) for line in (pair.first_line, pair.next_line)
+        )
+        for start, end in stays.tolist():
+            following = next_stays[next_stays[:, 0] >= end]
+            if len(following) and _has_swerved(data.records, start, end, *following[0].tolist()):
+                text = (
+                    f"{pair.method} waits until this wheel is done before line {pair.next_line} moves the other one: "
+                    f"{pair.option} on the first drives both"
+                )
+                return Unmet(start / data.hz, pair.first_line, text)
+    return None
+
+
+def _has_swerved(records: Array, *ticks: int) -> bool:
+    """Return whether one wheel alone turned the robot, and then the other one alone turned it back.
+
+    Args:
+        records: The telemetry.
+        ticks: The first tick of the first move and the tick after its last one, and those of the second move.
+    """
+    start, end, next_start, next_end = ticks
+    first, second = (
+        records[max(0, low - 1) : high] for low, high in ((start, end), (next_start, next_end))
+    )
+    turned = [
+        [float(np.ptp(way[f"{side}_position_deg"])) for side in _SIDES] for way in (first, second)
+    ]
+    movers = [int(np.argmax(angles)) for angles in turned]
+    is_single = all(
+        max(angles) >= _MIN_WHEEL_DEG and min(angles) <= _MAX_IDLE_SHARE * max(angles)
+        for angles in turned
+    )
+    there, back = (
+        float((way["heading_deg"][-1] - way["heading_deg"][0] + 180) % 360 - 180)
+        for way in (first, second)
+    )
+    is_back = there * back < 0 and abs(there + back) <= _SAME_SHARE * abs(there)
+    return is_single and movers[0] != movers[1] and is_back
 
 
 def _list_moves(data: RunData, calls: Set[Call]) -> Iterator[_Move]:

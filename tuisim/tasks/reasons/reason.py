@@ -23,7 +23,7 @@ from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.standstill import find_standstill
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.reasons.blank_mat import describe_blank_mat
-from tuisim.tasks.reasons.cut_moves import find_cut_move
+from tuisim.tasks.reasons.cut_moves import find_cut_move, find_parted_move
 from tuisim.tasks.reasons.run_data import RunData
 from tuisim.tasks.reasons.subjects import Subject
 from tuisim.tasks.reasons.unmet import (
@@ -269,7 +269,8 @@ def _find_mistaken(data: RunData) -> Iterator[Reason]:
     if turn := find_mistaken_turn(data):
         time_s = turn.tick / data.hz
         yield Reason(ReasonKind.MISTAKEN, time_s, turn.line, turn.text)
-    slips = (find_recount(data), find_cut_move(data), *find_misuses(data), *find_missed_aims(data))
+    moves = find_cut_move(data), find_parted_move(data)
+    slips = (find_recount(data), *moves, *find_misuses(data), *find_missed_aims(data))
     for mistake in slips:
         if mistake:
             yield Reason(ReasonKind.MISTAKEN, mistake.time_s, mistake.line, mistake.text)
