@@ -142,7 +142,7 @@ class LogTraces(Traces):
     def _show_light_columns(self) -> None:
         """If columns of telemetry have the red light of colour sensors, show only these columns.
 
-        Else change nothing.
+        Otherwise, change nothing.
         """
         light = [trace for trace in self if trace.name.endswith(_LIGHT)]
         for trace in self:

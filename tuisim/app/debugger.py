@@ -92,7 +92,7 @@ class DebugController:
         return source_lines(self._text)
 
     def load_breaks(self, program: Program | None) -> None:
-        """Load the stored breakpoints and watches of another program; mark the breakpoints in the present text."""
+        """Load the stored breakpoints and watches of another program, and mark the breakpoints in the shown text."""
         key = program.file if program else ""
         if key != self._program:
             self._program = key
@@ -482,7 +482,7 @@ class DebugController:
     def _find_position(self) -> Position | None:
         """Return the position in the run that is in view, with the executed line as far as it is known.
 
-        None before the first tick.
+        The result is None before the first tick.
         """
         timeline = self._run_controller.timeline
         if self.position is not None:

@@ -251,7 +251,7 @@ class LessonController:
         self._continue_session(session)
 
     def show_former_step(self) -> None:
-        """Show the page of the previous step; the arrow keys then turn the pages."""
+        """Show the page of the previous step; from then on, the arrow keys turn the pages."""
         self._panel_area.request({"lesson": True})
         self._app.call_after_refresh(self._turn_back)
 

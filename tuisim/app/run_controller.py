@@ -97,7 +97,7 @@ class RunController:
     def spec(self) -> RunSpec:
         """The specification of the live run, or of the run of a past instant in view.
 
-        Otherwise that of the next run.
+        Otherwise, it is that of the next run.
         """
         recording = self.timeline.recording
         return recording.spec if recording and (self.in_run or self.in_past) else self.next_run.spec
@@ -245,7 +245,7 @@ class RunController:
     def _find_present(self, record: TickRecord) -> Present | None:
         """Return what the program would read at the pause in view.
 
-        None if it is not paused at the instant of a record.
+        The result is None if it is not paused at the instant of a record.
         """
         pause = self.shown_pause
         is_there = pause is not None and (pause.past or self._is_paused)

@@ -244,7 +244,7 @@ class _Search:
     def find_tick(self, condition: ValueCondition) -> int | None:
         """Return the tick of the nearest printed row, in the direction of the search, that meets a condition.
 
-        None without one.
+        The result is None without one.
         """
         if condition.operator is Operator.CHANGES:
             every = (row for row in self.recording.rows.rows(0) if row.stream in TEXT_STREAMS)

@@ -274,8 +274,8 @@ _FAR_OF_STEP, _FAR_OF_SPREAD = 0.75, 4.0
 def measure_widths(values: FloatArray, driven_mm: FloatArray, levels: Levels) -> FloatArray:
     """Return the widths of levels in mm, shape (n,): each from the edge before the level to the edge after it.
 
-    NaN where an edge is not known: before the first level, after the last level, and between two levels with samples of
-    another level between them.
+    A width is NaN where an edge is not known: before the first level, after the last level, and between two levels with
+    samples of another level between them.
 
     Args:
         values: Samples, shape (m,).
@@ -338,7 +338,7 @@ def _find_pairs(last: IntArray, first: IntArray) -> tuple[IntArray, IntArray]:
 def _measure_reach(levels: Levels) -> FloatArray:
     """Return how far a sample may be from the middle between a level and the next without being of a third level.
 
-    The shape is (n - 1,).
+    The result has the shape (n - 1,).
     """
     spread = np.maximum(levels.spread[:-1], levels.spread[1:])
     return _FAR_OF_STEP * np.abs(np.diff(levels.true_level)) + _FAR_OF_SPREAD * spread

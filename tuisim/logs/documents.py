@@ -104,7 +104,7 @@ class DocumentReader:
     def _list_rows(self, value: Mapping[str, Any]) -> list[Any]:
         """Return the rows in a JSON object: those of the only table in it, or those of its columns.
 
-        Else the object as one row.
+        Otherwise, return the object as one row.
 
         Raises:
             LogError: the object has several tables.

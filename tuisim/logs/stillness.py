@@ -227,7 +227,14 @@ def split_still(
 def _find_still_parts(
     values: FloatArray, moving: PlateauArray, cut: Pieces, ground: Ground
 ) -> PlateauArray:
-    """Return the parts with a level in pieces without one, such as the top between two slopes."""
+    """Return, from pieces without a level, those parts that have one, such as the top between two slopes.
+
+    Args:
+        values: The log.
+        moving: The pieces without a level.
+        cut: The pieces from which they were joined, without gaps between them.
+        ground: Range and noise of the log.
+    """
     if not len(moving):
         return moving
     owners = np.maximum(np.searchsorted(moving["start"], cut[:, 0], side="right") - 1, 0)

@@ -156,7 +156,7 @@ class CsvReader:
     def _cut_table(self, block: Block) -> tuple[Block, Block | None]:
         """Return the rows of this table in a block, and the lines from the heading of another table on.
 
-        None if there is no other. If the heading of this table is repeated, it is left out.
+        The second result is None if there is no other table. If the heading of this table is repeated, it is left out.
         """
         if not has_numbers(self._heading.kinds) or not _MAY_BE_NAMES.search(block.text):
             return block, None

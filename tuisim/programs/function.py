@@ -345,10 +345,10 @@ class _Reader:
             self._add_named(name, value, around, user)
 
     def write(self, call: str) -> str:
-        """Return the text of the program, which ends with a call of the last function.
+        """Return the text of the program: the collected definitions, and a call at the end.
 
         Args:
-            call: The call.
+            call: The expression of the call.
         """
         own = self._blocks[-1].file
         reserved = {

@@ -153,7 +153,7 @@ def _describe_idle(test: ast.Compare, function: str) -> str:
 def _find_missing_return(tree: ast.Module) -> tuple[int, str] | None:
     """Return the first condition that calls a function which returns nothing, and a description.
 
-    None if there is none.
+    The result is None if there is none.
     """
     empty = {
         node.name: node.lineno

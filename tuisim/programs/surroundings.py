@@ -116,7 +116,7 @@ class Surroundings:
     def name_file(self, text: str) -> str:
         """Return the file of these surroundings if a text that `find` returned is its text.
 
-        Empty for another cell's text.
+        The result is empty for another cell's text.
         """
         return self.file if text.rstrip() == self._text.rstrip() else ""
 
@@ -226,7 +226,7 @@ def _is_pure(value: object) -> bool:
 def _parse(text: str) -> list[ast.stmt]:
     """Return the statements of a text outside functions and classes, those in blocks included.
 
-    Empty if it is not Python.
+    The result is empty if it is not Python.
     """
     try:
         return [*_list_statements(parse_module(text).body)]

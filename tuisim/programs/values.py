@@ -130,7 +130,7 @@ def is_plain(value: object) -> bool:
 def list_parts(kind: type) -> Sequence[str]:
     """Return the field names of a NamedTuple or dataclass that is created from exactly these values.
 
-    Else an empty list.
+    Otherwise, return an empty list.
     """
     if not is_dataclass(kind):
         return getattr(kind, "_fields", ()) if issubclass(kind, tuple) else ()

@@ -246,7 +246,7 @@ def read_comparison(
 ) -> tuple[ast.expr, str, Word] | None:
     """Return the compared expression, the operator and the constant of a comparison that ends a loop.
 
-    None for other tests.
+    The result is None for other tests.
 
     Args:
         test: The comparison.

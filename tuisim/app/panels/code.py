@@ -373,7 +373,10 @@ class Code(Vertical):
             self._area.move_to_code(lit)
 
     def show_line(self, line: int) -> None:
-        """Highlight a line of the run's text in the shown text; 0 removes the highlight."""
+        """Highlight, in the shown text, the line that corresponds to a line of the run's text.
+
+        0 removes the highlight.
+        """
         self._line = line
         lit = self._find_shown_line(line)
         self._area.light(lit)

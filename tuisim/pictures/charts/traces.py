@@ -128,7 +128,7 @@ class Trace:
         return float(self.times_s[np.abs(self.times_s - time_s).argmin()])
 
     def clear(self) -> None:
-        """Remove the points of the trace; its tick and its colour stay."""
+        """Remove the points of the trace; it keeps its colour, and is drawn or hidden as before."""
         self._count = 0
 
 
@@ -172,7 +172,7 @@ class Traces:
         trace.add(times_s, values)
 
     def clear(self) -> None:
-        """Remove all traces; a trace that gets points later is ticked or not as before, and has the same colour."""
+        """Remove all traces; a trace that gets points later has the same colour, and is drawn or hidden, as before."""
         for trace in self._by_name.values():
             trace.clear()
         self._cleared.update(self._by_name)

@@ -221,7 +221,7 @@ EV3_MODULES = frozenset({"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3de
 def find_hub(modules: dict[str, Module]) -> str:
     """Return the hub, one of `HUBS`, for which a program or one of its own modules is.
 
-    Empty for the EV3, or if unknown.
+    The result is empty for the EV3, or if unknown.
     """
     names = _list_all_imported(modules)
     if not EV3_MODULES.isdisjoint(names):

@@ -68,7 +68,7 @@ class GoalsFile:
     def presses(self) -> Mapping[str, Any]:
         """The setting `press` of the file, under its name; it applies in every world.
 
-        Empty if the file does not set it.
+        The result is empty if the file does not set it.
         """
         return {path: value for path, value in self.settings.items() if path == "press"}
 

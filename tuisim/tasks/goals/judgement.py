@@ -60,7 +60,7 @@ class Judgement:
     def is_good(self) -> bool:
         """Whether the goal is met; for a goal with negative points, whether it is not met.
 
-        False if it cannot be judged.
+        The result is False if the goal cannot be judged.
         """
         if self.state is GoalState.UNKNOWN:
             return False

@@ -310,7 +310,7 @@ def _report_printed(moment: EvidencePoint, line: int, once: bool, evidence: Evid
 def _find_gap(condition: LogCondition, samples: list[Sample], evidence: Evidence) -> Finding | None:
     """Return a finding on the first two successive samples between which the robot drove too far.
 
-    None if there are none.
+    The result is None if there are none.
     """
     for before, after in pairwise(samples):
         way_mm = math.dist(evidence.place_mm(before.tick), evidence.place_mm(after.tick))
@@ -328,7 +328,7 @@ def _explain_unmeasured(
 ) -> str:
     """Return in a sentence why a sample near its level is not accepted, such as a missing reading.
 
-    Empty if it is accepted.
+    The result is empty if it is accepted.
 
     Args:
         condition: The condition with the levels.

@@ -473,7 +473,7 @@ def _tell_start(other: TrialWorld) -> str:
 def _read_notes(folder: Path) -> Iterator[Noted]:
     """Yield an event for each note on a stored run, with the mean of the samples in the note's band.
 
-    None without samples.
+    The mean is None if there are no such samples.
 
     Raises:
         LogError: the notes or the recording are damaged.

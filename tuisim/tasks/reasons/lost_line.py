@@ -199,7 +199,7 @@ def _see_line(
 ) -> _Seen | None:
     """Return at which ticks the line was under each point.
 
-    None if all that the points saw of the mat is about equally bright.
+    The result is None if all that the points saw of the mat is about equally bright.
     """
     on = [is_on_mat(records, point) for point in points]
     light = [compute_reflected_percent(records, point, spec, mat) for point in points]

@@ -125,7 +125,7 @@ def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
 def _compare(use: LoopEnd, series: Series) -> Array:
     """Return for each value whether a comparison is true, shape (n,).
 
-    All False if it compares a value with a wrong type.
+    All results are False if it compares a value with a wrong type.
 
     Args:
         use: The comparison.
@@ -142,7 +142,7 @@ def _compare(use: LoopEnd, series: Series) -> Array:
 def _find_next_reading(data: RunData, line: int, tick: int) -> int:
     """Return the tick of the next reading after `tick` of a port that the line reads.
 
-    Without one, the number of ticks.
+    Without one, return the number of ticks.
     """
     ports = np.unique(data.readings["port"][data.readings["line"] == line])
     ticks = data.reading_ticks[np.isin(data.readings["port"], ports)]
@@ -256,7 +256,7 @@ def _find_lost_values(data: RunData) -> Iterator[Unmet]:
 def _find_tick(data: RunData, first_line: int, last_line: int) -> int | None:
     """Return the first tick at which the program ran one of the lines, or read a sensor or motor there.
 
-    None if it did not.
+    The result is None if it did not.
     """
     ticks = []
     for lines, when in (

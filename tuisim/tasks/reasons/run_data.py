@@ -208,7 +208,7 @@ class RunData:
     ) -> Series | None:
         """Return what a loop would read of a wheel's motor in some records.
 
-        None if it reads neither its position nor its speed.
+        The result is None if it reads neither its position nor its speed.
 
         Args:
             loop: The loop, or another comparison.

@@ -145,7 +145,7 @@ def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
 def find_at_end(run: Recorded, end: End) -> tuple[Awaited, ...]:
     """Return what a run waited for, if it was cut off, or if the program finished while the robot stood still.
 
-    Else empty.
+    Otherwise, the result is empty.
 
     Args:
         run: The recording.
@@ -293,7 +293,7 @@ class _Search:
     def _describe(self, subject: Subject, port: str, rows: Array) -> Awaited | None:
         """Return what the program waits for, as found from its readings.
 
-        None if what they read changed, or if the value came.
+        The result is None if what they read changed, or if the value came.
 
         Args:
             subject: The kind of sensor, or other source.

@@ -273,7 +273,7 @@ def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
 def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
     """Return as text what an ultrasonic sensor reads with the robot at a wall, if the program waits for less.
 
-    Else empty.
+    Otherwise, the result is empty.
     """
     for sensor in spec.robot.sensors:
         if sensor.port == awaited.port and isinstance(sensor, UltrasonicSpec):
