@@ -118,7 +118,7 @@ _WIDTH = re.compile(rf"(?P<comparison>.+?)(?:\+-|±)\s*(?P<width>{NUMBER})\s*")
 
 @dataclass(frozen=True, slots=True)
 class Threshold(ValueCondition):
-    """A condition on a variable: it falls below a value, rises above it, does either (EQUAL), or changes."""
+    """A condition on a variable: it falls below a value, rises above it, does one or the other (EQUAL), or changes."""
 
     hysteresis: float = 0.0
     """The signal must pass the value by this margin on both sides."""

@@ -57,7 +57,7 @@ def sample_series(rows: Iterable[OutputRow]) -> Series:
 
 @dataclass(slots=True)
 class Feed:
-    """Reads a run's telemetry piece by piece, for the chart and the pen trace."""
+    """Reads the new telemetry of a run at each call, for the chart and the pen trace."""
 
     recording: Recording
     _parts: int = field(default=0, init=False)

@@ -55,10 +55,11 @@ def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
 
 
 def same(run: StoredRun, again: StoredRun) -> RunDiff:
-    """Return the difference between a run and its re-run; the `same` of the result is true if all bits are equal.
+    """Return the difference between a run and its re-run; its attribute `same` is True if all bits are equal.
 
     Args:
-        run: The run; if it was cut off, it is compared up to its last record, unless the position of its stop is known.
+        run: The run. If it was cut off, only the part up to its last record is compared. If the user has stopped it at
+            a position that is known, and the rest differs, only the part up to the stop is compared.
         again: Its re-run.
     """
     if not _has_obeyed_stop(run):

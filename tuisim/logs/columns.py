@@ -122,7 +122,7 @@ _NO_ROWS: IntArray = np.empty(0, np.int64)
 
 
 class Times(NamedTuple):
-    """The times of a log in seconds, with the rows at which its clock began again."""
+    """The times of a log in seconds, and the rows at which its clock or counter began again at 0."""
 
     seconds: FloatArray
     """Shape (n,); NaN where there is no time."""

@@ -416,7 +416,15 @@ def _add_ends(values: FloatArray, plateaus: PlateauArray, min_step: float) -> Pl
 
 
 def _extend_pieces(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
-    """Return pieces extended by samples of the same level beyond a stray at their ends."""
+    """Return pieces extended at their ends: if a stray is there, by the samples of the same level beyond that stray.
+
+    A short piece is not extended at its start.
+
+    Args:
+        values: The log.
+        pieces: Its pieces.
+        sigma: Standard deviation of the noise.
+    """
     near = FAR * sigma / 2.0
     # In the reversed log, the ends of pieces are starts.
     mirrored = len(values) - pieces[::-1, ::-1]

@@ -79,7 +79,7 @@ class _Block(NamedTuple):
 
     @property
     def is_evaluated(self) -> bool:
-        """Whether running the definition reads other names, as for a class or for default values."""
+        """Whether Python reads other names when it runs the definition, as for a class or for default values."""
         node = parse_module("\n".join(self.lines)).body[0]
         return not isinstance(node, ast.FunctionDef) or bool(
             node.decorator_list or node.args.defaults or node.args.kw_defaults

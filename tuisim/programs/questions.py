@@ -131,7 +131,10 @@ def shorten(word: Word) -> Word:
 
 
 class QuestionReader:
-    """Finds how a program uses the values that it reads. A step is a statement, or the head of a compound one."""
+    """Finds how a program uses the values that it reads from sensors and motors.
+
+    In the methods, a step is a statement, or the head of a compound statement.
+    """
 
     def __init__(self, tree: ast.Module) -> None:
         self._nodes = list(ast.walk(tree))

@@ -41,7 +41,7 @@ def build_rows(
 def fit_columns(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
     """Return the columns that fit into a width, at least the first one.
 
-    The last of them may be a column with wide texts that fits only in part: its texts are cut.
+    The last of them may fit only in part: if it has wide texts, these are cut.
     """
     left = width
     seen: list[int] = []

@@ -46,7 +46,7 @@ _GOAL_MARKS = {
 
 
 class Away(StrEnum):
-    """The part of the app that gets the keys in place of the lesson: none, the editor, or a log."""
+    """The part of the app that gets the keys in place of the lesson: the editor, a log, or none of these."""
 
     NO = "no"
     EDITOR = "editor"

@@ -231,7 +231,7 @@ def follow_program(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decid
     """Return a plan with the settings that a program's text decides; those that the user has chosen stay.
 
     Returns:
-        The plan, and the settings that the text has decided newly.
+        The plan, and the settings that the text has decided; none unless the robot or the profile have changed.
 
     Raises:
         ConfigError: the mat is missing.

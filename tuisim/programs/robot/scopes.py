@@ -59,7 +59,7 @@ Binding: TypeAlias = Bound | Defined | Imported | Parameter
 
 @dataclass(eq=False, slots=True)
 class Scope:
-    """The names of a module, class or function."""
+    """The scope of a module, class or function: the names that it binds, and the scopes inside it."""
 
     module: Module
     node: ast.Module | Function | ast.ClassDef

@@ -93,7 +93,7 @@ def select_place(
 
 @dataclass(frozen=True, slots=True)
 class ReachCondition(Condition):
-    """The robot comes to a place, a heading, or both."""
+    """A condition of a goal: the robot comes to a place, turns to a heading, or both."""
 
     x_mm: X | None = None
     """None for any x."""
@@ -157,12 +157,12 @@ class AreaCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class InsideCondition(AreaCondition):
-    """The robot stays inside an area."""
+    """A condition of a goal: the robot stays inside an area."""
 
 
 @dataclass(frozen=True, slots=True)
 class OutsideCondition(AreaCondition):
-    """The robot stays out of an area."""
+    """A condition of a goal: the robot stays out of an area."""
 
     def __post_init__(self) -> None:
         # `super()` without arguments fails here: `slots=True` replaces the class by a new one.
@@ -175,9 +175,9 @@ class OutsideCondition(AreaCondition):
 
 @dataclass(frozen=True, slots=True)
 class TouchNothingCondition(Condition):
-    """The robot touches no obstacle and no wall.
+    """A condition of a goal: the robot touches no obstacle and no wall.
 
-    An obstacle or wall that it touches at the start counts only after the robot has moved away.
+    An obstacle or wall that the robot touches at the start counts only after the robot has moved away from it.
     """
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
@@ -196,7 +196,7 @@ class TouchNothingCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class PassCondition(Condition):
-    """The robot passes each of several places."""
+    """A condition of a goal: the robot passes each of several places."""
 
     SHORT: ClassVar[str] = "places_mm"
 
@@ -211,7 +211,10 @@ class PassCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class FollowCondition(Condition):
-    """A point of the robot is on a line of the mat for a share of the time. Noise and the pen's marks do not matter."""
+    """A condition of a goal: a point of the robot is on a line of the mat for a share of the time.
+
+    Noise and the pen's marks do not matter.
+    """
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
     SHORT: ClassVar[str] = "sensors"
@@ -238,7 +241,10 @@ class FollowCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class DrawCondition(Condition):
-    """The pen draws a picture: a share of the picture is drawn, and the same share of the drawing lies on it."""
+    """A condition of a goal: the pen draws a picture.
+
+    A share of the picture must be drawn, and the same share of the drawing must lie on the picture.
+    """
 
     picture: bytes
     """Indices of the picture's cells on the field, 32-bit integers in ascending order; see `tasks/goals/picture.py`."""
@@ -248,7 +254,7 @@ class DrawCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class PrintCondition(Condition):
-    """The program prints lines that match patterns."""
+    """A condition of a goal: the program prints lines that match patterns."""
 
     SHORT: ClassVar[str] = "lines"
 
@@ -275,7 +281,7 @@ class PrintCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class LogCondition(Condition):
-    """The program logs samples of a variable with certain levels."""
+    """A condition of a goal: the program logs samples of a variable that reach certain levels."""
 
     name: str
     levels: tuple[Number, ...]
@@ -311,7 +317,7 @@ class LogCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class ReadCondition(Condition):
-    """The program reads a sensor or motor at least a number of times."""
+    """A condition of a goal: the program reads a sensor or motor at least a number of times."""
 
     reading: Reading
     times: Annotated[int, Meta(ge=1, le=1_000_000)] = 1
@@ -326,12 +332,12 @@ class ReadCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class FinishCondition(Condition):
-    """The program finishes without an error."""
+    """A condition of a goal: the program finishes without an error."""
 
 
 @dataclass(frozen=True, slots=True)
 class CallsCondition(Condition):
-    """Calls in the program's text, such as `tank_drive.on_for_rotations` or `time.sleep`, also under another name."""
+    """The base class of conditions about calls in the program's text, such as `time.sleep`, also under another name."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.FIXED
     SHORT: ClassVar[str] = "calls"
@@ -357,12 +363,12 @@ class CallsCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class UseCondition(CallsCondition):
-    """The program uses each of the calls."""
+    """A condition of a goal: the program's text has each of some calls, such as `time.sleep`."""
 
 
 @dataclass(frozen=True, slots=True)
 class AvoidCondition(CallsCondition):
-    """The program uses none of the calls."""
+    """A condition of a goal: the program's text has none of some calls, such as `time.sleep`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -378,7 +384,7 @@ class DialogueTurn:
 
 @dataclass(frozen=True, slots=True)
 class DialogueCondition(Condition):
-    """The program asks questions with `input()` and replies to the answers."""
+    """A condition of a goal: the program asks questions with `input()`, and replies to the answers."""
 
     SHORT: ClassVar[str] = "turns"
 
@@ -406,17 +412,17 @@ class Combination(Condition):
 
 @dataclass(frozen=True, slots=True)
 class AllOf(Combination):
-    """All of the named goals are met."""
+    """A condition of a goal: all goals that it names are met."""
 
 
 @dataclass(frozen=True, slots=True)
 class AnyOf(Combination):
-    """At least one of the named goals is met."""
+    """A condition of a goal: at least one of the goals that it names is met."""
 
 
 @dataclass(frozen=True, slots=True)
 class NoneOf(Combination):
-    """None of the named goals is met."""
+    """A condition of a goal: none of the goals that it names is met."""
 
 
 @dataclass(frozen=True, slots=True)

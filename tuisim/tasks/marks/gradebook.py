@@ -47,7 +47,7 @@ _WORKSHEET = ("Identifier", "Full name", "Last modified (grade)")
 
 @dataclass(frozen=True, slots=True)
 class Roster:
-    """The class list: a row of cells for each student."""
+    """The class list: for each student a row of texts, as in the file."""
 
     people: Mapping[str, Mapping[str, str]]
     """By the name of the submission: the cells of the row by the column's name in lower case."""

@@ -43,7 +43,7 @@ class GoalStatistics:
 
 @dataclass(frozen=True, slots=True)
 class _Mark:
-    """A cell of the page's table: a student's points for one goal."""
+    """A cell of the table on a class's page: a student's points for one goal."""
 
     points: float
     level: str
@@ -53,7 +53,7 @@ class _Mark:
 
 @dataclass(frozen=True, slots=True)
 class _Student:
-    """A row of the page's table of students."""
+    """A row of the table on a class's page: one student."""
 
     row: SheetRow
     level: str
