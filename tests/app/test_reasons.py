@@ -22,13 +22,14 @@ from tests.app.app_help import (
 )
 from tests.cases import cases
 from tuisim.app import reasons
-from tuisim.app.actions.time_travel import go_wrong
+from tuisim.app.actions.time_travel import go_to_tick, go_wrong
 from tuisim.app.app import LabApp
 from tuisim.app.notices import NoticeRow
 from tuisim.app.reason_tour import ReasonTour
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.reasons.reason import Reason, ReasonKind
 
 STRAIGHT = "tank_drive.on_for_seconds(20, 20, 1)\n"
 SIZE = (120, 40)
@@ -207,6 +208,41 @@ def test_a_press_while_a_reason_is_looked_for_says_so_and_skips_none(
     go_wrong(context)
     assert len(searches) == 1
     assert answers == ["Looking for what went wrong …"] * 2
+
+
+def test_an_answer_after_a_move_in_time_leaves_the_view_where_it_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    recording = SimpleNamespace(newest=1)
+    runs = SimpleNamespace(
+        timeline=SimpleNamespace(recording=recording, at=None),
+        in_run=False,
+        earlier=None,
+        pause=lambda: None,
+    )
+    answers: list[str] = []
+    moves: list[int | None] = []
+    app = SimpleNamespace(
+        answer=answers.append,
+        notices=SimpleNamespace(release=lambda: None),
+        handle_situation_change=lambda: None,
+        draw=lambda force: None,
+    )
+    context: Any = SimpleNamespace(
+        runs=runs,
+        document=SimpleNamespace(go_to_mistake=str),
+        debugger=SimpleNamespace(go_to_now=lambda: None),
+        reasons=ReasonTour(),
+        app=app,
+    )
+    runs.timeline.go = moves.append
+    searches: list[Any] = []
+    monkeypatch.setattr(reasons, "find", lambda *given, **_: searches.append(given[3]))
+    go_wrong(context)
+    go_to_tick(context, None)
+    searches[0](((Reason(ReasonKind.LOST, 0.5, 1, "it left the line"),), None))
+    assert moves == [None]
+    assert answers[-1] == "1 reason found: {went-wrong} goes to the first"
 
 
 WAITS = """\

@@ -10,7 +10,7 @@ from tuisim.app.branch import Branch, action_words
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.timeline import describe_commands, find, list_forms
-from tuisim.base.errors import TuisimError
+from tuisim.base.errors import TuisimError, counted
 from tuisim.engine import protocol
 from tuisim.engine.core.sensors import list_column_names
 from tuisim.tasks.reasons.reason import ReasonKind
@@ -37,6 +37,8 @@ def go_to_tick(context: ActionContext, tick: int | None) -> None:
     if recording is None or (tick is not None and not _is_laid_out(context, recording)):
         return
     context.app.notices.release()
+    # An answer that comes only now must not move the view again.
+    context.reasons.is_searching = False
     if tick is not None:
         context.runs.pause()
     else:
@@ -215,13 +217,18 @@ def go_wrong(context: ActionContext) -> None:
     before = tour.earlier or context.runs.earlier
 
     def show(reasons_so_far: reasons.FoundReasons) -> None:
+        has_moved = not tour.is_searching
         tour.is_searching = False
         if context.runs.timeline.recording is recording and context.runs.in_run is has_ended:
             # The run has ended meanwhile, which may have changed the reasons: search for them again.
-            go_wrong(context)
+            if not has_moved:
+                go_wrong(context)
             return
         reasons.note(context, recording, reasons_so_far)
-        if context.runs.timeline.recording is recording:
+        if has_moved and tour.reasons:
+            count = counted(len(tour.reasons), "reason")
+            context.app.answer(f"{count} found: {{went-wrong}} goes to the first")
+        elif context.runs.timeline.recording is recording and not has_moved:
             _show_reason(context, reasons_so_far[1])
 
     reasons.find(context, recording, before, show, searches=True)
