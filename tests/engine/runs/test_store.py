@@ -49,6 +49,8 @@ def test_a_stored_run_is_loaded_as_it_was_recorded(
     assert run.state == "raised"
     assert run.actions == (UserAction(5, SetPen(True)),)
     assert (run.telemetry.count, len(run.output.read_all_rows()), run.notes) == (6, 1, ())
+    assert run.output.may_contain("a: 1")
+    assert not run.output.may_contain("a: 2")
 
 
 def test_the_list_of_runs_has_the_facts_and_end_of_a_run(

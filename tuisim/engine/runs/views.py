@@ -10,6 +10,7 @@ can have written: ticks in order, finite numbers, complete rows.
 from __future__ import annotations
 
 import os
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from itertools import islice
@@ -536,6 +537,11 @@ class OutputView(_View):
             rows.append(row)
             self._seen = after
         return rows
+
+    def may_contain(self, text: str) -> bool:
+        """Return False if a text is in no row so far: this takes much less time than to read all rows."""
+        data, _ = self._look()
+        return bool(self._dropped) or re.search(re.escape(text.encode()), data) is not None
 
     def read_all_rows(self) -> list[OutputRow]:
         """Return all output rows so far, without changing what `read_new_rows` returns next."""

@@ -177,7 +177,7 @@ def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
     place = _compile_place(run)
     line = 0
     is_inside = False
-    for row in run.output.rows():
+    for row in run.output.rows() if run.output.may_contain(_TRACEBACK) else ():
         if row.stream is not Stream.STDERR:
             continue
         if row.text.startswith(_TRACEBACK):
