@@ -64,3 +64,19 @@ async def test_searching_and_sorting_a_long_log_does_not_block_the_screen(
         screen.begin(old)
         await pilot.press("U")
         assert screen.job is None
+
+
+async def test_go_to_finds_a_threshold_also_without_spaces(tmp_path: Path) -> None:
+    file = tmp_path / "log.csv"
+    file.write_text("time,Way\n" + "".join(f"{at},{abs(at % 20 - 10)}\n" for at in range(60)))
+    async with open_analyser(file=str(file), size=(120, 40)) as (pilot, screen, _):
+        await until(pilot, lambda: screen.is_open and screen.model.opened.done)
+        await pilot.press("home")
+        rows: list[int] = []
+        for text in ("Way<4", "Way < 4", "Way>8.5"):
+            await typed(pilot, "g", f"={text}", "enter")
+            await until(pilot, lambda: screen.job is None)
+            rows.append(screen.model.row)
+        assert rows == [7, 27, 39]
+        await typed(pilot, "g", "=nonsense", "enter")
+        await until(pilot, lambda: "not a row, a time or a threshold" in text_of(pilot))

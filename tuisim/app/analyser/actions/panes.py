@@ -6,7 +6,15 @@ import re
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tuisim.analysis.events import CommandRow, Event, EventChoice, find_events, parse_events
+from tuisim.analysis.events import (
+    THRESHOLD_FORM,
+    CommandRow,
+    Event,
+    EventChoice,
+    find_events,
+    parse_event,
+    parse_events,
+)
 from tuisim.app.analyser.world import NO_POSES, has_poses
 from tuisim.base.errors import LogError
 from tuisim.engine.core.conditions import list_operators
@@ -193,6 +201,7 @@ _PLACES = (
     ("120", "row 120"),
     ("2.5s", "the sample nearest to 2.5 seconds"),
     ("50%", "halfway through the table"),
+    ("Colour < 50", "where Colour next falls below 50"),
 )
 
 
@@ -233,7 +242,7 @@ def columns(screen: LogScreen, step: int) -> None:
 
 
 def go_to(screen: LogScreen) -> None:
-    """Ask for a row or a time of the log, and go there."""
+    """Ask for a row or a time of the log, or for a threshold, and go there."""
 
     def go(text: str) -> None:
         model = screen.model
@@ -245,14 +254,37 @@ def go_to(screen: LogScreen) -> None:
             model.go_to_row(model.rows.row(round(share * (len(model.rows) - 1))))
         elif text.isdecimal() and 0 < int(text) <= model.log.rows:
             model.go_to_row(int(text) - 1)
+        elif parse_event(text) is not None:
+            _go_to_next(screen, text)
         else:
             raise LogError(
-                f"{text!r} is not a row or a time",
-                f"a row from 1 to {model.log.rows}, or a time such as 2.5s",
+                f"{text!r} is not a row, a time or a threshold",
+                f"a row from 1 to {model.log.rows}, a time such as 2.5s, or {THRESHOLD_FORM}",
             )
         model.follow_cursor()
 
-    screen.ask("Go to", go, forms=_PLACES)
+    screen.ask("Go to", go, forms=_PLACES, completes=True)
+
+
+def _go_to_next(screen: LogScreen, text: str) -> None:
+    """Go to the next row at which a variable crosses a threshold, given as text, or the program gives a command."""
+    model = screen.model
+    model.add_named_columns(text)
+    log = model.log
+    choices = parse_events(text, log)
+
+    def go_to_row(events: list[Event | CommandRow]) -> None:
+        rows = [event.row for event in events if event.row > model.row]
+        if screen.model is not model:
+            return
+        if rows:
+            model.go_to_row(rows[0])
+            model.follow_cursor()
+        else:
+            screen.say(f"{text}: not after the cursor")
+
+    runs = model.events.runs
+    screen.run_task("searching …", log.rows, lambda _: find_events(log, choices, runs), go_to_row)
 
 
 def go_to_event(screen: LogScreen, step: int) -> None:
