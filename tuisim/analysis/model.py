@@ -129,7 +129,7 @@ class AnalysisModel:
     def _sample(trace: LogTrace, row: int) -> int:
         """Return the index of a variable's sample in a row of the log.
 
-        If it has none there, of its next sample, or its last.
+        If the variable has no sample there, return the index of its next sample, or else of its last one.
         """
         rows = trace.series.rows
         return min(int(np.searchsorted(rows, row)), len(rows) - 1)

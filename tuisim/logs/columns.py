@@ -307,7 +307,7 @@ def guess_columns(table: pa.Table) -> Layout:
 def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataType], bool]) -> str:
     """Return the column that has the first of some names, in upper or lower case, and a fitting type.
 
-    The result is empty without one.
+    The result is empty if there is no such column.
 
     Args:
         table: The table.

@@ -97,7 +97,7 @@ def _split_time(line: str) -> tuple[str | None, str, bool]:
 def _strip_prefixes(text: str, pattern: re.Pattern[str]) -> str:
     """Return the part of a text that matches a pattern after prefixes, such as a logger's, are removed.
 
-    The result is empty without one.
+    The result is empty if no part matches.
     """
     while pattern.fullmatch(text) is None:
         prefix = _PREFIX.match(text)

@@ -228,7 +228,7 @@ def _describe_order(numbers: Sequence[list[float]]) -> str:
 
 
 def list_late_stops(tree: ast.Module, remarks: Remarks) -> Iterator[tuple[int, int, int]]:
-    """Yield the lines of `while` loop, sleep and stop for each stop of motors after a sleep after a loop.
+    """Yield the line of a `while` loop, of a sleep after the loop, and of a stop of motors after the sleep.
 
     Only loops are included after which a comment names a band before the sleep.
     """

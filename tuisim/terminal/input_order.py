@@ -106,7 +106,10 @@ class Turn:
             self._ended()
 
     def delay(self, pump: MessagePump, callback: Callable[[], Any]) -> Callable[[], Awaitable[Any]]:
-        """Add a callback to the turn; return a function that calls it as a step of the turn."""
+        """Add a callback to the turn.
+
+        Return a function that calls it, so that what follows from it belongs to the turn, too.
+        """
         self.add(pump)
 
         async def call() -> Any:
@@ -149,7 +152,7 @@ def post_message(pump: MessagePump, message: Message) -> bool:
 
 
 def dispatch_message(pump: MessagePump, message: Message) -> Awaitable[None]:
-    """Handle a message as a step of the turn to which it belongs."""
+    """Handle a message; what follows from it belongs to the same turn as the message itself."""
     turn: Turn | None = getattr(message, _TURN, None)
     # Nobody posts the events of a new widget: they belong to the turn in which it was made.
     if turn is None and (

@@ -413,7 +413,7 @@ class Evaluation:
 
 
 def _add_call(call: ast.Call | None, values: Iterable[Value]) -> Iterator[Value]:
-    """Yield values, in which instances that lack the call through which they were created get `call` as this call."""
+    """Yield values; an instance that has no call in `via` yet gets `call` there."""
     for value in values:
         yield (
             replace(value, via=call) if isinstance(value, Instance) and value.via is None else value

@@ -369,7 +369,15 @@ class _MechanicsReader:
         return list(dict.fromkeys(ports))
 
     def _evaluate(self, node: ast.expr, scope: Scope) -> Sequence[Value]:
-        """Return the values of an expression at its line, after the nearest assignment above, in its own object."""
+        """Return the values that an expression can have in its line.
+
+        A variable with several assignments has the value of the nearest one above. An attribute of an object of the
+        program is evaluated within this object.
+
+        Args:
+            node: The expression.
+            scope: The scope that contains it.
+        """
         match node:
             case ast.Name(id=name):
                 known = [

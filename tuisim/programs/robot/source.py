@@ -139,7 +139,11 @@ class _Search:
     def extend(self, tree: ast.Module, file: str) -> None:
         """Add the folders that a module adds to `sys.path`.
 
-        A relative one is relative to the program, as on the brick.
+        A relative folder is relative to the program, as on the brick.
+
+        Args:
+            tree: The module.
+            file: Path of its file.
         """
         if os.path.isdir(self._own):
             own = os.path.abspath(self._own)

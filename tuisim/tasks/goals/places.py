@@ -122,7 +122,7 @@ def _describe_miss(
 def _describe_side(condition: ReachCondition, record: Any) -> str:
     """Return on which side of a condition's line the robot is in a record, such as `left of`.
 
-    `from` if it is a point.
+    The result is `from` if the condition has a point instead of a line.
     """
     if condition.x_mm is None:
         return "below" if record["y_mm"] < condition.y_mm else "above"
