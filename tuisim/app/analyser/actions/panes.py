@@ -201,7 +201,7 @@ _PLACES = (
     ("120", "row 120"),
     ("2.5s", "the sample nearest to 2.5 seconds"),
     ("50%", "halfway through the table"),
-    ("Colour < 50", "where Colour next falls below 50"),
+    ("Colour < 50", "where it next falls below 50"),
 )
 
 
