@@ -33,6 +33,8 @@ FOUND: Sequence[tuple[str, str]] = (
     ("damage", "run:2445617949:edge"),
     ("damage", "run:3138339898"),
     ("damage", "run:3463462202:text"),
+    ("damage", "run:1180655197:text"),
+    ("damage", "run:369608953:text"),
     ("damage", "run:4217672325:value"),
     ("damage", "run:896353295:value"),
 )

@@ -146,7 +146,7 @@ def _read_mentions(program: Program) -> Mentions | None:
     modules = read_modules(program)
     if not modules:
         return None
-    if prelude := parse(PRELUDE_TEXTS[program.prelude]):
+    if prelude := parse(PRELUDE_TEXTS.get(program.prelude, "")):
         modules[_PRELUDE] = Module(_PRELUDE, _PRELUDE, prelude)
         star = ast.ImportFrom(_PRELUDE, [ast.alias("*")], 0)
         tree = modules[""].tree

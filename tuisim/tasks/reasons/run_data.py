@@ -137,8 +137,10 @@ class RunData:
         ticks = find_ticks(rows, self.hz)
         rows = rows[ticks < len(self.records)]
         ticks = ticks[ticks < len(self.records)]
+        ports = {port: number for number, port in enumerate(READING_PORTS)}
         return {
-            eye.name: ticks[rows["port"] == READING_PORTS.index(eye.port)]
+            # A stored run may have been damaged: its sensor may be on a port that does not exist.
+            eye.name: ticks[rows["port"] == ports.get(eye.port, -1)]
             for eye in self.run.spec.robot.color_sensors
         }
 
