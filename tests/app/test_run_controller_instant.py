@@ -90,7 +90,9 @@ async def test_a_step_back_within_a_tick_takes_back_value_and_printed_line() -> 
 
 @pytest.mark.slow
 @PROFILES
-async def test_the_end_and_the_past_show_what_was_printed_and_commanded_last(profile: str) -> None:
+async def test_the_end_and_the_past_show_the_last_print_and_the_position_that_was_set(
+    profile: str,
+) -> None:
     async with open_lab(open_program(RESETS, profile)) as (pilot, app):
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)

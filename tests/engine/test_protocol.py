@@ -32,7 +32,7 @@ def test_a_protocol_command_is_read_as_it_was_sent(message: Message) -> None:
     assert parse_command(line) == message
 
 
-def test_the_kind_of_each_message_is_its_class_name_in_snake_case() -> None:
+def test_kinds_of_messages_are_class_names_in_snake_case_and_commands_differ_from_events() -> None:
     assert (SetPose.kind, RunToInstant.kind) == ("set_pose", "run_to_instant")
     assert not COMMANDS.keys() & EVENTS.keys()
 

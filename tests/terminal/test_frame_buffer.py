@@ -131,7 +131,7 @@ def test_the_frame_buffer_sends_only_changed_text(before: str, after: str, codes
         ),
     },
 )
-def test_the_frame_buffer_writes_a_colour_only_where_it_changes(
+def test_a_strip_is_written_in_the_bytes_of_each_text_and_colour_mode(
     strip: Strip, mode: TextMode, codes: str
 ) -> None:
     assert sent(FrameBuffer(), rows([strip]), mode) == f"\x1b[1;1H{codes}"

@@ -64,12 +64,14 @@ class TypedColumns:
         list_rows: Callable[[], Sequence[int]],
         separator: str,
     ) -> pa.Table:
-        """Return a table of columns that are converted from texts to their types; other columns are unchanged.
+        """Return a table in which each column of texts that this reader takes for numbers or times has such values.
+
+        A column whose first cells are neither stays as it is. A cell that its column's type does not allow is null.
 
         Args:
             columns: The columns by name.
-            list_rows: Returns the row of each cell in the file; called if a cell is not a number.
-            separator: The separator of cells in a line.
+            list_rows: Returns the row of each cell in the file, for a note; called only if a cell is not a number.
+            separator: The separator of cells in a line: a comma that separates cells is no decimal sign.
         """
         texts = {
             name: cells

@@ -33,7 +33,9 @@ _NO_ROOM = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
 
 
 class Door:
-    """A listening socket that closes connections if they do not send the token in time; of too many, the oldest.
+    """A listening socket that closes each connection that does not send the server's token in `STRANGER_S`.
+
+    While more than `MAX_STRANGERS` connections have not sent it, the oldest of these is closed.
 
     Args:
         report: Called with a message for the server's terminal.

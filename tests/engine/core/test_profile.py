@@ -61,7 +61,7 @@ MOVES = {
 
 
 @cases("text, end", MOVES)
-def test_a_move_in_the_old_simulators_profile_ends_at_the_recorded_place(
+def test_a_move_under_robolab_ends_where_its_speed_and_time_say(
     run: Run, text: str, end: tuple[float, float, float]
 ) -> None:
     done = run(text, profile=TRUE, pose=(1000.0, 500.0, 0.0), background="Empty_Map")

@@ -351,7 +351,7 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
         LogError: there is no run in the folder, or it is damaged.
     """
     data = read_run_file(folder) if document is None else json.loads(document)
-    # Of a damaged run, the intact parts can be read: its program, its world, and the other recording.
+    # If one recording of a falsified run is damaged, the other one, the program and the world can still be read.
     is_falsified = isinstance(data.get("end"), dict) and data["end"].get("end") == End.FALSIFIED
     telemetry, output = open_views(folder, is_falsified)
     try:

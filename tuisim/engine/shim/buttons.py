@@ -73,8 +73,8 @@ class ButtonsFile(DeviceFile):
     """The device file of the buttons.
 
     Args:
-        session: Clock and buttons.
-        path: One of the paths of the file.
+        session: The session of the run, which knows the time and which buttons are pressed.
+        path: The path under which the program opens the file.
     """
 
     def __init__(self, session: DeviceSession, path: str) -> None:

@@ -242,7 +242,7 @@ def columns(screen: LogScreen, step: int) -> None:
 
 
 def go_to(screen: LogScreen) -> None:
-    """Ask for a row or a time of the log, or for a threshold, and go there."""
+    """Ask for a row, a time or a threshold such as `Colour < 50`, and go to it: to the next crossing of a threshold."""
 
     def go(text: str) -> None:
         model = screen.model

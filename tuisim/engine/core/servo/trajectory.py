@@ -129,10 +129,10 @@ def build_angle_move(
     Args:
         start: Where the move begins; its acceleration is ignored.
         target: Where the move stops, in counts.
-        rate: The rate to reach; its sign is ignored.
-        acceleration: How the move speeds up.
-        fastest: The highest rate.
-        deceleration: How the move stops; None for the acceleration.
+        rate: The rate that the program asks for, in counts/s; its sign is ignored.
+        acceleration: Acceleration at the beginning, in counts/s².
+        fastest: The limit of the rate, in counts/s.
+        deceleration: Deceleration at the end, in counts/s²; None for the same as `acceleration`.
 
     Raises:
         ValueError: the rate is 0, or the move takes longer than half an hour.

@@ -184,7 +184,7 @@ class Debugger:
 
     def go_on(self) -> None:
         """Update tracing before the run resumes from a pause."""
-        # When paused between ticks, lines of the next tick are counted from its start.
+        # After a pause between ticks, the lines that the program runs are those of the next tick.
         self._trace(at_tick=self._session.steering.between_ticks)
         self._update_session()
 

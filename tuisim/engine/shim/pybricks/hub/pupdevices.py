@@ -89,7 +89,7 @@ class ColorSensor(Sensor):
         self._sensor.mode = ""
 
     def _read_light(self, convert: Callable[..., Result]) -> Result:
-        """Measure red, green and blue, and return the result of `convert` for them."""
+        """Measure red, green and blue, each from 0 to `HUB_WHITE`, and return `convert(red, green, blue)`."""
         assert isinstance(self._sensor, ColorDevice)
         channels = self._sensor.channels
         return self._read_as("RGB-RAW", lambda _: convert(*color.measure_hub_channels(channels())))
