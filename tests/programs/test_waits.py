@@ -73,7 +73,7 @@ def test_a_loop_that_compares_a_reading_with_a_constant_is_found_as_a_wait(
 @pytest.mark.parametrize(
     "text",
     [
-        "while True:\n    pass",
+        "while True:\n    follow()",
         "while running == True:\n    drive()",
         "while gyro.angle < goal:\n    pass",
         "goal = 1\nwhile gyro.angle < goal:\n    goal += 1",
@@ -96,6 +96,11 @@ def test_a_loop_that_compares_a_reading_with_a_constant_is_found_as_a_wait(
 )
 def test_no_end_is_named_for_loops_whose_condition_is_not_a_simple_comparison(text: str) -> None:
     assert read(text).loop_ends == ()
+
+
+def test_an_endless_loop_that_does_nothing_is_named() -> None:
+    (end,) = read("while True:\n    pass").loop_ends
+    assert (end.line, end.last_line, end.is_silent) == (1, 2, True)
 
 
 def test_a_loop_on_a_value_read_only_before_names_the_line_that_read_it() -> None:

@@ -18,10 +18,11 @@ VALUES: dict[str, Any] = {
     "facts": [(EVIL, EVIL)],
     "errors": [EVIL],
     "goals": Table((EVIL, "points"), [(EVIL, EVIL)], 1),
+    "reasons": [EVIL],
     "pictures": [],
     "movies": [],
     "chart": {"svg": "<svg></svg>", "is_shaded": True, "not_drawn": EVIL},
-    "bands": {"words": [EVIL], "table": Table((EVIL,), [], 1), "more": 1234},
+    "bands": {"words": [EVIL], "table": Table((EVIL,), [], 1), "glossary": [EVIL], "more": 1234},
     "statistics": {"table": Table((EVIL,), [], 1), "more": 0},
     "notes": Table((EVIL,), [(EVIL,)], 1),
     "reading_notes": [EVIL],
@@ -34,8 +35,9 @@ def test_each_text_in_an_html_report_is_escaped_and_shown_whole() -> None:
     assert "script" not in page.tags
     assert page.section["Facts"] == [SHOWN] * 3
     assert page.section["Goals"] == [SHOWN, "points", SHOWN, SHOWN]
+    assert page.section["Where it went wrong"] == [SHOWN]
     assert page.section["Chart"][-1] == f"Not drawn: {SHOWN}"
-    assert page.section["Bands"] == [SHOWN, "and 1,234 more"]
+    assert page.section["Bands"] == [SHOWN, SHOWN, "and 1,234 more"]
     assert page.section[f"Program {SHOWN}"] == ["1", SHOWN, "2"]
 
 
