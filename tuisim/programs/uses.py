@@ -464,10 +464,23 @@ _OPTIONS_BY_METHOD = {
 }
 
 
+_PAIRS = re.compile("Move[A-Z]|DriveBase|tank_|steering_")
+"""How the names begin of what moves both wheels with one call."""
+
+
 def list_parted_moves(tree: ast.Module) -> Iterator[PartedMove]:
-    """Yield each pair of equal moves of two motors, the first of which the program waits for without saying so."""
+    """Yield each pair of equal moves of two motors, the first of which the program waits for without saying so.
+
+    A program that can move both wheels with one call means to move one alone. So does a loop that has no other moves.
+    """
+    names = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
+    if any(map(_PAIRS.match, names)):
+        return
+    walks = [
+        node.body for node in ast.walk(tree) if isinstance(node, _Loop) and len(node.body) == 2
+    ]
     for block in _list_blocks(tree):
-        for first, second in pairwise(block):
+        for first, second in pairwise(block if block not in walks else ()):
             match first, second:
                 case (
                     ast.Expr(value=ast.Call(func=ast.Attribute(value=motor, attr=method)) as move),

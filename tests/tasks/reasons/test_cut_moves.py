@@ -14,6 +14,13 @@ from ev3dev2.motor import *
 tank = MoveTank(OUTPUT_B, OUTPUT_C)
 left, right = tank.left_motor, tank.right_motor
 """
+MOTORS = """\
+# %%sim_magic --profile ev3 -b Empty_Map -x 400 -y 500
+import time
+from ev3dev2.motor import *
+left = LargeMotor(OUTPUT_B)
+right = LargeMotor(OUTPUT_C)
+"""
 HUB = """\
 # %%sim_magic -b Empty_Map -x 400 -y 500
 from pybricks.hubs import PrimeHub
@@ -91,7 +98,7 @@ PARTED = {
         "wait=False on the first drives both",
     ),
     "a brick": (
-        f"{BRICK}left.on_for_degrees(30, 360)\nright.on_for_degrees(30, 360)\n",
+        f"{MOTORS}left.on_for_degrees(30, 360)\nright.on_for_degrees(30, 360)\n",
         "line 6: on_for_degrees waits until this wheel is done before line 7 moves the other one: block=False",
     ),
 }
@@ -110,9 +117,13 @@ def test_a_straight_way_that_is_driven_wheel_after_wheel_is_named(text: str, wor
         "opposite signs": "left.on_for_degrees(30, 360)\nright.on_for_degrees(-30, 360)\n",
         "one wheel": "left.on_for_degrees(30, 180)\nleft.on_for_degrees(30, 180)\n",
         "a pause between": "left.on_for_degrees(30, 90)\ntime.sleep(1)\nright.on_for_degrees(30, 90)\n",
+        "a walk": "for _ in range(4):\n"
+        "    left.on_for_degrees(30, 180)\n    right.on_for_degrees(30, 180)\n",
+        "both with one call elsewhere": "tank = MoveTank(OUTPUT_B, OUTPUT_C)\n"
+        "left.on_for_degrees(30, 180)\nright.on_for_degrees(30, 180)\n",
         "another motor": "arm = MediumMotor(OUTPUT_A)\n"
         "left.on_for_degrees(30, 180)\narm.on_for_degrees(30, 180)\n",
     },
 )
 def test_wheels_that_are_moved_one_by_one_on_purpose_are_not_blamed(text: str) -> None:
-    assert find_reasons(run_text(BRICK + text)) == ()
+    assert find_reasons(run_text(MOTORS + text)) == ()
