@@ -266,7 +266,10 @@ async def test_a_draft_is_offered(
         assert code.query_one(CodeArea).program_text == (shown or TEXT)
         is_restored = answer == "r"
         assert app.document.dirty is is_restored
-        assert any("unsaved text is back" in words for words in notices(app)) is is_restored
+        await until(
+            pilot,
+            lambda: any("unsaved text is back" in words for words in notices(app)) is is_restored,
+        )
     assert (find_draft(str(path)) is not None) is kept
 
 

@@ -114,7 +114,7 @@ WRONG = {
     "too weak": (
         P.format(mat="Lollipop", seconds=8, gain=0.05, speed=40),
         "0.01",
-        "the left sensor saw only white",
+        "the left sensor saw only grey",
     ),
     "not at the line": (
         P.format(mat="Loop", seconds=8, gain=0.3, speed=15),
