@@ -5,7 +5,6 @@ from __future__ import annotations
 from tests.cases import cases
 from tuisim.base.source import Program
 from tuisim.programs.facts import ProgramFacts
-from tuisim.programs.remarks import Remarks
 
 
 @cases(
@@ -20,7 +19,7 @@ from tuisim.programs.remarks import Remarks
     },
 )
 def test_the_colour_of_which_the_lines_around_a_loop_speak_is_found(text: str, color: str) -> None:
-    assert Remarks(text).find_color(2, 3) == color
+    assert ProgramFacts(Program("task.py", text)).remarks.find_color(2, 3) == color
 
 
 @cases(
@@ -41,7 +40,7 @@ def test_the_colour_of_which_the_lines_around_a_loop_speak_is_found(text: str, c
     },
 )
 def test_wheels_set_against_each_other_are_no_way_forwards(text: str, words: list[str]) -> None:
-    assert [spin.words for spin in ProgramFacts(Program("task.py", text)).spins] == words
+    assert [spin.words for spin in ProgramFacts(Program("task.py", text)).remarks.spins] == words
 
 
 @cases(
@@ -71,5 +70,5 @@ def test_wheels_set_against_each_other_are_no_way_forwards(text: str, words: lis
     },
 )
 def test_numbers_in_another_unit_are_found_where_that_is_clear(text: str, words: str) -> None:
-    wrong = ProgramFacts(Program("task.py", text)).wrong_units
+    wrong = ProgramFacts(Program("task.py", text)).remarks.wrong_units
     assert [each.text for each in wrong] == ([words] if words else [])

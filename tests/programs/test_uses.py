@@ -51,7 +51,7 @@ def read(text: str) -> ProgramFacts:
 def test_a_reading_that_a_loop_does_not_renew_is_found(
     text: str, uses: list[tuple[int, str]]
 ) -> None:
-    assert [(use.line, use.operator) for use in read(text).stale_reads] == uses
+    assert [(use.line, use.operator) for use in read(text).uses.stale_reads] == uses
 
 
 @cases(
@@ -79,7 +79,7 @@ def test_a_reading_that_a_loop_does_not_renew_is_found(
 def test_a_stop_that_depends_on_one_reading_is_found(text: str, lines: object) -> None:
     stops = [
         (stop.line, stop.read_line, stop.stop_line, stop.start_line, stop.is_direct)
-        for stop in read(text).lone_stops
+        for stop in read(text).uses.lone_stops
     ]
     assert stops == ([lines] if lines else [])
 
@@ -110,7 +110,7 @@ LOST = "count = 0\ndef look():\n    {}\nlook()\nprint(count)\n"
 def test_a_value_that_a_function_gives_to_a_name_of_its_own_is_found(
     text: str, line: int | None
 ) -> None:
-    assert [lost.line for lost in read(text).lost_values] == ([line] if line else [])
+    assert [lost.line for lost in read(text).uses.lost_values] == ([line] if line else [])
 
 
 @cases(
@@ -131,4 +131,4 @@ def test_a_value_that_a_function_gives_to_a_name_of_its_own_is_found(
     },
 )
 def test_a_move_for_which_nobody_waits_is_found(text: str, moves: list[tuple[int, int]]) -> None:
-    assert [(move.line, move.next_line) for move in read(text).unwaited_moves] == moves
+    assert [(move.line, move.next_line) for move in read(text).uses.unwaited_moves] == moves

@@ -5,9 +5,11 @@ __all__ = [
     "facts",
     "function",
     "line_values",
+    "moves",
     "names",
     "notebook_file",
     "plugged_words",
     "program_file",
     "program_settings",
+    "uses",
 ]

@@ -8,7 +8,7 @@ from dataclasses import field
 from functools import cached_property, lru_cache, partial
 from itertools import pairwise
 from math import copysign
-from typing import TypeGuard
+from typing import TYPE_CHECKING, TypeGuard
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import PRELUDE_TEXTS, PYBRICKS, Program
@@ -17,36 +17,22 @@ from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.programs.mistakes import find_fault, find_idle_definition, list_slips
 from tuisim.programs.questions import Question, QuestionReader, Word
-from tuisim.programs.remarks import (
-    Remarks,
-    Spin,
-    WrongUnit,
-    list_late_stops,
-    list_spins,
-    list_wrong_units,
-)
 from tuisim.programs.robot.scopes import Binding, Bound, Imported, Scope, build_scope
 from tuisim.programs.robot.source import Module, parse
 from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_reads, find_thresholds
-from tuisim.programs.uses import (
-    LoneStop,
-    LostValue,
-    PartedMove,
-    UnwaitedMove,
-    list_lone_stops,
-    list_lost_values,
-    list_parted_moves,
-    list_stale_reads,
-    list_unwaited_moves,
-)
 from tuisim.programs.waits import (
     LoopEnd,
     find_first_drive,
     find_turns,
+    list_blocks,
     list_constants,
     list_counts,
     list_loop_ends,
 )
+
+if TYPE_CHECKING:
+    from tuisim.programs.remarks import Remarks
+    from tuisim.programs.uses import Uses
 
 _TURNS_DEG = (45.0, 90.0, 180.0, 360.0)
 _ANGLES = {
@@ -99,12 +85,11 @@ def list_wheel_turns(tree: ast.Module) -> Iterator[WheelTurn]:
 
 def _list_pairs(tree: ast.Module) -> Iterator[tuple[ast.Call, ast.Call]]:
     """Yield each two calls that follow each other as statements of the same block."""
-    for node in ast.walk(tree):
-        for block in (getattr(node, name, None) for name in ("body", "orelse")):
-            for pair in pairwise(block if isinstance(block, list) else ()):
-                match pair:
-                    case ast.Expr(value=ast.Call() as first), ast.Expr(value=ast.Call() as second):
-                        yield first, second
+    for block in list_blocks(tree):
+        for pair in pairwise(block):
+            match pair:
+                case ast.Expr(value=ast.Call() as first), ast.Expr(value=ast.Call() as second):
+                    yield first, second
 
 
 def _find_pair_angle(*calls: ast.Call) -> float:
@@ -233,13 +218,10 @@ STRUCTURES: Mapping[str, Callable[[ast.Module], int]] = {
 
 __all__ = [
     "STRUCTURES",
-    "LoneStop",
     "LoopEnd",
-    "LostValue",
     "ProgramFacts",
     "ProgramThreshold",
     "Question",
-    "UnwaitedMove",
     "WheelTurn",
     "read_facts",
 ]
@@ -319,50 +301,21 @@ class ProgramFacts:
         """The lines in loops that add 1 to a variable when a value passes a constant, each with that comparison."""
         return tuple(list_counts(self._short_tree, self._constants))
 
-    @cached_property
-    def stale_reads(self) -> tuple[LoopEnd, ...]:
-        """The places in loops that use a reading which was taken before the loop."""
-        return tuple(list_stale_reads(self._short_tree, self._constants))
+    # The following modules are imported on demand: only a search for the reasons why a run went wrong needs them.
 
     @cached_property
-    def lone_stops(self) -> tuple[LoneStop, ...]:
-        """The `if` statements that stop motors after a single reading; see `list_lone_stops`."""
-        return tuple(list_lone_stops(self._short_tree, self._constants))
+    def uses(self) -> Uses:
+        """How the program uses its readings, variables and moves."""
+        from tuisim.programs.uses import Uses
 
-    @cached_property
-    def lost_values(self) -> tuple[LostValue, ...]:
-        """The values that functions assign to local names, although a global name is probably meant."""
-        return tuple(list_lost_values(self._short_tree))
-
-    @cached_property
-    def unwaited_moves(self) -> tuple[UnwaitedMove, ...]:
-        """The calls that begin a move of limited length, such as a turn by an angle, without waiting for its end."""
-        return tuple(list_unwaited_moves(self._short_tree))
-
-    @cached_property
-    def parted_moves(self) -> tuple[PartedMove, ...]:
-        """The pairs of equal moves of two motors that the program makes one after the other."""
-        return tuple(list_parted_moves(self._short_tree))
+        return Uses(self._short_tree, self._constants)
 
     @cached_property
     def remarks(self) -> Remarks:
         """What the comments, prints and names of the program say."""
-        return Remarks(self._program.text)
+        from tuisim.programs.remarks import Remarks
 
-    @cached_property
-    def spins(self) -> tuple[Spin, ...]:
-        """The moves of the wheels against each other, where the program says that it drives straight on."""
-        return tuple(list_spins(self._short_tree, self.remarks))
-
-    @cached_property
-    def wrong_units(self) -> tuple[WrongUnit, ...]:
-        """The calls whose numbers are probably meant in another unit or in another order."""
-        return tuple(list_wrong_units(self._short_tree, self.remarks))
-
-    @cached_property
-    def late_stops(self) -> tuple[tuple[int, int, int], ...]:
-        """The lines of loop, sleep and stop, for each loop that ends at a band before a sleep and a stop."""
-        return tuple(list_late_stops(self._short_tree, self.remarks))
+        return Remarks(self._program.text, self._short_tree)
 
     def find_turns(self, line: int) -> tuple[float, str] | None:
         """Return by how much a call on a line turns a motor or both wheels, and the unit: `rotations` or `degrees`.

@@ -5,11 +5,14 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
 from itertools import pairwise
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import source_lines
+from tuisim.programs.moves import name_call
 from tuisim.programs.robot.words import is_forwards
+from tuisim.programs.waits import list_blocks
 
 _MAGIC = "sim_magic"
 """Lines with this set up the run: their names, such as those of mats, say nothing about the program."""
@@ -43,10 +46,27 @@ class Remarks:
 
     Args:
         text: The program.
+        tree: Its syntax tree.
     """
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, tree: ast.Module) -> None:
         self._lines = source_lines(text)
+        self._tree = tree
+
+    @cached_property
+    def spins(self) -> tuple[Spin, ...]:
+        """The moves of both wheels in opposite directions that should drive the robot straight on."""
+        return tuple(_list_spins(self._tree, self))
+
+    @cached_property
+    def wrong_units(self) -> tuple[WrongUnit, ...]:
+        """The calls whose numbers are probably meant in another unit or in another order."""
+        return tuple(_list_wrong_units(self._tree, self))
+
+    @cached_property
+    def late_stops(self) -> tuple[tuple[int, int, int], ...]:
+        """The lines of loop, sleep and stop, for each loop that ends at a band before a sleep and a stop."""
+        return tuple(_list_late_stops(self._tree, self))
 
     def find_color(self, first_line: int, last_line: int, others: Iterable[int] = ()) -> str:
         """Return `black` or `white` if the lines in and around a loop name only this colour; empty otherwise.
@@ -101,7 +121,7 @@ class Spin:
     """The two speeds."""
 
 
-def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[Spin]:
+def _list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[Spin]:
     """Yield the moves of both wheels in opposite directions that should drive the robot straight on."""
     forwards = {
         part
@@ -109,16 +129,14 @@ def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[Spin]:
         if isinstance(node, ast.FunctionDef) and is_forwards(node.name)
         for part in ast.walk(node)
     }
-    for node in ast.walk(tree):
-        for name in ("body", "orelse"):
-            block = getattr(node, name, None)
-            for first, second in pairwise([*block, ast.Pass()] if isinstance(block, list) else []):
-                speeds = _list_speeds(first) or _list_speed(first) + _list_speed(second)
-                if len(speeds) == 2 and speeds[0] == -speeds[1] != 0:
-                    last = first if _list_speeds(first) else second
-                    if first in forwards or remarks.goes_straight(first.lineno):
-                        words = f"{speeds[0]:g} and {speeds[1]:g}"
-                        yield Spin(first.lineno, last.end_lineno or last.lineno, words)
+    for block in list_blocks(tree):
+        for first, second in pairwise([*block, ast.Pass()]):
+            speeds = _list_speeds(first) or _list_speed(first) + _list_speed(second)
+            if len(speeds) == 2 and speeds[0] == -speeds[1] != 0:
+                last = first if _list_speeds(first) else second
+                if first in forwards or remarks.goes_straight(first.lineno):
+                    words = f"{speeds[0]:g} and {speeds[1]:g}"
+                    yield Spin(first.lineno, last.end_lineno or last.lineno, words)
 
 
 def _list_speeds(statement: ast.stmt) -> list[float]:
@@ -172,7 +190,7 @@ _MAX_TIME = 10
 """Equal numbers of at least `_MIN_SPEED` are speeds; a number of at most `_MAX_TIME` before them is a time."""
 
 
-def list_wrong_units(tree: ast.Module, remarks: Remarks) -> Iterator[WrongUnit]:
+def _list_wrong_units(tree: ast.Module, remarks: Remarks) -> Iterator[WrongUnit]:
     """Yield the calls whose numbers are probably meant in another unit or in another order."""
     ways = dict(_list_centimetres(tree, remarks))
     for node in ast.walk(tree):
@@ -227,7 +245,7 @@ def _describe_order(numbers: Sequence[list[float]]) -> str:
     return f"on_for_seconds takes the time last: this is {speeds}"
 
 
-def list_late_stops(tree: ast.Module, remarks: Remarks) -> Iterator[tuple[int, int, int]]:
+def _list_late_stops(tree: ast.Module, remarks: Remarks) -> Iterator[tuple[int, int, int]]:
     """Yield the line of a `while` loop, of a sleep after the loop, and of a stop of motors after the sleep.
 
     Only loops are included after which a comment names a band before the sleep.
@@ -237,16 +255,9 @@ def list_late_stops(tree: ast.Module, remarks: Remarks) -> Iterator[tuple[int, i
         statements = block if isinstance(block, list) else []
         for index, loop in enumerate(statements):
             rest = statements[index + 1 : index + 4]
-            names = [_name_call(each) for each in rest]
+            names = [name_call(each) for each in rest]
             if isinstance(loop, ast.While) and "sleep" in names[:-1]:
                 place = names.index("sleep")
                 is_plain = set(names[:place]) <= {"print"} and names[place + 1] in ("off", "stop")
                 if is_plain and remarks.names_band(loop.end_lineno or 0, rest[place].lineno):
                     yield loop.lineno, rest[place].lineno, rest[place + 1].lineno
-
-
-def _name_call(statement: ast.stmt) -> str:
-    match statement:
-        case ast.Expr(value=ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name))):
-            return name
-    return ""

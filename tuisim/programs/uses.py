@@ -5,20 +5,25 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from itertools import pairwise
+from functools import cached_property
 from typing import TypeGuard
 
 from tuisim.base.data_class import dataclass
 from tuisim.programs.line_values import walk_scope
+from tuisim.programs.moves import (
+    STARTS,
+    STOPS,
+    PartedMove,
+    UnwaitedMove,
+    find_call,
+    list_parted_moves,
+    list_unwaited_moves,
+)
 from tuisim.programs.questions import Word
-from tuisim.programs.waits import LoopEnd, find_attribute, read_comparison
+from tuisim.programs.waits import LoopEnd, find_attribute, list_blocks, read_comparison
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _Loop = ast.For | ast.While
-STARTS = ("on", "run_forever", "run", "drive", "dc", "run_direct")
-"""Methods that start motors, and return at once."""
-_MOVES = (*STARTS, "on_for_degrees", "on_for_rotations", "on_for_seconds")
-STOPS = ("off", "stop", "brake", "hold")
 _PURE = {"abs", "max", "min", "round", "int", "float"}
 """Functions whose values depend only on their arguments."""
 _BEFORE = re.compile(
@@ -29,7 +34,45 @@ _SPEEDS = "Speed"
 """How the names of classes of speeds begin."""
 
 
-def list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoopEnd]:
+class Uses:
+    """How a program uses its readings, variables and moves.
+
+    Args:
+        tree: The syntax tree of the program.
+        constants: Values of names in the program; see `list_constants`.
+    """
+
+    def __init__(self, tree: ast.Module, constants: Mapping[str, Word]) -> None:
+        self._tree = tree
+        self._constants = constants
+
+    @cached_property
+    def stale_reads(self) -> tuple[LoopEnd, ...]:
+        """The places in loops that use a reading which was taken before the loop."""
+        return tuple(_list_stale_reads(self._tree, self._constants))
+
+    @cached_property
+    def lone_stops(self) -> tuple[LoneStop, ...]:
+        """The `if` statements that stop motors after a single reading."""
+        return tuple(_list_lone_stops(self._tree, self._constants))
+
+    @cached_property
+    def lost_values(self) -> tuple[LostValue, ...]:
+        """The values that functions assign to local names, although a global name is probably meant."""
+        return tuple(_list_lost_values(self._tree))
+
+    @cached_property
+    def unwaited_moves(self) -> tuple[UnwaitedMove, ...]:
+        """The calls that begin a move of limited length, such as a turn by an angle, without waiting for its end."""
+        return tuple(list_unwaited_moves(self._tree))
+
+    @cached_property
+    def parted_moves(self) -> tuple[PartedMove, ...]:
+        """The pairs of equal moves of two motors that the program makes one after the other."""
+        return tuple(list_parted_moves(self._tree))
+
+
+def _list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoopEnd]:
     """Yield each use in a loop of a reading that was taken before the loop and that nothing in the loop reads again.
 
     A use is a comparison with a constant. Another test, or a move, is yielded without an operator. Its lines are those
@@ -85,7 +128,7 @@ def _list_reads_before(loop: _Loop, nodes: list[ast.AST]) -> dict[str, ast.Assig
 
 def _is_reaction(node: ast.AST) -> bool:
     """Return whether a node only starts or stops motors, or leaves a loop; it thus may be a reaction to a reading."""
-    is_call = isinstance(node, ast.Expr) and bool(_find_call(node, (*STARTS, *STOPS)))
+    is_call = isinstance(node, ast.Expr) and bool(find_call(node, (*STARTS, *STOPS)))
     return is_call or isinstance(node, ast.Break)
 
 
@@ -184,7 +227,7 @@ class LoneStop:
     """The comparison; None for another test, such as whether a button is pressed."""
 
 
-def list_lone_stops(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoneStop]:
+def _list_lone_stops(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoneStop]:
     """Yield each `if` outside of `while` loops that stops motors which the same block has just started.
 
     Args:
@@ -194,42 +237,26 @@ def list_lone_stops(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator
     again = {
         part for node in ast.walk(tree) if isinstance(node, ast.While) for part in ast.walk(node)
     }
-    for block in _list_blocks(tree):
+    for block in list_blocks(tree):
         start, is_direct, read = 0, True, None
         for statement in block:
             match statement:
                 case ast.If(test=test, body=body, orelse=[]) if start and statement not in again:
-                    if stop := next((each for each in body if _find_call(each, STOPS)), None):
+                    if stop := next((each for each in body if find_call(each, STOPS)), None):
                         lines = statement.lineno, _find_read_line(test, read), stop.lineno, start
                         comparison = _read_test(test, read, constants)
                         yield LoneStop(*lines, is_direct, comparison)
                     start = 0
                 case ast.Assign(targets=[ast.Name()], value=value):
                     read = statement if find_attribute(value) else None
-                case ast.Expr(value=ast.Call()) if _find_call(statement, STARTS):
+                case ast.Expr(value=ast.Call()) if find_call(statement, STARTS):
                     start, is_direct = statement.lineno, True
-                case ast.Expr(value=ast.Call()) if _find_call(statement, ("sleep", "wait")):
+                case ast.Expr(value=ast.Call()) if find_call(statement, ("sleep", "wait")):
                     is_direct = False
-                case ast.Expr(value=ast.Call()) if _find_call(statement, ("print", "reset")):
+                case ast.Expr(value=ast.Call()) if find_call(statement, ("print", "reset")):
                     pass
                 case _:
                     start = 0
-
-
-def _list_blocks(tree: ast.AST) -> Iterator[list[ast.stmt]]:
-    for node in ast.walk(tree):
-        for name in ("body", "orelse"):
-            block = getattr(node, name, None)
-            if isinstance(block, list):
-                yield block
-
-
-def _find_call(statement: ast.stmt, names: tuple[str, ...]) -> str:
-    """Return the name of the function or method that a statement calls, if it is one of `names`; else an empty text."""
-    match statement:
-        case ast.Expr(value=ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name))):
-            return name if name in names else ""
-    return ""
 
 
 def _find_read_line(test: ast.expr, read: ast.Assign | None) -> int:
@@ -276,7 +303,7 @@ class LostValue:
     """Whether a program that comes to its end has called the function: the call is in no other block."""
 
 
-def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
+def _list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
     """Yield each value that a function assigns to a local name and never uses, if the program uses this name, too.
 
     A `print` of the value is no use, and neither is a `return` if no call uses the result of the function.
@@ -359,143 +386,3 @@ def _is_loaded(name: str, nodes: Iterable[ast.AST]) -> bool:
         isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load)
         for node in nodes
     )
-
-
-@dataclass(frozen=True, slots=True)
-class UnwaitedMove:
-    """A call that begins a move of limited length, such as a turn by an angle, without waiting for its end."""
-
-    line: int
-    last_line: int
-    method: str
-    option: str
-    """The argument because of which the program does not wait, such as `block=False`."""
-    next_line: int
-    """The line of the next move or stop in the same block, if only calls are in between; 0 for none."""
-
-
-_OPTIONS = ("block", "wait")
-_ENDING = (
-    "on_to_position",
-    "straight",
-    "turn",
-    "curve",
-    "arc",
-    "run_angle",
-    "run_target",
-    "run_time",
-)
-_ANY_MOVE = (*_MOVES, *_ENDING)
-
-
-def list_unwaited_moves(tree: ast.Module) -> Iterator[UnwaitedMove]:
-    """Yield the calls of moves with `block=False` or `wait=False`."""
-    for block in _list_blocks(tree):
-        for index, statement in enumerate(block):
-            call = getattr(statement, "value", None)
-            if isinstance(call, ast.Call) and (option := _find_option(statement)):
-                next_line = _find_next_move(call, block[index + 1 :])
-                last_line = statement.end_lineno or statement.lineno
-                method = _find_call(statement, _ANY_MOVE)
-                yield UnwaitedMove(statement.lineno, last_line, method, option, next_line)
-
-
-def _find_option(statement: ast.stmt) -> str:
-    """Return the argument because of which a move does not block, such as `block=False`; empty for other statements."""
-    match statement:
-        case ast.Expr(value=ast.Call(keywords=keywords)) if _find_call(statement, _ANY_MOVE):
-            for keyword in keywords:
-                if keyword.arg in _OPTIONS and getattr(keyword.value, "value", None) is False:
-                    return f"{keyword.arg}=False"
-    return ""
-
-
-def _find_next_move(move: ast.Call, rest: list[ast.stmt]) -> int:
-    """Return the line of the next move or stop after a move, preferably one of the same object; 0 without one.
-
-    Only calls directly after the move are considered, up to the first other statement or call that waits.
-
-    Args:
-        move: The call.
-        rest: The statements after it.
-    """
-    owner = _name_object(move.func)
-    lines: list[tuple[bool, int]] = []
-    for statement in rest:
-        match statement:
-            case ast.Expr(value=ast.Call(func=func)) if not _find_waiting(statement):
-                if _find_call(statement, (*_ANY_MOVE, *STOPS)):
-                    lines.append((_name_object(func) != owner, statement.lineno))
-            case _:
-                break
-    return min(lines, default=(False, 0))[1]
-
-
-def _find_waiting(statement: ast.stmt) -> bool:
-    return any(
-        isinstance(node, ast.Attribute) and node.attr.startswith("wait_")
-        for node in ast.walk(statement)
-    )
-
-
-def _name_object(func: ast.expr) -> str:
-    return ast.unparse(func.value) if isinstance(func, ast.Attribute) else ""
-
-
-@dataclass(frozen=True, slots=True)
-class PartedMove:
-    """Two calls, one after the other, that move two motors by the same amount, of which the first call waits."""
-
-    first_line: int
-    """The line of the first call."""
-    next_line: int
-    """That of the second call."""
-    method: str
-    option: str
-    """The argument with which the first call would not wait."""
-
-
-_OPTIONS_BY_METHOD = {
-    "run_angle": "wait=False",
-    "run_time": "wait=False",
-    "on_for_degrees": "block=False",
-    "on_for_rotations": "block=False",
-    "on_for_seconds": "block=False",
-}
-
-
-_PAIRS = re.compile("Move[A-Z]|DriveBase|tank_|steering_")
-"""How the names begin of what moves both wheels with one call."""
-
-
-def list_parted_moves(tree: ast.Module) -> Iterator[PartedMove]:
-    """Yield each pair of equal moves of two motors, the first of which the program waits for without saying so.
-
-    A program that can move both wheels with one call means to move one alone. So does a loop that has no other moves.
-    """
-    names = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
-    if any(map(_PAIRS.match, names)):
-        return
-    walks = [
-        node.body for node in ast.walk(tree) if isinstance(node, _Loop) and len(node.body) == 2
-    ]
-    for block in _list_blocks(tree):
-        for first, second in pairwise(block if block not in walks else ()):
-            match first, second:
-                case (
-                    ast.Expr(value=ast.Call(func=ast.Attribute(value=motor, attr=method)) as move),
-                    ast.Expr(
-                        value=ast.Call(func=ast.Attribute(value=other, attr=same)) as follower
-                    ),
-                ) if method == same and method in _OPTIONS_BY_METHOD:
-                    is_plain = not any(word.arg in _OPTIONS for word in move.keywords)
-                    is_equal = _list_arguments(move) == _list_arguments(follower)
-                    if is_plain and is_equal and ast.dump(motor) != ast.dump(other):
-                        lines = first.lineno, second.lineno
-                        yield PartedMove(*lines, method, _OPTIONS_BY_METHOD[method])
-
-
-def _list_arguments(call: ast.Call) -> list[str]:
-    """Return the arguments of a move in words, without those that say whether to wait."""
-    named = [word for word in call.keywords if word.arg not in _OPTIONS]
-    return [ast.unparse(each) for each in (*call.args, *named)]

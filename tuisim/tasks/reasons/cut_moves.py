@@ -13,12 +13,13 @@ from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.arrays import find_spans
 from tuisim.engine.runs.command_words import CALL_WORDS, Aim
-from tuisim.programs.facts import UnwaitedMove
 from tuisim.tasks.reasons.run_data import RunData
 from tuisim.tasks.reasons.unmet import Unmet
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from tuisim.programs.moves import UnwaitedMove
 
     Array = NDArray[Any]
 
@@ -77,7 +78,7 @@ def find_cut_move(data: RunData) -> Unmet | None:
 
     A part is a motor or a drive base. The result is None if there is none.
     """
-    unwaited = data.facts.unwaited_moves
+    unwaited = data.facts.uses.unwaited_moves
     if not unwaited or not len(data.records):
         return None
     calls = {call for each in unwaited for call in _CALLS.get(each.method, ())}
@@ -101,7 +102,7 @@ def find_parted_move(data: RunData) -> Unmet | None:
     Args:
         data: The run.
     """
-    for pair in data.facts.parted_moves if len(data.records) else ():
+    for pair in data.facts.uses.parted_moves if len(data.records) else ():
         stays, next_stays = (
             find_spans(data.records["line"] == line) for line in (pair.first_line, pair.next_line)
         )

@@ -13,12 +13,14 @@ from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.protocol import End
-from tuisim.programs.facts import LoneStop, LoopEnd
+from tuisim.programs.facts import LoopEnd
 from tuisim.tasks.reasons.run_data import RunData, Series
 from tuisim.tasks.reasons.unmet import Unmet, name_goal, round_value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from tuisim.programs.uses import LoneStop
 
     Array = NDArray[Any]
 
@@ -61,7 +63,7 @@ def find_misuses(data: RunData) -> Iterator[Unmet]:
 def _find_stale_reads(data: RunData) -> Iterator[Unmet]:
     """Yield a misuse for each reading that a loop still used when the sensor saw something else."""
     known = {end.line for end in data.facts.loop_ends if end.set_line}
-    for use in data.facts.stale_reads:
+    for use in data.facts.uses.stale_reads:
         if use.line in known and _was_in_vain(data, use):
             continue
         for tick in _list_ticks(data, use.read_line):
@@ -161,7 +163,7 @@ def _name(series: Series, value: float) -> str:
 
 def _find_lone_stops(data: RunData) -> Iterator[Unmet]:
     """Yield a misuse for each stop that never came, because the program tested only once, and too early."""
-    for stop in data.facts.lone_stops:
+    for stop in data.facts.uses.lone_stops:
         read_ticks = _list_ticks(data, stop.read_line)
         if np.diff(read_ticks).min(initial=data.hz) < _APART_S * data.hz:
             continue
@@ -238,7 +240,7 @@ def _describe_lone(data: RunData, stop: LoneStop, tick: int) -> str:
 
 def _find_lost_values(data: RunData) -> Iterator[Unmet]:
     """Yield a misuse for each value that a function which ran has assigned to a local name instead of a global one."""
-    for lost in data.facts.lost_values:
+    for lost in data.facts.uses.lost_values:
         tick = _find_tick(data, *lost.lines)
         if tick is None and lost.call_line:
             tick = _find_tick(data, lost.call_line + 1, 1 << 31)

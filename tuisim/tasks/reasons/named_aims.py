@@ -110,7 +110,7 @@ def _extend_way(record: Array) -> Array:
 def _find_late_stops(data: RunData) -> Iterator[Unmet]:
     """Yield a fault for each stop near the end of a run that came long after the awaited light."""
     loops = {loop.first_line: loop for loop in data.facts.loop_ends}
-    for loop_line, sleep_line, stop_line in data.facts.late_stops:
+    for loop_line, sleep_line, stop_line in data.facts.remarks.late_stops:
         loop = loops.get(loop_line)
         series = data.measure(loop, (0, len(data.records))) if loop else None
         if loop is None or series is None or series.column not in LIGHT_COLUMNS:
@@ -135,7 +135,7 @@ def _find_late_stops(data: RunData) -> Iterator[Unmet]:
 def _find_spins(data: RunData) -> Iterator[Unmet]:
     """Yield a fault for each turn on the spot at a place where the program says that it drives straight on."""
     lines = data.records["line"]
-    for spin in data.facts.spins:
+    for spin in data.facts.remarks.spins:
         # The line after those that start motors is the one that waits.
         is_in = (lines >= spin.first_line) & (lines <= spin.last_line + 1)
         for start, end in find_spans(is_in).tolist():
@@ -154,7 +154,7 @@ def _find_wrong_units(data: RunData) -> Iterator[Unmet]:
     """Yield each call that ran and whose numbers were probably meant in another unit or order."""
     lines = data.records["line"]
     is_cut_off = data.run.end is None or data.run.end.end is not End.FINISHED
-    for wrong in data.facts.wrong_units:
+    for wrong in data.facts.remarks.wrong_units:
         ticks = np.flatnonzero(lines == wrong.line)
         is_stuck = is_cut_off and lines[-1] == wrong.line
         if len(ticks) and (not wrong.is_endless or (is_stuck and _has_moved(data.records[ticks]))):
