@@ -142,8 +142,11 @@ def list_instruments(scene: Scene) -> list[Row]:
     record = scene.last
     field = scene.open_field()
     instant = record.build_instant(spec, spec.world.noise)
-    changes = CommandIndex(scene.run).read_scale_changes() if scene.run else ()
-    scales = {port: scale for tick, port, scale in changes if tick <= record.tick}
+    scales: dict[str, float] = {}
+    if scene.run:
+        index = CommandIndex(scene.run)
+        index.read_scale_changes()
+        scales = index.find_scales(record.tick)
     turns = (
         ("LeftMotor", record.left_position_deg, record.left_speed_dps),
         ("RightMotor", record.right_position_deg, record.right_speed_dps),

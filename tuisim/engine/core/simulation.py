@@ -117,17 +117,19 @@ class Simulation(Motion):
             profile=spec.profile,
             seed=spec.seed,
             motors=self.motor_values if with_motors else (),
-            scales=tuple(self.scales.get(motor, 1.0) for motor in self.motors)
-            if with_motors
-            else (),
+            scales=self._list_scales() if with_motors else (),
         )
+
+    def _list_scales(self) -> tuple[float, ...]:
+        """Return for each motor how many degrees the program counts while the motor turns by one."""
+        return tuple(self.scales.get(motor, 1.0) for motor in self.motors)
 
     def read_present(self, now_ns: int) -> Present:
         """Return what the program would read at a time after the last tick; it may advance the drivers to that time."""
         return Present(
             turns=tuple(motor.read_turn(now_ns) for motor in self.motors),
             motors=self._motor_recorder.read_values(None),
-            scales=tuple(self.scales.get(motor, 1.0) for motor in self.motors),
+            scales=self._list_scales(),
             gyro_zero_deg=self.drive.gyro_zero_deg,
             pen_down=self.pen_down,
             actions=self.actions & 0xFFFF,
