@@ -10,10 +10,9 @@ import numpy as np
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.commands.calls import Call
-from tuisim.engine.protocol import End
 from tuisim.engine.runs.arrays import find_spans
 from tuisim.engine.runs.command_words import CALL_WORDS, Aim
-from tuisim.tasks.reasons.run_data import RunData
+from tuisim.tasks.reasons.run_data import STOP_CALLS, RunData
 from tuisim.tasks.reasons.unmet import Unmet
 
 if TYPE_CHECKING:
@@ -41,7 +40,6 @@ _CALLS: Mapping[str, tuple[Call, ...]] = {
 """The commands with which methods move motors, by the name of the method."""
 _GO_ON = (Call.RUN_TO_REL_POS, Call.RUN_TO_ABS_POS, Call.RUN_TIMED)
 """Moves that go on after the end of the program."""
-_STOPS = (Call.STOP, Call.STOP_DRIVER, Call.HOLD, Call.STOP_BASE)
 _AT_ONCE_S = 0.1
 """A move that is followed so soon by another one has hardly begun."""
 _DONE_SHARE = 0.8
@@ -86,7 +84,7 @@ def find_cut_move(data: RunData) -> Unmet | None:
         fitting = [each for each in unwaited if move.call in _CALLS.get(each.method, ())]
         if call := _find_call(data, move, fitting):
             share = _describe_share(data, move)
-            does = "stopped it" if move.next_call in _STOPS else "began the next one"
+            does = "stopped it" if move.next_call in STOP_CALLS else "began the next one"
             after = f"line {call.next_line} {does}"
             if not call.next_line:
                 after = "the next one began" if move.next_call else "the program ended"
@@ -157,8 +155,7 @@ def _list_moves(data: RunData, calls: Set[Call]) -> Iterator[_Move]:
     is_aim = np.isin(data.commands["call"], aims)
     rows, ticks = (part[is_aim][:_MAX_COMMANDS] for part in (data.commands, data.command_ticks))
     last = len(data.records) - 1
-    is_whole = len(rows) == is_aim.sum()
-    is_finished = is_whole and data.run.end is not None and data.run.end.end is End.FINISHED
+    is_finished = data.is_finished and len(rows) == is_aim.sum()
     following: dict[tuple[bool, int], tuple[int, Call]] = {}
     moves: list[_Move] = []
     for row, tick in zip(rows[::-1], ticks[::-1].tolist(), strict=True):
@@ -208,7 +205,7 @@ def _has_looked(data: RunData, move: _Move) -> bool:
     aim = CALL_WORDS[move.next_call].aim if move.next_call else Aim.NONE
     ticks = data.reading_ticks
     has_read = ((ticks >= move.tick) & (ticks <= move.end)).any()
-    return bool(has_read) or aim is Aim.SPEED or move.next_call in _STOPS
+    return bool(has_read) or aim is Aim.SPEED or move.next_call in STOP_CALLS
 
 
 def _describe_share(data: RunData, move: _Move) -> str:

@@ -9,10 +9,8 @@ import numpy as np
 
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.core.columns import COLOR_NAMES
-from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.profile import NS_PER_S
-from tuisim.engine.protocol import End
 from tuisim.programs.facts import LoopEnd
 from tuisim.tasks.reasons.run_data import RunData, Series
 from tuisim.tasks.reasons.unmet import Unmet, name_goal, round_value
@@ -83,8 +81,7 @@ def _was_in_vain(data: RunData, use: LoopEnd) -> bool:
     Another reason then says what the program waited for in vain.
     """
     line = data.records["line"][-1]
-    is_over = data.run.end is not None and data.run.end.end is End.FINISHED
-    return use.first_line <= line <= use.last_line and not is_over
+    return use.first_line <= line <= use.last_line and not data.is_finished
 
 
 def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
@@ -185,8 +182,7 @@ def _is_unstopped(data: RunData, stop: LoneStop, tick: int) -> bool:
     """
     soon = min(tick + round(_SOON_S * data.hz), len(data.records) - 1)
     next_tick = _find_next_reading(data, stop.read_line, tick)
-    stops = data.command_ticks[select_stops(data)]
-    later = stops[stops >= tick]
+    later = data.stop_ticks[data.stop_ticks >= tick]
     if next_tick <= soon or (len(later) and later[0] <= tick + 1):
         return False
     if not stop.is_direct and len(later):
@@ -199,18 +195,6 @@ def _is_unstopped(data: RunData, stop: LoneStop, tick: int) -> bool:
     # The summary of a finished run names motors that would turn on.
     turns_on = data.run.end is not None and bool(data.run.end.summary)
     return (bool(has_moved) or turns_on) and not is_met
-
-
-def select_stops(data: RunData) -> Array:
-    """Return for each command of a run whether it stops a motor or a drive base.
-
-    Args:
-        data: The run.
-    """
-    stops = [Call.STOP, Call.STOP_DRIVER, Call.HOLD, Call.STOP_BASE]
-    is_stop: Array = np.isin(data.commands["call"], stops)
-    is_stop |= (data.commands["call"] == Call.RUN_FREELY) & np.isnan(data.commands["values"][:, 0])
-    return is_stop
 
 
 def _is_met(data: RunData, test: LoopEnd, tick: int) -> bool:
@@ -244,8 +228,7 @@ def _find_lost_values(data: RunData) -> Iterator[Unmet]:
         tick = _find_tick(data, *lost.lines)
         if tick is None and lost.call_line:
             tick = _find_tick(data, lost.call_line + 1, 1 << 31)
-            is_over = data.run.end is not None and data.run.end.end is End.FINISHED
-            if tick is None and is_over and lost.is_certain:
+            if tick is None and data.is_finished and lost.is_certain:
                 tick = len(data.records) - 1
         if tick is not None:
             text = (

@@ -11,10 +11,8 @@ import numpy as np
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.engine.protocol import End
 from tuisim.engine.runs.arrays import find_spans
 from tuisim.programs.facts import LoopEnd
-from tuisim.tasks.reasons.misuses import select_stops
 from tuisim.tasks.reasons.read_columns import LIGHT_COLUMNS
 from tuisim.tasks.reasons.run_data import RunData
 from tuisim.tasks.reasons.unmet import Unmet, name_goal, round_value
@@ -116,8 +114,7 @@ def _find_late_stops(data: RunData) -> Iterator[Unmet]:
         if loop is None or series is None or series.column not in LIGHT_COLUMNS:
             continue
         tick = int(series.ticks[-1])
-        later = data.command_ticks[select_stops(data)]
-        later = later[later > tick]
+        later = data.stop_ticks[data.stop_ticks > tick]
         if not len(later) or len(data.records) - later[0] > _SOON_S * data.hz:
             continue
         stop_tick = min(int(later[0]), len(data.records) - 1)
@@ -153,10 +150,9 @@ def _find_spins(data: RunData) -> Iterator[Unmet]:
 def _find_wrong_units(data: RunData) -> Iterator[Unmet]:
     """Yield each call that ran and whose numbers were probably meant in another unit or order."""
     lines = data.records["line"]
-    is_cut_off = data.run.end is None or data.run.end.end is not End.FINISHED
     for wrong in data.facts.remarks.wrong_units:
         ticks = np.flatnonzero(lines == wrong.line)
-        is_stuck = is_cut_off and lines[-1] == wrong.line
+        is_stuck = not data.is_finished and lines[-1] == wrong.line
         if len(ticks) and (not wrong.is_endless or (is_stuck and _has_moved(data.records[ticks]))):
             yield Unmet(float(ticks[0] / data.hz), wrong.line, wrong.text)
 

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
+from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.hub_spec import HUB_PORTS, INSIDE
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import (
@@ -16,6 +17,7 @@ from tuisim.engine.core.spec import (
     SensorSpec,
     UltrasonicSpec,
 )
+from tuisim.engine.protocol import End
 from tuisim.engine.runs.command_records import MAX_COMMANDS, read_command_rows
 from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.readings import (
@@ -37,6 +39,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[Any]
 
+STOP_CALLS = (Call.STOP, Call.STOP_DRIVER, Call.HOLD, Call.STOP_BASE)
+"""The commands that only stop a motor or a drive base."""
 _NOUNS: Mapping[type[SensorSpec], str] = {
     ColorSensorSpec: "colour sensor",
     UltrasonicSpec: "ultrasonic sensor",
@@ -110,6 +114,22 @@ class RunData:
         """The tick of each of `commands`."""
         ticks: Array = self.commands["time_ns"] * self.hz // NS_PER_S
         return ticks
+
+    @cached_property
+    def stop_ticks(self) -> Array:
+        """The ticks of those commands that stop a motor or a drive base."""
+        import numpy as np
+
+        calls = self.commands["call"]
+        is_stop = np.isin(calls, STOP_CALLS)
+        is_stop |= (calls == Call.RUN_FREELY) & np.isnan(self.commands["values"][:, 0])
+        ticks: Array = self.command_ticks[is_stop]
+        return ticks
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether the program ended by itself, without an error."""
+        return self.run.end is not None and self.run.end.end is End.FINISHED
 
     @cached_property
     def _scales(self) -> dict[str, float]:

@@ -105,8 +105,7 @@ def find_early_end(data: RunData) -> Unmet | None:
         data: The run.
     """
     run = data.run
-    end = run.end
-    if end is None or end.end is not End.FINISHED or run.time_s >= _MIN_RUN_S:
+    if not data.is_finished or run.time_s >= _MIN_RUN_S:
         return None
     if idle := data.facts.idle_definition:
         return Unmet(run.time_s, *idle)
@@ -145,7 +144,6 @@ class _Search:
 
     def __init__(self, data: RunData) -> None:
         self._data = data
-        self._run = data.run
         self._hz = data.hz
         self._records = data.records
         self._loops = data.facts.loop_ends
@@ -168,10 +166,9 @@ class _Search:
 
         Either the light came near its limit, or it passed the limit only between two readings of the loop.
         """
-        is_finished = self._run.end is not None and self._run.end.end is End.FINISHED
         for loop in self._loops:
             stay = self._find_stay(loop)
-            has_left = is_finished or (stay and stay[1] < len(self._records))
+            has_left = self._data.is_finished or (stay and stay[1] < len(self._records))
             series = self._data.measure(loop, stay) if stay and has_left else None
             if not stay or not series or series.column not in LIGHT_COLUMNS:
                 continue
