@@ -200,7 +200,10 @@ def _execute_all(tasks: Sequence[Task], folder: Path) -> list[Result]:
 
 
 class _Worker(SpawnProcess):
-    """A worker process that does not import the main module: a script that starts a batch would start another."""
+    """A worker process that does not import the main module.
+
+    Otherwise a script that starts a batch would start another batch in each worker.
+    """
 
     @staticmethod
     def _Popen(process_obj: Any) -> Any:  # noqa: N802 - its name in the library

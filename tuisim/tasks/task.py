@@ -71,7 +71,10 @@ class VariableStatistics:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """The result of a task: how its run ended, and its recording. The process that ran the task has no effect on it."""
+    """The result of a task: how its run ended, and its recording.
+
+    The result does not depend on the process in which the task was executed.
+    """
 
     index: int
     parameters: Mapping[str, Value]

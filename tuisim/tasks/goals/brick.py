@@ -81,10 +81,12 @@ def _list_texts(row: OutputRow) -> list[str]:
 def build_brick_column(
     name: str, ticks: int, rows: Iterable[OutputRow], actions: Iterable[UserAction]
 ) -> Array:
-    """Return one of `BRICK_COLUMNS` at every tick of a run, shape (ticks,).
+    """Return the values of one of `BRICK_COLUMNS` at every tick of a run, shape (ticks,).
+
+    A button has 1 while it is pressed, else 0; a light has its brightness; the display has its number of dark pixels.
 
     Args:
-        name: The column.
+        name: The name of the column.
         ticks: Number of ticks of the run.
         rows: The run's output, with what the brick displayed and its lights.
         actions: The user's actions, with the pressed buttons.

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 
 def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return the first tick of a span in which all comparisons of a condition are true.
+    """Return a finding with the first tick of a span in which all comparisons of a condition are true.
 
-    If there is none, return why.
+    If there is no such tick, the finding has the reason instead.
     """
     import numpy as np
 
@@ -75,9 +75,9 @@ def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: Evid
 
 
 def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the comparisons of a condition were first false.
+    """Return a finding on when a comparison of a condition was first false; `Finding()` if the condition was kept.
 
-    For a condition with a share of the time, return when they had been false for too long.
+    A condition that only needs a share of the time is judged at the end of the span.
     """
     import numpy as np
 
@@ -142,7 +142,10 @@ def _measure_gaps_mm(records: Array, evidence: Evidence) -> Array:
 
 
 def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return whether a comparison became true too often or, at the end of a span, too seldom; if so, when."""
+    """Return a finding on a comparison that became true too often in a span, or too seldom up to the span's end.
+
+    The result is `Finding()` if the number of times is right so far.
+    """
     comparison = condition.condition
     try:
         named = resolve_column(comparison, evidence.spec)

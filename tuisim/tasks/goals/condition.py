@@ -35,7 +35,7 @@ class UnjudgedError(Exception):
 
 
 class ConditionKind(StrEnum):
-    """At which moment of a run a condition is decided."""
+    """The moment of a run at which a condition is decided: each member says when it is met or missed."""
 
     REACHED = "reached"
     """Met as soon as it is true once; missed if that never happens."""
@@ -89,7 +89,7 @@ def require_regex(pattern: str, key: str) -> None:
         key: Name of the value in the error.
 
     Raises:
-        ConfigError: it is not.
+        ConfigError: the text is not a regular expression.
     """
     try:
         re.compile(pattern)

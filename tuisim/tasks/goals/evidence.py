@@ -186,10 +186,10 @@ class Evidence:
         return ticks
 
     def search(self, pattern: str) -> Search:
-        """Return a function that searches a line for a regular expression.
+        """Return a function that returns whether a regular expression matches anywhere in a line.
 
         Raises:
-            UnjudgedError: the expression cannot be searched for within a time limit.
+            UnjudgedError: the engine for searches with a time limit does not support the expression.
         """
         key = f"search {pattern}"
         if key not in self.memo:
@@ -224,11 +224,13 @@ class Evidence:
         return values
 
     def held(self, condition: ValueCondition) -> Array:
-        """Return whether a comparison is true in each tick; one with printed lines is true in ticks with such a line.
+        """Return for each tick whether a comparison is true, shape (n,).
+
+        A comparison with output, such as printed lines, is true in the ticks in which a matching line was printed.
 
         Raises:
             ValueError: the comparison needs a number and has another value.
-            UnjudgedError: its regular expression takes too long.
+            UnjudgedError: the comparison's regular expression takes too long.
             LogError, ConfigError: as for `column`.
         """
         import numpy as np
@@ -267,7 +269,7 @@ class Evidence:
         """The mat without the pen's marks.
 
         Raises:
-            LogError, ConfigError: it no longer exists, or its image has changed.
+            LogError, ConfigError: the mat no longer exists, or its image has changed.
         """
         if self._field is not None:
             return self._field

@@ -66,7 +66,7 @@ class GoalsFile:
 
     @property
     def presses(self) -> Mapping[str, Any]:
-        """The setting `press` of the file, under its name; it applies in every world.
+        """A mapping from `press` to this setting of the file, which applies in every world.
 
         The result is empty if the file does not set it.
         """
@@ -181,7 +181,7 @@ def list_examples() -> list[Path]:
 def _find_file(path: Path) -> Path:
     """Return the path of the example goals file with a name such as `log_greys`.
 
-    If the path names no example, or an existing file, it is returned unchanged.
+    A path that names an existing file, or that is not the name of an example, is returned unchanged.
     """
     if path.parent != Path() or os.path.exists(path):
         return path
@@ -343,7 +343,7 @@ def _check_lists(kind: type[Condition], data: object, location: Location) -> Non
     """Check that the keys of a condition that must be lists of texts or of ranges are such lists.
 
     Raises:
-        ConfigError: one is not; the error has a hint.
+        ConfigError: a key is not such a list; the error has a hint.
     """
     for key, value in data.items() if isinstance(data, dict) else ():
         field = kind.__dataclass_fields__.get(key)
@@ -526,7 +526,7 @@ def _has(data: Any, path: list[int | str]) -> bool:
 
 
 def build_runs(worlds: Sequence[TrialWorld]) -> list[RunSpec]:
-    """Return the specification of a run in each world, with all columns that runs with its robot can have."""
+    """Return a run specification for each world, with the world's robot and the profile that has the most columns."""
     chosen = [world.settings.get("robot", DEFAULT_ROBOT) for world in worlds]
     robots = [
         chosen_robot if isinstance(chosen_robot, RobotChoice) else choose_robot(chosen_robot)

@@ -63,7 +63,10 @@ UNCOMPILED = "The program does not compile"
 
 
 def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return whether, at the end of a span, the pen's drawing is near enough to the picture, or how it differs."""
+    """Return a finding at the end of a span if the pen's drawing matches a condition's picture.
+
+    If it does not match, the finding says how the drawing differs, and has no moment.
+    """
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -138,7 +141,10 @@ def _find_calls(
 
 
 def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return whether the program's text has each of a condition's calls, or else which call is missing."""
+    """Return a finding at the start if the program's text has each of a condition's calls.
+
+    Otherwise the finding has no moment, and says which calls are missing.
+    """
     calls = _find_calls(condition, evidence)
     if isinstance(calls, Finding):
         return calls
@@ -149,7 +155,10 @@ def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -
 
 
 def find_avoided(condition: AvoidCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return whether the program's text has none of a condition's calls, or else where it has one."""
+    """Return a finding at the start if the program's text has none of a condition's calls.
+
+    Otherwise the finding has no moment, and says on which line the program has such a call.
+    """
     calls = _find_calls(condition, evidence)
     if isinstance(calls, Finding):
         return calls
@@ -163,7 +172,10 @@ def find_avoided(condition: AvoidCondition, evidence: Evidence, span: EvidenceSp
 def find_structure(
     condition: StructureCondition, evidence: Evidence, span: EvidenceSpan
 ) -> Finding:
-    """Return whether a program's counts, such as the number of its loops, meet a condition, or which do not."""
+    """Return a finding at the start if the counts of a program, such as its number of loops, meet a condition.
+
+    Otherwise the finding has no moment, and says which count is wrong.
+    """
     try:
         for comparison in condition.conditions:
             count = read_facts(evidence.program).count_structure(comparison.name)

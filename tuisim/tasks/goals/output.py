@@ -71,7 +71,7 @@ def _list_printed(evidence: Evidence, span: EvidenceSpan) -> list[tuple[int, Out
 
 
 def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the last of a condition's lines was printed, or which line is missing or wrong."""
+    """Return a finding on when the last of a condition's lines was printed, or else on the missing or wrong line."""
     rows = _list_printed(evidence, span)
     next_place = 0
     last = -1
@@ -378,7 +378,7 @@ def _find_missing_level(
         count: How many levels the samples have reached; the next level is missing.
         samples: All samples of the variable, with the indices of their rows.
         start: Index of the first sample that could have that level.
-        last: Index of the sample with the level before; -1 for none.
+        last: Index of the sample with the previous level; -1 for none.
         evidence: The recording.
     """
     rest = [sample for _, sample in samples[start:]]

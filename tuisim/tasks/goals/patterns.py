@@ -22,7 +22,7 @@ def build_search(pattern: str) -> Search:
     """Return a function that returns whether a regular expression matches anywhere in a text.
 
     Raises:
-        UnjudgedError: the regex engine with a time limit does not support the expression.
+        UnjudgedError: the engine for searches with a time limit does not support the expression.
     """
     # Imported on demand: most goals have no regular expression.
     import regex

@@ -135,7 +135,10 @@ def _compute_light(records: Array, evidence: Evidence) -> Array:
 
 
 def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the program had taken as many readings as a condition needs, or how many are missing."""
+    """Return a finding on when the program had taken as many readings as a condition needs.
+
+    If there are too few readings, the finding has no moment, and says how many are needed.
+    """
     noun = NOUNS[condition.reading]
     every, lines = _find_readings(condition.reading, evidence)
     ticks = every[(every >= span.first_tick) & (every < span.end_tick)]
@@ -153,7 +156,10 @@ def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) 
 
 
 def find_off_line(condition: FollowCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return at the end of a span whether the robot was on a line for too small a share of the time."""
+    """Return a finding at the end of a span if the robot was on a line for too small a share of the time.
+
+    The result is `Finding()` if the share is large enough so far.
+    """
     import numpy as np
 
     named = {sensor.name: sensor for sensor in evidence.spec.robot.color_sensors}

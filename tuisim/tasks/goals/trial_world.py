@@ -144,7 +144,7 @@ def check_names(names: Sequence[str], known: Collection[str], location: Location
     """Check the names of goals in the key `goals` of a world's table.
 
     Raises:
-        ConfigError: one of the names is not known.
+        ConfigError: a name is not among the known ones.
     """
     for number, name in enumerate(names, start=1):
         if name not in known:

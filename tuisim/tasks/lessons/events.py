@@ -234,7 +234,10 @@ def explain_unready(question: QuestionCheck, event: Typed) -> str:
 
 
 def _name_view(view: str) -> str:
-    """Return the title of a panel or of the analyser, with the id of the action that shows it, for its key."""
+    """Return the title of a panel or of the analyser with an action id, such as `Chart (key {panel-chart})`.
+
+    The id in braces is that of the action that shows it; the app replaces it by the action's key.
+    """
     action = "analyse" if view == "analyser" else f"panel-{view}"
     return f"{view.capitalize()} (key {{{action}}})"
 

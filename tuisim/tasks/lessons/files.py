@@ -98,7 +98,7 @@ def load_lesson(path: Path | str) -> Lesson:
     """Read the file of a lesson.
 
     Raises:
-        ConfigError: it cannot be read or is wrong; the error names file, line and key.
+        ConfigError: the file cannot be read or is wrong; the error names file, line and key.
     """
     path = user_path(path)
     if path.suffix.lower() != SUFFIX:
@@ -168,7 +168,11 @@ def _merge_told_lesson(data: Any, path: Path) -> Any:
 
 
 def _end_of_front(lines: Sequence[str], path: Path) -> int:
-    """Return the index of the line that ends the TOML above the Markdown of a lesson."""
+    """Return the index of the line `+++` that ends the TOML above the Markdown of a lesson.
+
+    Raises:
+        ConfigError: the lines do not begin with TOML between two lines `+++`.
+    """
     if not lines or lines[0].strip() != FENCE:
         raise ConfigError(
             f"does not begin with {FENCE}",
@@ -251,7 +255,7 @@ def _parse_way(word: str, role: Role, location: Location) -> Way | None:
     """Return the kind of wrong program that a word above a block of code names; None if the word is empty.
 
     Raises:
-        ConfigError: the word names none, or the block is no wrong program.
+        ConfigError: the word is not the name of such a kind, or the block has another role than a wrong program.
     """
     if not word:
         return None

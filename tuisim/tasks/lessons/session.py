@@ -260,7 +260,7 @@ class LessonSession:
 
         Args:
             text: The answer.
-            x_mm: Where the robot stands.
+            x_mm: The x coordinate of the robot's present position.
             sight: What the app shows.
 
         Raises:

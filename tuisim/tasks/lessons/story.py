@@ -48,7 +48,7 @@ def _describe_condition(condition: Condition, event: Change, line: int) -> str:
     Args:
         condition: The condition.
         event: When and where it was met.
-        line: The program's line.
+        line: The number of the program's line that ran at that time.
     """
     when = f"at {event.time_s:.2f} s"
     where = f"at x = {event.x_mm:.0f} mm, y = {event.y_mm:.0f} mm"

@@ -147,9 +147,9 @@ def find_faults(lesson: Lesson) -> list[str]:
 
 
 def _list_worlds(trial: Trial) -> list[tuple[_Key, TrialWorld | None]]:
-    """Return the worlds in which a program is tried, each after the key of its result.
+    """Return a pair for each world in which a program is tried: the key of the run's result, and the world.
 
-    None stands for the lesson's own world.
+    The world is None for the lesson's own world.
     """
     check = trial.step.check
     assert isinstance(check, RunCheck)

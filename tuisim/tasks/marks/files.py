@@ -113,7 +113,7 @@ def unpack_zip(path: Path, place: Path, max_bytes: int) -> None:
         max_bytes: The largest total size of the files.
 
     Raises:
-        ConfigError: it is no zip, is too large, or has links or paths out of its folder.
+        ConfigError: the file is no zip, is too large, or has links or paths out of its folder.
     """
     try:
         with open_regular(path, follow_links=True) as file, zipfile.ZipFile(file) as archive:

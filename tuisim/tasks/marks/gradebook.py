@@ -68,7 +68,7 @@ def read_roster(path: Path) -> Roster:
     name. The other columns have the names that the gradebook gives them, such as `Email address` or `SIS User ID`.
 
     Raises:
-        ConfigError: it cannot be read, has no column that names the submissions, or names a submission twice.
+        ConfigError: the file cannot be read, has no column that names the submissions, or names a submission twice.
     """
     file_name = str(path)
     data = read_bytes(
@@ -130,7 +130,7 @@ def write_gradebook(
         goals: Whether each goal that is not hidden has its own column, beside the column of the total.
 
     Raises:
-        ExportError: it cannot be written.
+        ExportError: the file cannot be written.
     """
     item = sheet.title or ITEM
     # Students see these columns, so hidden goals and those that take points off are only in the total.
@@ -171,7 +171,7 @@ def _choose_heads(
 ) -> tuple[Sequence[str], str, str]:
     """Return the headings of a gradebook: those that identify a student, the total's and the feedback's.
 
-    The total's heading is empty if the title of the task stands there.
+    The heading of the total is empty if the title of the task is to be used as that heading.
     """
     has_numbers = kind is GradebookKind.MOODLE and any(kind in row.ids for row in sheet.rows)
     if has_numbers and not roster.people:

@@ -245,7 +245,7 @@ class Marking:
         """Run all programs, except runs whose outcomes are in the journal; blocks until all outcomes are known.
 
         Args:
-            tell: Receives the progress: words, the number of runs that are done, and of all.
+            tell: Called with the progress: words, the number of finished runs, and the number of all runs.
             isolate: Whether programs run isolated from this machine.
 
         Raises:
@@ -319,7 +319,7 @@ class Marking:
 
         Args:
             sheet: The marks.
-            tell: Receives the progress of the reports: words, the number of reports that are written, and of all.
+            tell: Called with the progress: words, the number of written reports, and the number of all reports.
         """
         request = self._request
         sources = [student.text for student in self.students]

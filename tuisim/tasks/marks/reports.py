@@ -283,7 +283,7 @@ def write_class_page(
         students: Those whose programs are compared.
         ignored: Names of files that are no programs.
         target: The page.
-        tell: Receives the progress: words, the number of reports that are written, and of all.
+        tell: Called with the progress: words, the number of written reports, and the number of all reports.
         movies: Whether reports of runs that missed a goal have movies.
 
     Raises:

@@ -360,6 +360,6 @@ def export_marks(sheet: Sheet, path: Path) -> None:
     """Write the sheet as a table in the format of the path's suffix; an existing file is replaced.
 
     Raises:
-        ExportError: it cannot be written; an existing file is unchanged.
+        ExportError: the file cannot be written; an existing file is unchanged.
     """
     export_frame(sheet.build_frame(), path, build_metadata(sheet))

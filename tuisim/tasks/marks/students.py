@@ -390,7 +390,7 @@ def _read_program_cell(path: Path, cell: str) -> ProgramSource:
     """Return the program of a notebook.
 
     Raises:
-        ConfigError: it cannot be read, has no program, or it is not clear which cell is the program.
+        ConfigError: the notebook cannot be read, has no program, or it is not clear which cell is the program.
     """
     cells = choose_programs(str(path))
     if len(cells) > 1 and cell:

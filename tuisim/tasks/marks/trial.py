@@ -51,7 +51,7 @@ _LETTERS = "a1 .:-AZ_"
 def answer_lines(goals: Sequence[Goal]) -> list[str]:
     """Return lines of output that meet the goals, in an order that the goals' key `after` allows.
 
-    In place of a question of the program there is `ASK`.
+    `ASK` stands where the program has to ask a question with `input()`.
     """
     by_name = {goal.name: goal for goal in goals}
     ordered: dict[str, Goal] = {}
@@ -296,7 +296,7 @@ def _list_author_programs(
     """Yield the model and the wrong examples of a task's author, as students.
 
     Raises:
-        ConfigError: one of them is missing, or Python cannot read it.
+        ConfigError: a program is missing, or is not valid Python.
     """
     model = [(TrialRole.MODEL, str(find_program(task.program)))] if task.program else []
     for role, path in [*model, *((TrialRole.WRONG, path) for path in wrong)]:

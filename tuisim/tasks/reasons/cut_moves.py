@@ -95,7 +95,9 @@ def find_cut_move(data: RunData) -> Unmet | None:
 
 
 def find_parted_move(data: RunData) -> Unmet | None:
-    """Return the first straight move that swerved, since the program moved one wheel after the other; else None.
+    """Return the first straight move that swerved because the program moved one wheel after the other.
+
+    The result is None if there is no such move.
 
     Args:
         data: The run.
@@ -171,7 +173,7 @@ def _list_moves(data: RunData, calls: Set[Call]) -> Iterator[_Move]:
 def _find_call(data: RunData, move: _Move, fitting: list[UnwaitedMove]) -> UnwaitedMove | None:
     """Return the call in the program's text that gave the command of a move.
 
-    The result is None if several calls come into question, or if the program may have cut the move off on purpose.
+    The result is None if several calls may have given it, or if the program may have cut the move off on purpose.
 
     Args:
         data: The run.

@@ -252,7 +252,10 @@ class _Way:
     def find_gap(self, number: int) -> tuple[int, int]:
         """Return the last tick of a dark stretch, and the first tick of the next one.
 
-        After the last stretch, the run's last tick.
+        For the last dark stretch, the second result is the run's last tick.
+
+        Args:
+            number: Index of the dark stretch.
         """
         index = int(self._next[number])
         end = self._ticks[index] if index < len(self._ticks) else self._last_tick

@@ -158,7 +158,7 @@ def _find_wrong_units(data: RunData) -> Iterator[Unmet]:
 
 
 def _has_moved(records: Array) -> bool:
-    """Return whether a wheel turned further than a wheel does that only comes to rest."""
+    """Return whether a wheel turned further in some records than a wheel that is only coming to rest."""
     return any(
         np.ptp(records[name]) > _MIN_ON_DEG for name in ("left_position_deg", "right_position_deg")
     )

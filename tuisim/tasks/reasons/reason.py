@@ -292,8 +292,8 @@ def describe_end(run: StoredRun) -> str:
     """Return in a sentence, without its full stop, what went wrong at the end of a run; empty if nothing did.
 
     The sentence says the first of these that applies: where the robot lost its line for good, if a limit or the user
-    ended the run; where light just missed what the program waited for; which line the author probably did not mean so;
-    why the program was over too early; that the mat is blank.
+    ended the run; where the light came near what the program waited for, but did not reach it; which line probably does
+    something that its author did not mean; why the program ended too early; that the mat is blank.
     """
     if run.end is None:
         return ""

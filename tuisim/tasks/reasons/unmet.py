@@ -180,7 +180,7 @@ class _Search:
                 yield Unmet(tick / self._hz, loop.line, text)
 
     def find_met(self) -> Iterator[Unmet]:
-        """Yield a fault for each loop that ended at once, because its first reading already was what it waited for."""
+        """Yield a fault for each loop that ended at its first reading, which already was what the loop waited for."""
         for loop in self._loops:
             series = self._data.measure(loop, (0, len(self._records)))
             if series is None:

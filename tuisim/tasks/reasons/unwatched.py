@@ -45,7 +45,7 @@ class MistakenTurn:
 
 
 def find_mistaken_turn(data: RunData) -> MistakenTurn | None:
-    """Return the first turn on the spot by the program's angle of the wheels, but not of the robot.
+    """Return the first turn on the spot whose angle was probably meant for the robot, but turned the wheels.
 
     The result is None if there is no such turn.
     """
@@ -140,7 +140,7 @@ def _list_passes(
     threshold: ProgramThreshold,
     ticks: Array,
 ) -> Iterator[Unwatched]:
-    """Yield each time between two readings at which the light gave a comparison another result than at both.
+    """Yield the first light between two readings for which a comparison had another result than at both readings.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`.

@@ -429,7 +429,7 @@ class _Search:
         return None
 
     def _is_pressed(self, ticks: Array, names: Sequence[str], needs_all: bool) -> bool:
-        """Return whether one of some buttons was pressed by hand in at least one of some ticks.
+        """Return whether one of the buttons, or all of them together, were pressed by hand in one of the ticks.
 
         Args:
             ticks: The ticks.
@@ -482,7 +482,7 @@ class _Search:
         Args:
             sensor: The sensor.
             ticks: The ticks of the readings.
-            per_unit: Measured units per unit of the text: more than 1 for cm, 1 for %.
+            per_unit: How many measured units make one unit of the text: more than 1 for a text in cm, 1 for %.
             tolerance: Without a limit, the awaited distance has come if the measured ones differ by more than this.
             limit: The awaited distance has come if a measured one is not larger than this; None for no limit.
         """

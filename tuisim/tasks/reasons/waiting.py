@@ -83,7 +83,10 @@ def _build_recorded(recording: Recording, open_mat: Callable[[RunSpec], Field | 
 
 
 def describe_so_far(recording: Recording) -> str:
-    """Return that nothing is wrong with a paused run so far, and where the program is, with action ids in braces."""
+    """Return a sentence that nothing is wrong with a paused run so far, with the time and the program's lines.
+
+    An action id in braces stands for the action's key.
+    """
     import numpy as np
 
     hz = recording.spec.profile.tick_hz
