@@ -20,7 +20,10 @@ _OWNER_FOLDER, _OWNER_FILE = 0o700, 0o600
 
 
 def private(path: str, flags: int) -> int:
-    """Open a file as the `opener` argument of `open` must; return its descriptor. Only the owner may use a new file."""
+    """Open a file, and return its descriptor; a new file can be read and written only by its owner.
+
+    Pass this function as `opener` to `open`.
+    """
     return _open(path, flags, _OWNER_FILE)
 
 

@@ -53,7 +53,12 @@ def _set_state(self: Any, state: list[Any]) -> None:
 
 
 def _init(cls: type, frozen: bool) -> Any:
-    """Return a new `__init__` for a class with fields."""
+    """Return a new `__init__` that sets the fields of a class, as that of a data class does.
+
+    Args:
+        cls: The class.
+        frozen: Whether objects of the class refuse assignments, so that `__init__` must bypass that.
+    """
     names: dict[str, Any] = {"_set": object.__setattr__, "_FACTORY": _FACTORY}
     annotations: dict[str, Any] = {}
     parameters = ["self"]
@@ -166,7 +171,10 @@ if TYPE_CHECKING:
 else:
 
     def dataclass(cls=None, /, *, frozen=False, slots=False, eq=True, order=False):
-        """Make a class a data class; the options are those of Python's own decorator."""
+        """Make a class a data class, and return it; the options are those of Python's own decorator.
+
+        Without a class, return a decorator with these options.
+        """
         if cls is None:
             return lambda cls: _decorated(cls, frozen, slots, eq, order)
         return _decorated(cls, frozen, slots, eq, order)

@@ -91,7 +91,7 @@ def among(name: str, allowed: Iterable[str], unlisted: Iterable[str] = ()) -> st
 
 
 def see_page(topic: str) -> str:
-    """Return the hint to read the page of the guide on a topic."""
+    """Return the hint to read a page of the guide, such as `` see `tuisim guide marking` ``; `topic` is its name."""
     return f"see `tuisim guide {topic}`"
 
 

@@ -22,10 +22,11 @@ _WELL_KNOWN = ("time", "random", "math", "statistics", "threading", "datetime")
 
 
 def find_meant_names(wrong: str, names: Set[str]) -> list[str]:
-    """Return the public names that may be meant by a wrong name, the most likely first.
+    """Return those of `names` that may be meant by a wrong name, the most likely first; empty if there are none.
 
-    They are the names that begin with the wrong one. If there are none, it is the most similar name; if none is
-    similar, the names that contain the wrong one, or `on` for a wrong name such as `forward`.
+    These are the names that begin with the wrong one. If there are none, it is the most similar name; if none is
+    similar, the names that contain the wrong one, or `on` for a wrong name such as `forward`. Names with `_` at the
+    start are never returned.
     """
     public = sorted((name for name in names if not name.startswith("_")), key=lambda n: (len(n), n))
     containing = [name for name in public if wrong in name] if len(wrong) >= _MIN_LETTERS else []

@@ -111,7 +111,7 @@ class Breakpoint:
             raise _refuse(self.text, why, f"the program has {counted(last, 'line')}")
 
     def move(self, line: int) -> Breakpoint:
-        """Return a copy of a line breakpoint on another line."""
+        """Return a copy of a line breakpoint on another line; return any other breakpoint unchanged."""
         if not isinstance(self.rule, LineBreak):
             return self
         rule = LineBreak(line, self.rule.condition)

@@ -267,9 +267,11 @@ def _json(text: str, file: str, error: type[ConfigError]) -> Any:
 def table(
     data: object, at: Location, keys: Iterable[str] | None = None, unlisted: Collection[str] = ()
 ) -> Any:
-    """Return data as a dict, after checking that it is a table.
+    """Return the data of a file as a dict, after checking that it is a table with allowed keys.
 
     Args:
+        data: The data.
+        at: Its location, for errors.
         keys: The keys that it may have; None for any.
         unlisted: Further keys, which hints omit.
 
@@ -301,6 +303,9 @@ def entries(data: object, at: Location, most: int, what: str) -> list[tuple[obje
     """Return the entries of a list, each with its location, such as `key[1]` for the first one.
 
     Args:
+        data: The list, from a file.
+        at: Its location.
+        most: How many entries it may have.
         what: What the entries are, in the plural, for errors.
 
     Raises:
@@ -364,7 +369,7 @@ def read_part(data: object, base: _Spec | type[_Spec], at: Location, **given: ob
 
 
 def with_values(base: _Spec | type[_Spec], values: Mapping[str, Any], at: Location) -> _Spec:
-    """Return a spec with other values, or a new spec of a class.
+    """Return a copy of the spec `base` with other values; if `base` is a class, return a new spec of it.
 
     Args:
         base: The spec or the class.
@@ -479,7 +484,7 @@ _TABLE = "a table of keys and values"
 
 
 def _expected(info: types.Type) -> str:
-    """Return the values that a type allows, in words."""
+    """Return in words the values that a type allows, such as `a whole number from 0 to 5`."""
     from msgspec import inspect as types
 
     match info:

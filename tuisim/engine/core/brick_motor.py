@@ -44,7 +44,8 @@ class BrickMotor:
 
     Args:
         tick_hz: Ticks per second.
-        weight_step: Largest change of speed in one tick that the weight allows; 0 is unlimited.
+        weight_step: Largest change of speed, in degrees per second, that the robot's weight allows in one tick; 0 for
+            any.
         limit_dps: Highest speed that noise can cause.
     """
 
@@ -315,7 +316,7 @@ class BrickMotor:
 
     @property
     def _ramp_down_step(self) -> float:
-        """Decrease of the speed in one tick while the motor slows down before its goal or end time."""
+        """Decrease of the speed in one tick before the motor's goal or end time, in degrees per second."""
         limit_dps = self.approach_dps2 * self._tick_s
         return min(self._weight_step, limit_dps) if self._weight_step else limit_dps
 

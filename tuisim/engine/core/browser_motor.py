@@ -28,7 +28,8 @@ class BrowserMotor:
 
     Args:
         tick_hz: Ticks per second.
-        ramp_step: Largest change of speed in one tick that the weight allows; 0 is unlimited.
+        ramp_step: Largest change of speed, in degrees per second, that the robot's weight allows in one tick; 0 for
+            any.
         limit_dps: Highest forward speed.
     """
 
@@ -122,9 +123,9 @@ class BrowserMotor:
         return turned * self.roll_sign + 0.0
 
     def _step_register(self, speed: float, noise_dps: float = 0.0) -> float:
-        """Return the value that the motor's speed register has one tick after the value `speed`.
+        """Return the value of the motor's speed register one tick after the value `speed`, in degrees per second.
 
-        The value comes closer to the set speed, and has the noise `noise_dps` added.
+        The value comes closer to the speed that the program has set, and has the noise `noise_dps` added.
         """
         target = self.speed_sp
         step = self._ramp_step
@@ -225,7 +226,7 @@ class BrowserMotor:
         return Glide([turned * sign + 0.0 for turned in turns], counts)
 
     def _advance_registers(self, ticks: int) -> list[float]:
-        """Advance the speed register by `ticks` ticks, and return its value after each tick."""
+        """Advance the speed register by `ticks` ticks; return its value after each tick, in degrees per second."""
         speed = self.speed_dps
         aim = self._aim
         speeds: list[float] = []

@@ -188,14 +188,14 @@ class Solids:
         return Leeway(part, (0.0, 0.0))
 
     def _push_aside(self, body: Body, boxes: list[Box], floors: list[float]) -> Leeway:
-        """Return the whole motion with the displacement that makes each gap of a body at least its value in `floors`.
+        """Return a `Leeway` that allows a tick's whole motion, and pushes the body aside so that its gaps are kept.
 
-        If there is no such displacement, return a `Leeway` that allows no motion.
+        If no such push keeps every distance, return a `Leeway` that allows no motion.
 
         Args:
             body: The robot's body after the whole motion.
             boxes: The obstacles near it.
-            floors: The smallest gap that is allowed to each wall and box, in the order of `_measure_gaps`.
+            floors: The smallest gap that is allowed to each wall and box, in mm, in the order of `_measure_gaps`.
         """
         x_mm = y_mm = 0.0
         there = body

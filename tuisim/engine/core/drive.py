@@ -338,7 +338,11 @@ class BrowserDrive:
             self.heading_deg = heading * 180.0 / math.pi
 
     def _step(self, left_deg: float, right_deg: float) -> tuple[float, float]:
-        """Return the step in mm and the turn in radians for a rotation of the wheels' motors."""
+        """Return how far the robot moves forwards, in mm, and turns counter-clockwise, in radians.
+
+        Args:
+            left_deg, right_deg: How far the wheels' motors turn.
+        """
         left_mm, right_mm = (
             left_deg / 360.0 * self._left_rim_mm,
             right_deg / 360.0 * self._right_rim_mm,

@@ -42,7 +42,7 @@ class EndStops:
         return self._high_flag if self._high_deg - self._at_deg <= NEAR_DEG else 0
 
     def step(self, motor: Motor, tick: int) -> None:
-        """Run one tick of the motor, as far as its end stops allow."""
+        """Run the motor by one tick, but not beyond its end stops."""
         before = motor.state()
         turned_deg = motor.step(tick, 0.0)
         there_deg = self._at_deg + turned_deg

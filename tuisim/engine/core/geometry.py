@@ -9,7 +9,7 @@ from tuisim.base.data_class import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Position and heading."""
+    """The robot's position in mm and its heading in degrees, in the coordinates of the world."""
 
     x_mm: float
     y_mm: float

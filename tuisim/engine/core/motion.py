@@ -411,7 +411,10 @@ class Motion:
     def _list_wheel_speeds(
         self, left: Motor, right: Motor
     ) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Return the present and the target speed of the left and of the right wheel, positive forwards."""
+        """Return the present and the target speed of the left and of the right wheel, in degrees per second.
+
+        Speeds are positive forwards.
+        """
         left_ends, right_ends = (left.moving_dps, left.aim_dps), (right.moving_dps, right.aim_dps)
         return (
             left_ends if self._left_mm_per_deg > 0 else (-left_ends[0], -left_ends[1]),

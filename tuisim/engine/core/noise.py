@@ -55,7 +55,10 @@ def generate_bytes(seed: int, tick: int, channel: str, size: int) -> bytes:
 
 @lru_cache(maxsize=8)
 def _list_errors(level: int) -> tuple[int, ...]:
-    """Return the error of a pixel for each value of a random byte: evenly distributed up to ±level, rounded."""
+    """Return the error of a pixel's channel for each value, 0 to 255, of a random byte.
+
+    The errors are whole numbers, evenly distributed from -level to level.
+    """
     return tuple(round(level * (2 * byte / 255 - 1)) for byte in range(256))
 
 
@@ -76,7 +79,7 @@ class Clamping(NamedTuple):
 
 @lru_cache(maxsize=8)
 def compute_clamping(level: int) -> Clamping:
-    """Return mean and variance of errors of up to ±level after clamping, for each value of a pixel."""
+    """Return mean and variance that noise of up to ±`level` has after clamping, for each value of a pixel."""
     errors = sorted(_list_errors(level))
     first = [0, *accumulate(errors)]
     second = [0, *accumulate(error * error for error in errors)]
@@ -247,7 +250,10 @@ def _generate_wheel_block(
 
 
 def draw_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[float], list[float]]:
-    """Return the speed noise of the left and the right wheel in `count` ticks, evenly distributed up to ±`most_dps`."""
+    """Return the speed noise of the left and the right wheel in `count` ticks from `tick` on, in degrees per second.
+
+    It is evenly distributed from -most_dps to most_dps.
+    """
     block, offset = divmod(tick, _BLOCK_TICKS)
     left, right = _generate_wheel_block(seed, block, most_dps)
     left, right = left[offset : offset + count], right[offset : offset + count]
@@ -260,12 +266,18 @@ def draw_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[f
 
 
 def draw_noise(seed: int, tick: int, most_dps: int) -> tuple[float, float]:
-    """Return the speed noise of the left and the right wheel in one tick, evenly distributed up to ±`most_dps`."""
+    """Return the speed noise of the left and the right wheel in one tick, in degrees per second.
+
+    It is evenly distributed from -most_dps to most_dps.
+    """
     left, right = _generate_wheel_block(seed, tick // _BLOCK_TICKS, most_dps)
     return left[tick % _BLOCK_TICKS], right[tick % _BLOCK_TICKS]
 
 
 def draw_slip(seed: int, tick: int) -> tuple[float, float]:
-    """Return a random number for the slip of each wheel in one tick, evenly distributed with a variance of 1."""
+    """Return a random factor for the slip of the left and of the right wheel in one tick.
+
+    The factors are evenly distributed around 0, with a variance of 1.
+    """
     left, right = _generate_wheel_block(seed, tick // _BLOCK_TICKS, sqrt(3), "slip")
     return left[tick % _BLOCK_TICKS], right[tick % _BLOCK_TICKS]

@@ -21,7 +21,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class RobotOutline:
-    """The robot's body, a rectangle, and where its sensors are."""
+    """The robot's body, a rectangle, and its sensors' places, in robot coordinates: x to the right, y forward."""
 
     half_width_mm: float
     """How far the body extends to either side: to the outer edge of its wheels."""
@@ -47,7 +47,7 @@ class RobotOutline:
 
     @property
     def corners_mm(self) -> tuple[Point, Point, Point, Point]:
-        """The corners of the body, counter-clockwise from the left rear."""
+        """The corners of the body in the robot's coordinates, counter-clockwise from the left rear."""
         side = self.half_width_mm
         return (
             (-side, self.back_mm),

@@ -118,7 +118,7 @@ class PenMarks:
             self._last, self._last_actions = point, int(actions)
 
     def _list_pixels(self, start: float, end: float) -> range:
-        """Return the columns or rows of the pixels that a stroke between two coordinates may reach."""
+        """Return the columns or rows of the pixels that a stroke between two x or y coordinates, in mm, may reach."""
         radius = self._pen.width_mm / 2
         return range(floor(min(start, end) - radius), int(max(start, end) + radius) + 1)
 

@@ -46,7 +46,7 @@ ORDERS: Mapping[type[SensorSpec], tuple[str, ...]] = {
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """How far a robot's body extends, in mm."""
+    """How far a robot's body extends from the midpoint between its wheels, in mm."""
 
     half_width_mm: float
     """How far the body extends to either side of its middle."""
@@ -55,7 +55,7 @@ class Body:
 
 
 def measure_body(robot: RobotSpec) -> Body:
-    """Return how far a robot's body extends."""
+    """Return how far a robot's body extends from the midpoint between its wheels."""
     return Body((robot.wheel_spacing_mm + robot.wheel_width_mm) / 2, robot.back_mm)
 
 

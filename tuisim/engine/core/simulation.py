@@ -146,7 +146,7 @@ class Simulation(Motion):
         return self.motors.index(motor)
 
     def press(self, hand_flags: int) -> None:
-        """Set which touch sensors are pressed by hand: those of `hand_flags`, and no others."""
+        """Set which touch sensors are pressed by hand, as flags from `find_hand_flags`; all others are released."""
         self.press_flags = self.press_flags & END_FLAGS | hand_flags
 
     def restart(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
@@ -240,7 +240,7 @@ class Simulation(Motion):
         return motor
 
     def _keep_motor(self, motor: Motor, kind: str, before: int, after: int) -> Motor:
-        """Return the motor, with another load if it now drives a wheel or no longer does.
+        """Return a motor that stays when the robot changes, with another load if it gains or loses a wheel.
 
         Args:
             motor: The motor.
@@ -275,7 +275,7 @@ REPORT_DEG = 0.25
 
 
 def find_place(number: int, motor: MotorSpec) -> tuple[str | int, str]:
-    """Return what identifies a motor when the robot changes: its port and its kind.
+    """Return the port and the kind of a motor, by which it is found again when the robot changes.
 
     A motor without a port has its number in place of the port.
     """

@@ -491,7 +491,7 @@ class RobotSpec(Spec):
 
     @property
     def wheel_motors(self) -> tuple[MotorSpec, MotorSpec]:
-        """The motors of the left and the right wheel, of a robot with wheels."""
+        """The motors of the left and the right wheel; on a robot without wheels, their port is `NO_PORT`."""
         return MotorSpec(self.left_port, self.left_motor), MotorSpec(
             self.right_port, self.right_motor
         )
@@ -626,7 +626,7 @@ class Obstacle(Spec):
 
 @spec
 class NoiseSpec(Spec):
-    """Sizes of the random errors of readings and wheel speeds."""
+    """The limits of the random errors of colour sensors and wheel speeds."""
 
     KEY = "noise"
 

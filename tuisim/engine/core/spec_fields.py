@@ -77,7 +77,7 @@ def choice(choices: Iterable[Any], *, default: Any = MISSING, **about: Any) -> A
 
 
 def some(choices: Iterable[str], *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a data class field for some of `choices`; `about` are arguments of `values.Choices`."""
+    """Return a data class field for any number of texts out of `choices`; `about` are arguments of `values.Choices`."""
     return _field(Choices(choices, **about), default)
 
 
@@ -175,7 +175,7 @@ class Spec:
         """
 
     def name_key(self, name: str) -> str:
-        """Return the name of a value as error messages show it."""
+        """Return the name of a value for error messages, after the spec's own key if it has one: `noise.light`."""
         return f"{self.KEY}.{name}" if self.KEY else name
 
     def __setattr__(self, name: str, value: object) -> NoReturn:

@@ -32,7 +32,7 @@ def _list_leaves(path: str, value: Value) -> Iterator[tuple[str, Value]]:
 
 
 def get_value(node: object, path: str) -> Any:
-    """Return the value of a spec at a path; where a field has several sensors, the path has the name of one of them.
+    """Return the value of a spec at a path such as `robot.wheel_diameter_mm` or `robot.color_sensors.left.x_mm`.
 
     Raises:
         LookupError: there is no such path.

@@ -30,7 +30,7 @@ def _build_set_points(values: Values) -> SetPoints:
 
 
 def build_effect(command: Command) -> Callable[[SimulatedMotor, int, Values], None]:
-    """Return a function that gives a command of the driver to a motor.
+    """Return a function that gives a motor this command of the kernel's driver.
 
     The function takes the motor, the time in ns, and the values of all set points.
     """
@@ -42,12 +42,12 @@ def build_effect(command: Command) -> Callable[[SimulatedMotor, int, Values], No
 
 
 def set_duty(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
-    """Set the duty of a motor in percent, as `DriverMotor.set_duty` does."""
+    """Set the duty of a motor to `values[0]` percent, as `DriverMotor.set_duty` does."""
     motor.set_duty(time_ns, int(values[0]))
 
 
 def set_position(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
-    """Set the value that the motor reports for its present position, without moving it."""
+    """Set the value that the motor reports for its present position to `values[0]` degrees, without moving it."""
     motor.wake(time_ns)
     motor.set_position(int(values[0]))
 

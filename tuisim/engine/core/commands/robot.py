@@ -26,7 +26,7 @@ def reset_gyro(sim: Simulation, _time_ns: int, _values: Values) -> None:
 
 
 def set_gyro(sim: Simulation, _time_ns: int, values: Values) -> None:
-    """Set the angle that the gyro shows at the current heading, in degrees clockwise."""
+    """Set the angle that the gyro shows at the current heading to `values[0]` degrees, clockwise."""
     sim.reset_gyro(values[0])
 
 

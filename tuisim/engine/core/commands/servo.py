@@ -50,7 +50,7 @@ def begin_anew(motor: ServoMotor, time_ns: int, values: Values) -> None:
 
 
 def run_freely(motor: ServoMotor, time_ns: int, values: Values) -> None:
-    """Run a motor with a constant power in hundredths of a percent; let it coast if the value is NaN."""
+    """Run a motor with a constant power in hundredths of a percent: 0 brakes it, NaN lets it coast."""
     motor.run_freely(time_ns // 1000, _read_optional(values[0]))
 
 
@@ -76,8 +76,10 @@ def run_control(motor: ServoMotor, time_ns: int, values: Values) -> None:
     Args:
         motor: The motor.
         time_ns: When the program gives the command.
-        values: Speed in counts per second, acceleration, duration in microseconds (NaN: endless), and an `Ending`. If
-            the `Ending` is NaN, only the controller changes; otherwise the motor begins to follow the controller.
+        values: The speed in counts per second, the acceleration in counts per second squared, the duration in
+            microseconds
+        (NaN: endless), and an `Ending`. If the `Ending` is NaN, only the controller changes; otherwise the motor begins
+        to follow the controller.
     """
     rate, acceleration, time_us, ending = values
     motor.control.run(
@@ -93,8 +95,9 @@ def move(motor: ServoMotor, time_ns: int, values: Values) -> None:
     Args:
         motor: The motor.
         time_ns: When the program gives the command.
-        values: Target in counts, speed and acceleration in counts per second (squared), and whether the target is
-            relative to the present position (1 or 0).
+        values: The target in counts, the speed in counts per second, the acceleration in counts per second squared, and
+            1
+        if the target is relative to the present position, else 0.
     """
     *numbers, relative = values
     motor.control.move_to_position(
@@ -150,28 +153,37 @@ def build_base(sim: Simulation, _time_ns: int, values: Values) -> None:
 
 
 def move_base(base: DriveBase, time_ns: int, values: Values) -> None:
-    """Make a drive base drive a distance and turn by an angle; `values` are mm, degrees and an `Ending`."""
+    """Make a drive base drive and turn; `values` are the distance in mm, the degrees clockwise, and an `Ending`."""
     distance_mm, turn_deg, _ = values
     base.move(time_ns // 1000, distance_mm, turn_deg, _find_ending(values, 2))
 
 
 def drive_base(base: DriveBase, time_ns: int, values: Values) -> None:
-    """Make a drive base drive until the next command; `values` are mm/s and a rate of turn in degrees per second."""
+    """Make a drive base drive until the next command; `values` are mm/s and degrees per second, clockwise."""
     base.drive(time_ns // 1000, *map(int, values))
 
 
 def stop_base(base: DriveBase, time_ns: int, values: Values) -> None:
-    """Stop controlling a drive base: run its motors with a power, or let them coast if the value is NaN."""
+    """Stop controlling a drive base, and run its motors with a power.
+
+    The value is the power in hundredths of a percent; 0 brakes the motors, NaN lets them coast.
+    """
     base.stop(time_ns // 1000, _read_optional(values[0]))
 
 
 def set_base(base: DriveBase, _time_ns: int, values: Values) -> None:
-    """Set the default speed, acceleration, turn rate and turn acceleration of a drive base."""
+    """Set the default speed, acceleration, turn rate and turn acceleration of a drive base.
+
+    `values` are these four numbers, in mm or degrees per second (squared).
+    """
     base.set_usual(*map(int, values))
 
 
 def set_slowing(base: DriveBase, _time_ns: int, values: Values) -> None:
-    """Set the decelerations of a drive base in straight moves and in turns; by default they equal its accelerations."""
+    """Set the decelerations of a drive base in straight moves and in turns; by default they equal its accelerations.
+
+    `values` are these two numbers, in mm and in degrees per second squared.
+    """
     base.set_slowing(*map(int, values))
 
 

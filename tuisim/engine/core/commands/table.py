@@ -36,7 +36,12 @@ def start_timed(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
 
 
 def start_move(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
-    """Run a motor to a position; `values` are the position in degrees, the speed, and 1 to turn backwards, else 0."""
+    """Run a motor to a position.
+
+    Args:
+        motor: The motor.
+        values: The position in degrees, the speed in degrees per second, and 1 to turn backwards or 0 to turn forwards.
+    """
     goal_deg, speed_dps, backwards = values
     motor.run_to(goal_deg, speed_dps, bool(backwards))
 
@@ -52,7 +57,10 @@ def set_count(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
 
 
 def limit_ramps(motor: BrickMotor, _time_ns: int, values: Values) -> None:
-    """Limit acceleration and deceleration of the motor's current move, in degrees per second squared."""
+    """Limit the acceleration and the deceleration of the motor's current move.
+
+    `values` are these two numbers, in degrees per second squared.
+    """
     motor.slowest_ramp_dps2, motor.approach_dps2 = values
 
 
@@ -223,7 +231,10 @@ CALLS: Mapping[Call, CallSpec] = {
 
 
 def list_parts(sim: Simulation, target: Target) -> Sequence[Any] | DriveBases:
-    """Return all parts of a simulation that a command for `target` can name, in the order of their numbers."""
+    """Return the parts of a simulation that a command for `target` can name by number, in the order of their numbers.
+
+    The result is the motors, the drive bases, or only the simulation itself for commands to the robot.
+    """
     if target is Target.MOTOR:
         return sim.motors
     return sim.bases if target is Target.BASE else (sim,)

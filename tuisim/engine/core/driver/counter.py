@@ -215,10 +215,10 @@ class Counter:
         return speed_dps
 
     def _search(self, time: int) -> tuple[int, int]:
-        """Return a change of the count in half degrees, and how long it took in ticks of the clock, to compute a speed.
+        """Return a change of the count, in half degrees, and the ticks of the clock in which it happened.
 
-        The driver looks back over more and more changes, until they took at least `MIN_SPAN`. If the count was the same
-        then as it is now, the result is 0 and 1.
+        The driver computes its speed from them. It looks back over more and more changes, until they took at least
+        `MIN_SPAN`. If the count was the same then as it is now, the result is 0 and 1.
 
         Args:
             time: Now, in ticks of the clock.

@@ -194,7 +194,7 @@ class DriverMotor(MotorDriver):
         return self._look_ns
 
     def find_last_look_ns(self, time_ns: int) -> int:
-        """Return when the driver last checks the motor's state up to the time `time_ns`, in ns.
+        """Return the time in ns of the last check of the motor's state that the driver makes up to `time_ns`.
 
         If even its next check is after `time_ns`, return the time of that check.
         """

@@ -125,7 +125,10 @@ class MotorDriver:
         self._set_duty(time_ns, duty)
 
     def run_to(self, target: int, speed_dps: int, action: StopAction) -> None:
-        """Run the motor to the position `target`, with a stop action there; the sign of the speed is ignored."""
+        """Run the motor to the position `target`, in degrees, where it stops with the stop action `action`.
+
+        The sign of the speed is ignored.
+        """
         self.speed_control.setpoint = -abs(speed_dps) if self.position > target else abs(speed_dps)
         self._start(self.speed_control)
         self.target = target
@@ -140,7 +143,13 @@ class MotorDriver:
         self._is_regulated = control is not None and control.setpoint != 0
 
     def halt(self, time_ns: int, action: StopAction, held: int | None = None) -> None:
-        """Stop the motor with a stop action; `held` is the position to hold, by default the present one."""
+        """Stop the motor with a stop action.
+
+        Args:
+            time_ns: The present time.
+            action: The stop action.
+            held: The position in degrees that the action `hold` holds; None for the present one.
+        """
         self.speed_control.clear()
         self.hold_control.clear()
         self._control = self._arrival_action = self._still_ns = None
@@ -154,7 +163,7 @@ class MotorDriver:
             self.axle.power(None if action is COAST else 0)
 
     def set_position(self, position: int) -> None:
-        """Set the value that the motor reports for its present position; it also becomes the target."""
+        """Set the value that the motor reports for its present position, in degrees; it also becomes the target."""
         self._offset = position - self._raw
         self.position = self.target = self.hold_control.setpoint = position
 
@@ -181,7 +190,7 @@ class MotorDriver:
                 self.counter.record_rest(time_ns * TICKS_PER_NS)
 
     def read_counts(self, count: int) -> None:
-        """Set the motor's position from a count of half degrees."""
+        """Set the motor's position, in degrees, from the count of its encoder, in half degrees."""
         self._raw = raw = count // 2 if count >= 0 else -(-count // 2)
         self.position = raw + self._offset
 

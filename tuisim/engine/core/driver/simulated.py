@@ -61,7 +61,7 @@ def choose_plant(spec: RunSpec, kind: str, *, free: bool) -> PlantSpec:
 
     Args:
         spec: The run.
-        kind: The kind of motor.
+        kind: One of `MOTOR_KINDS`.
         free: Whether the motor drives no wheel; otherwise it carries a wheel with its share of the robot.
     """
     plant = MODELS[kind].plant if kind in MODELS else _find_hub_plant(kind)
@@ -192,7 +192,7 @@ class SimulatedMotor(DriverMotor):
         return self.position, self.speed_dps
 
     def set_position(self, position: int) -> None:
-        """Set the value that the motor reports for its present position; it also becomes the target."""
+        """Set the value that the motor reports for its present position, in degrees; it also becomes the target."""
         before = self.position
         super().set_position(position)
         self.position_deg += position - before

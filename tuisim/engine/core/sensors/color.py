@@ -41,14 +41,14 @@ HUB_WHITE = 1024
 
 
 def percent(value: int, whole: int) -> float:
-    """Return a value as a percentage of `whole`, with the rounding that the course's programs expect."""
+    """Return `value` as a percentage of `whole`: 100 · (value / whole), as the course's programs compute it."""
     # Division comes first: the other order changes the last digit for 57 of the 256 channel values.
     return 100 * (value / whole)
 
 
 @dataclass(frozen=True, slots=True)
 class ColorReading:
-    """The reading of one colour sensor: mean channels, 0 … 255."""
+    """The reading of one colour sensor: its mean red, green and blue, 0 … 255."""
 
     red: float
     green: float
@@ -98,7 +98,7 @@ def measure_hub_channels(rgb: Sequence[int]) -> tuple[int, int, int]:
 
 
 def hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
-    """Return hue 0 … 360 and saturation and value 0 … 100, truncated to integers."""
+    """Return hue 0 … 360, saturation and value 0 … 100, truncated to integers; the arguments are from 0 to 255."""
     high, low = max(red, green, blue), min(red, green, blue)
     span = high - low
     if not span:
@@ -207,7 +207,7 @@ class Response(NamedTuple):
     """How much larger the value is on white."""
 
     def channel(self, value: float, is_over_field: bool) -> float:
-        """Return the sensor's value of a channel.
+        """Return the sensor's value for one channel, red, green or blue, of what it sees.
 
         Nothing reflects beyond the field, so the value on black is not added there.
 
@@ -252,7 +252,7 @@ def _has_floor(field: Field, diameter: int, corner: tuple[int, int]) -> bool:
 
 
 def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReading:
-    """Return what a colour sensor reads without noise: the mean colour of the mat under it."""
+    """Return the mean colour of the mat under a colour sensor, 0 … 255, without noise and the sensor's response."""
     if spec.strategy != "mean":
         box = field.read_box(spec.diameter_mm, *find_box_corner(pose, spec))
         return ColorReading(*weighted_mean(box, spec.diameter_mm, spec.strategy))

@@ -119,7 +119,10 @@ def remote(
 
 
 def compute_remote_bits(time_s: float, world: WorldSpec, by_hand: Collection[str] = ()) -> int:
-    """Return the buttons of the remote control that are pressed on channel 1, as bits; arguments as for `remote`."""
+    """Return the remote control's buttons that are pressed on channel 1, as bits of the sensor's mode `IR-REM-A`.
+
+    The arguments are as for `remote`.
+    """
     pressed = _find_pressed(1, time_s, world, by_hand)
     return _REM_A_NONE + sum(_REM_A_BUTTONS.get(button, 0) for button in pressed)
 

@@ -49,9 +49,10 @@ def _splice(
     """Return the trajectory that `build` makes for a motion from a start.
 
     Args:
-        start: The start.
-        spliced: The segment that is running at the start; None for none. If the new trajectory would go on with the
-            same acceleration, it is built from the begin of this segment instead.
+        start: Where, when and how fast the motion begins.
+        spliced: The segment of the previous trajectory that is running at the start; None for none. If the new
+            trajectory
+        would go on with the same acceleration, it is built from the begin of this segment instead.
         build: Returns the trajectory from a start.
     """
     trajectory = build(start)
@@ -64,12 +65,12 @@ BRAKING = Ending.BRAKE, Ending.BRAKE_SMART
 
 
 class Controller:
-    """A controller, which makes a motion follow a trajectory; without a trajectory it is passive.
+    """A controller, which makes a motor or drive base follow a trajectory; without a trajectory it is passive.
 
     Args:
-        settings: The settings, in counts.
+        settings: The limits, gains and tolerances, in counts.
         slips: Whether a new motion that follows a blocked one begins where the robot is, not where it should be. The
-            wheels of a real robot that pushes a wall slip, and their encoders count on.
+        wheels of a real robot that pushes a wall slip, and their encoders count on.
     """
 
     __slots__ = (
@@ -122,11 +123,11 @@ class Controller:
         return self.trajectory.find_segment(then_us).find_milli(then_us) - self._behind_milli
 
     def find_target(self, now_us: int, _motor: object) -> int:
-        """Return the position that a motor should have at a time in µs, in half thousandths of a count."""
+        """Return the position that the controlled motor should have at a time in µs, in half thousandths of a count."""
         return 2 * self.milli(now_us)
 
     def rate(self, now_us: int, _motor: object = None) -> int:
-        """Return the rate that the motion should have, in counts per second; 0 while the controller is passive."""
+        """Return the rate that the motion should have at a time in µs, in counts per second; 0 without a trajectory."""
         if self.trajectory is None:
             return 0
         then_us = now_us - self._paused_us
@@ -231,6 +232,7 @@ class Controller:
         """Begin a motion at a speed.
 
         Args:
+            now_us: The present time.
             measured: Returns where the motion is; the new one begins there if this controller is passive.
             rate, acceleration: In counts per second (squared).
             time_us: How long the motion takes; None if it does not end.
@@ -273,16 +275,16 @@ class Controller:
         self._goal = end._replace(rate=even.rate)
 
     def _limit(self, acceleration: int) -> int:
-        """Return the acceleration to use for a wanted one, without its sign.
+        """Return the acceleration with which a motion is planned, in counts per second squared, without its sign.
 
-        Firmware without a speed window uses at most the acceleration in the settings.
+        It is the given one; firmware without a speed window uses at most the acceleration in the settings.
         """
         if self.settings.speed_window_ms:
             return abs(acceleration)
         return min(abs(acceleration), self.settings.acceleration)
 
     def _is_running_evenly(self, now_us: int, rate: int) -> bool:
-        """Return whether the motion already runs evenly at a rate, so that the same command would change nothing."""
+        """Return whether the motion already runs at a constant rate, so that a command to do so changes nothing."""
         if (
             not self.timed
             or self.trajectory is None
@@ -335,7 +337,7 @@ class Controller:
         Args:
             now_us: The present time.
             passed_us: How long the motion has lagged behind, but no longer than since the last call.
-            milli, rate: Position and rate of the motion.
+            milli, rate: The real position of the motion in thousandths of a count, and its rate in counts per second.
         """
         settings = self.settings
         trajectory = self.trajectory
@@ -373,7 +375,7 @@ class Controller:
 
         Args:
             now_us: The present time.
-            milli, rate: Position and rate of the motion.
+            milli, rate: The real position of the motion in thousandths of a count, and its rate in counts per second.
         """
         end_us = self.end_us
         is_windowed = self.settings.speed_window_ms > 0

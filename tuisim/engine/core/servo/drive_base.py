@@ -49,9 +49,10 @@ Pace = tuple[int, ...]
 def compute_usual_settings(
     law: MotorLaw, distance: ControlSettings, heading: ControlSettings
 ) -> tuple[Pace, Pace]:
-    """Return the default speeds and accelerations of a drive base: in mm and degrees, and in counts.
+    """Return the default speeds and accelerations of a drive base twice: in mm and degrees, and in counts.
 
-    Those in counts may be more exact, because those in mm and degrees are whole numbers.
+    Those in counts may be more exact, because those in mm and degrees are whole numbers. Each `Pace` has the speed and
+    the acceleration of straight moves, then those of turns.
 
     Args:
         law: The firmware that moves the motors.
@@ -78,7 +79,7 @@ def compute_new_pace(law: MotorLaw, wheel_diameter_mm: float, axle_track_mm: flo
 
 
 def describe_new_motors(law: MotorLaw) -> dict[str, dict[str, str]]:
-    """Return the settings of a new motor in words, by kind and by name of the setting."""
+    """Return the limits and tolerances of a new motor as texts, by kind of motor and then by name of the setting."""
     return {kind: compute_motor_settings(law, kind).describe() for kind in MODELS}
 
 
@@ -185,7 +186,7 @@ class DriveBase:
         return left + right, left_turning - right_turning
 
     def done(self, now_us: int) -> bool:
-        """Return whether no move of the drive base is under way."""
+        """Return whether no move is under way at a time in µs: none was begun, or the last one is complete."""
         if self._goal is not None:
             place, begin, way = self._goal
             return abs(self.find_millis(now_us)[place] - begin) >= way
@@ -305,7 +306,7 @@ class DriveBase:
         self._take(Ending.HOLD)
 
     def drive(self, now_us: int, speed_mm_s: int, turn_rate_dps: int) -> None:
-        """Begin to drive at a speed and a rate of turn, until the next command."""
+        """Begin to drive at a speed and a clockwise rate of turn, until the next command."""
         self._begin(now_us)
         distance = self.distance
         heading = self.heading
@@ -371,7 +372,7 @@ class DriveBase:
         return None if one is None or other is None else max(one, other)
 
     def find_target(self, now_us: int, motor: ServoMotor) -> int:
-        """Return the position that a motor should have at a time in µs, in half thousandths of a count."""
+        """Return the position that one of the motors should have at a time in µs, in half thousandths of a count."""
         if now_us != self._at_us:
             self._follow_gyro()
             self._at_us, self._millis = (
@@ -382,7 +383,7 @@ class DriveBase:
         return total + difference if motor is self.left else total - difference
 
     def rate(self, now_us: int, motor: ServoMotor) -> float:
-        """Return the rate that a motor should have, in counts per second."""
+        """Return the rate that one of the motors should have at a time in µs, in counts per second."""
         total = self.distance.rate(now_us)
         difference = self.heading.rate(now_us)
         return (total + difference) / 2 if motor is self.left else (total - difference) / 2

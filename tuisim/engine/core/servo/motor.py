@@ -189,9 +189,9 @@ class ServoMotor:
         return self.counts_per_s if self._course is None else round(self._guide.rate(now_us, self))
 
     def read_turn(self, now_ns: int) -> tuple[float, float]:
-        """Return position and speed as a program reads them at a time, in ns, after the last tick.
+        """Return the position in degrees and the speed in degrees per second that a program reads at a time.
 
-        The position is in degrees, the speed in degrees per second.
+        `now_ns` is that time, after the last tick.
         """
         now_us = now_ns // 1000
         rate = self.find_counts_per_s(now_us, self.control.settings.speed_window_ms)
@@ -199,7 +199,7 @@ class ServoMotor:
         return self.find_milli(now_us) * deg / MILLI, rate * deg
 
     def measure_start(self, now_us: int) -> Segment:
-        """Return position and speed of the motor, as the encoder shows them, as the start of a trajectory."""
+        """Return the start of a trajectory at a time in µs: position and speed as the motor's encoder shows them."""
         return Segment(
             now_us,
             round(self.find_milli(now_us) / MILLI) * MILLI,
@@ -260,7 +260,7 @@ class ServoMotor:
         return self._guide is not None and self._ending not in (Ending.HOLD, Ending.NONE)
 
     def _limit_speed(self) -> None:
-        """Compute and store the highest speed that the motor's power allows."""
+        """Store the highest speed that the motor reaches with the highest power that its controller allows."""
         self._actuation = self.control.actuation
         self._fastest_deg = find_steady_dps(self.kind, self._actuation) * self._tick_s
 
@@ -464,7 +464,10 @@ class ServoMotor:
         return turned
 
     def _end(self, now_us: int) -> None:
-        """End the motor's motion: from now on it stands still, and holds, brakes or coasts."""
+        """End the motor's motion: the motor stands still, and holds, brakes or coasts, as its command says.
+
+        Do nothing if the motor has to follow its guide for longer, until it is at rest.
+        """
         guide = self._guide
         holds = self._ending == Ending.HOLD
         rate = self.measure_start(now_us).rate

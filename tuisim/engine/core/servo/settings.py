@@ -28,7 +28,7 @@ _ONE = 1 << 16
 
 @dataclass(frozen=True, slots=True)
 class ControlSettings:
-    """Settings of a controller, in counts."""
+    """The limits, gains and tolerances of a controller of the Pybricks firmware, in counts."""
 
     scale: int
     """Counts per unit of the program, times 65,536: the firmware computes with such fractions."""
@@ -70,14 +70,14 @@ class ControlSettings:
         return int(self.counts_per_unit * STEPS + 1e-3)
 
     def tell(self, counts: float) -> int:
-        """Return a rate or a setting, given in counts, in the program's units.
+        """Return a rate, acceleration or tolerance, given in counts, as a whole number of the program's units.
 
-        Firmware that computes with torques truncates the result to whole units; other firmware rounds it.
+        Firmware that computes with torques truncates the number; other firmware rounds it.
         """
         return int(counts * STEPS / self._steps) if self.torque_unm else self.units(int(counts))
 
     def take(self, units: int) -> int:
-        """Return a setting in counts, given in the program's units. `tell` turns the result into the same units."""
+        """Return a rate, acceleration or tolerance, given in the program's units, in counts; the inverse of `tell`."""
         return -(-units * self._steps // STEPS) if self.torque_unm else self.counts(units)
 
     def counts(self, units: int) -> int:
@@ -124,7 +124,7 @@ BATTERY_V = 8.0
 
 @dataclass(frozen=True, slots=True)
 class ServoKind:
-    """Settings that differ between kinds of motor; angles in degrees, power in percent."""
+    """The settings of one kind of motor; angles in degrees, power in percent."""
 
     speed: int
     position_tolerance_deg: int
@@ -137,7 +137,7 @@ class ServoKind:
     """The voltage at which the motor has its highest torque."""
 
     def compute_gains(self, tolerance_deg: int) -> tuple[int, ...]:
-        """Return kp and ki for a tolerance of the position in degrees, and kd for the usual tolerance."""
+        """Return the gains kp, ki and kd: kp and ki for a tolerance in degrees, kd for the motor's usual tolerance."""
         torque_unm = self.torque_unm * min(self.max_mv, TUNED_MV) // self.max_mv
         kp = torque_unm // tolerance_deg
         return kp, kp // 2, torque_unm // self.position_tolerance_deg // 8
@@ -212,7 +212,7 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
 
 
 def find_steady_dps(kind: str, actuation: int) -> float:
-    """Return the speed that a kind of motor reaches in the end at a power; 0 if friction keeps it at rest.
+    """Return the speed in degrees per second that a motor reaches at a power; 0 if friction keeps it at rest.
 
     Args:
         kind: One of `MOTOR_KINDS`.

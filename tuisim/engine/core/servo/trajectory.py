@@ -28,17 +28,20 @@ def divide(dividend: int, divisor: int) -> int:
 
 
 def compute_duration_us(change: int, rate: int) -> int:
-    """Return how long a change takes, in microseconds, at a rate per second."""
+    """Return how long something takes to change by `change` at `rate` per second, in whole milliseconds given in µs."""
     return divide(change * 1000, rate) * MS_US
 
 
 def rate_change(acceleration: int, time_us: int) -> int:
-    """Return how much an acceleration changes a rate in a time, which is in microseconds."""
+    """Return by how much an acceleration, in counts per second squared, changes a rate during a time in µs."""
     return divide(acceleration * (time_us // MS_US), 1000)
 
 
 class Segment(NamedTuple):
-    """One part of a trajectory, with constant acceleration, given by its start."""
+    """One part of a trajectory, with constant acceleration: its start time, and position and rate at that time.
+
+    Positions are in thousandths of a count, rates and accelerations in counts per second (squared).
+    """
 
     start_us: int
     milli: int
@@ -180,13 +183,13 @@ def _speed_up(
 ) -> tuple[int, int, int]:
     """Return where in a move the rate is constant: the begin and the end of that part in counts, and that rate.
 
-    Begin and end are equal if the move is too short to reach `top_rate`.
+    Begin and end are equal if the move is too short to reach `top_rate`. Rates are in counts per second.
 
     Args:
         length: How far the move goes, in counts.
         from_rest: Where the move would have begun if it had sped up from rest; 0 or less.
         top_rate: The highest rate.
-        acceleration, slowing: How the move speeds up before that part, and how it stops after it.
+        acceleration, slowing: Acceleration before that part and deceleration after it, in counts per second squared.
     """
     ramps = top_rate * top_rate * (acceleration + slowing) // (2 * acceleration * slowing)
     if length - from_rest >= ramps:
@@ -201,9 +204,9 @@ def build_endless_move(start: Segment, rate: int, acceleration: int, fastest: in
 
     Args:
         start: Where the motion begins; its acceleration is ignored.
-        rate: The rate to reach.
-        acceleration: How the motion speeds up or down.
-        fastest: The highest rate.
+        rate: The rate to reach, in counts/s; its sign is the direction.
+        acceleration: Acceleration or deceleration until then, in counts/s².
+        fastest: The limit of the rate, in counts/s.
     """
     start_us = start.start_us
     limit = min(fastest, acceleration * ENDLESS_S)
@@ -228,9 +231,9 @@ def build_timed_move(
     Args:
         start: Where the move begins; its acceleration is ignored.
         time_us: How long the move takes.
-        rate: The rate to reach.
-        acceleration: How the move speeds up and stops.
-        fastest: The highest rate.
+        rate: The rate to reach, in counts/s; its sign is the direction.
+        acceleration: Acceleration at the beginning and deceleration at the end, in counts/s².
+        fastest: The limit of the rate, in counts/s.
 
     Raises:
         ValueError: the time is negative, or longer than half an hour.
