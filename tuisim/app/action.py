@@ -128,7 +128,7 @@ def _call(action: Action[Any, Any]) -> str:
 
 
 def fill_keys(app: App[Any], text: str) -> str:
-    """Return a text in which each id of an action in braces, such as `{run}`, is replaced by the action's key."""
+    """Return `text` with each action id in braces, such as `{run}`, replaced by the key of that action."""
     return app.fill_keys(text) if isinstance(app, ActionHost) else text
 
 
@@ -194,7 +194,10 @@ class ActionHost(DOMNode):
         self.app.notify(self.fill_keys(text), markup=False)
 
     def fill_keys(self, text: str) -> str:
-        """Return a text in which each id of an action in braces, such as `{run}`, is replaced by the action's key."""
+        """Return `text` with each action id in braces, such as `{run}`, replaced by the key of that action.
+
+        Other words in braces stay as they are.
+        """
         return _ID.sub(
             lambda match: (
                 self.ACTIONS[match[1]].key_label if match[1] in self.ACTIONS else match[0]
@@ -232,7 +235,7 @@ CLICKED_KEYS: tuple[KeyWord, ...] = (("letters", "edit"), ("esc", "keys"), ("^p"
 def find_panel_keys(focused: DOMNode | None) -> tuple[KeyWord, ...]:
     """Return the `FOOTER_KEYS` of the focused widget, or of the nearest widget around it that has `FOOTER_KEYS`.
 
-    The tuple is empty if no widget has them, or no widget has the focus.
+    The tuple is empty if no widget has them, or if no widget has the focus.
     """
     around = focused.ancestors_with_self if focused else ()
     return next((node.FOOTER_KEYS for node in around if hasattr(node, "FOOTER_KEYS")), ())
@@ -297,7 +300,10 @@ class ActionWords(Widget):
 
 
 async def press(screen: Screen[Any], key: str) -> None:
-    """Run the action that is bound to a key by the focused widget, or by the nearest widget around it."""
+    """Run the action that the focused widget binds to a key, or the nearest widget around it that binds it.
+
+    If none of these widgets binds the key, do nothing.
+    """
     for node in (screen.focused or screen).ancestors_with_self:
         if bound := find_bindings(node).key_to_bindings.get(key):
             await screen.app.run_action(bound[0].action, node)
@@ -403,7 +409,7 @@ COLUMN_CELLS = 50
 
 
 def build_key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Text:
-    """Return a table of keys by group, in as many columns as fit; a group without a name has no heading.
+    """Return a table of keys by group, `width` cells wide, in as many columns as fit; a group named "" has no heading.
 
     The table is one text, not nested tables, which Textual would measure and draw several times.
     """
@@ -424,7 +430,7 @@ _Group = tuple[str, list[KeyWord]]
 
 
 def _distribute_groups(groups: list[_Group], count: int) -> list[list[_Group]]:
-    """Distribute groups over columns, in their order, so that the longest column is as short as possible."""
+    """Return the groups in `count` columns, in their order, so that the longest column is as short as possible."""
 
     def fill_columns(max_rows: int) -> list[list[_Group]]:
         columns: list[list[_Group]] = [[]]

@@ -223,7 +223,7 @@ class LabApp(PanelMessages):
         return tuple(problems)
 
     def complain(self, error: TuisimError) -> None:
-        """Show an error in the app, and also in the notebook cell that has caused it."""
+        """Show an error in the app; if a cell of a notebook controls the app, also show it below that cell."""
         self.tell_server("problem", text=str(error))
         super().complain(error)
 
@@ -433,7 +433,7 @@ class LabApp(PanelMessages):
         return time.monotonic() < self._awake_until_s
 
     def _wake(self) -> None:
-        """Poll the run at the full frame rate for a while, since something has happened."""
+        """Poll the run at the full frame rate for the next `_AWAKE_S` seconds, since something has happened."""
         self._awake_until_s = time.monotonic() + _AWAKE_S
         if self._frame_timer:
             self._frame_timer.resume()
@@ -577,7 +577,7 @@ class LabApp(PanelMessages):
 
     @property
     def _looks_back(self) -> bool:
-        """Whether a past instant is in view, even one within the newest tick."""
+        """Whether an earlier instant than the newest is in view, even an earlier line of the newest tick."""
         return self.run_controller.timeline.at is not None or self.debugger.position is not None
 
     def action_target(self) -> ActionContext:

@@ -148,9 +148,9 @@ class DebugController:
 
     @property
     def _count_words(self) -> str:
-        """The number of active breakpoints as text, with the key that lists them.
+        """Return the number of active breakpoints in words, with the key that lists them.
 
-        The text is empty if all active breakpoints are on lines, which the code panel marks.
+        The text is empty if all active breakpoints are on lines, because the code panel marks those.
         """
         active = [entry for entry in self.breaks if not entry.disabled]
         if all(entry.find_line() for entry in active):
@@ -286,7 +286,7 @@ class DebugController:
 
     @property
     def looks_back(self) -> bool:
-        """Whether a past instant is in view, even one within the newest tick."""
+        """Whether an earlier instant than the newest is in view, even an earlier line of the newest tick."""
         return self.position is not None or self._run_controller.timeline.at is not None
 
     @property
@@ -305,7 +305,7 @@ class DebugController:
         return protocol.Inspect(self.watches, self._thread, self._frame)
 
     def choose_frame(self, by: int) -> None:
-        """Show the variables of another frame of the call stack.
+        """Show the variables of another frame of the call stack, at most of its first or last one.
 
         Args:
             by: Number of frames: positive towards the callers, negative towards the called functions.
@@ -315,7 +315,7 @@ class DebugController:
             self._inspect_again()
 
     def choose_thread(self) -> None:
-        """Show the variables of the next thread of the program."""
+        """Show the variables of the next thread of the program; after the last thread comes the first."""
         if self.view and (threads := self.view.inspected.threads):
             names = [thread.name for thread in threads]
             index = (
@@ -494,7 +494,11 @@ class DebugController:
         return Position(timeline.newest) if timeline.recording and timeline.newest >= 0 else None
 
     def step(self, how: protocol.LineStep) -> None:
-        """Step to the next recorded line if the past is in view, else to the next line of the live program."""
+        """Step to a further line: a recorded one if the past is in view, else a line of the live program.
+
+        Args:
+            how: Whether to step into calls, over them, or out of the function.
+        """
         self.go_on(protocol.StepLine(how))
 
     def run_to(self, line: int) -> None:

@@ -27,7 +27,9 @@ def find_pose(run: Recording, time_s: float) -> Pose:
 
 
 def find_run_before(later: Recording) -> Recording | None:
-    """Return the newest stored run of the same program file that the run `later` repeats; None if there is none.
+    """Return the newest stored run before the run `later` that `later` repeats; None if there is none.
+
+    Only runs of the same program file are compared.
 
     Raises:
         LogError: the store cannot be read.
@@ -37,7 +39,7 @@ def find_run_before(later: Recording) -> Recording | None:
 
 
 def find_similar_run(program: Program, spec: RunSpec) -> StoredRun | None:
-    """Return the newest stored run of a program file, if it had the same text and specification; else None."""
+    """Return the newest stored run of a program file if it had this text and this specification; else None."""
     with suppress(LogError):
         run = next(_load_runs(program, ""), None)
         if run and run.program.text == program.text and run.spec == spec:
@@ -50,7 +52,7 @@ def _load_runs(program: Program, before: str) -> Iterator[StoredRun]:
 
     Args:
         program: The program.
-        before: Id of a run: only runs before it; empty for all.
+        before: Id of a run; only older runs are returned. Empty for all runs.
     """
     from tuisim.engine.runs.store import RunStore
 

@@ -48,7 +48,7 @@ def _describe_missing(words: str) -> str:
 
 
 def _list_parts(words: str) -> str | None:
-    """Return the parts on the robot's ports that an error lists, with short names; None if it lists none."""
+    """Return the part of an error that lists the robot's parts by port, with short names; None if it lists none."""
     match = _PARTS.search(words)
     return None if match is None else _PART.sub(r"\1 \2", match["parts"])
 

@@ -80,7 +80,10 @@ class Feed:
         return self._charted + POINTS_A_FEED < self.recording.telemetry.count
 
     def describe_lag(self) -> str:
-        """Return up to which time the chart has what a program printed faster than it is read; empty without a lag."""
+        """Return up to which time the chart shows the printed samples, such as `drawn to 3.0 of 9.5 s`.
+
+        The text is empty if the chart shows nearly all, because the program does not print faster than the app reads.
+        """
         hz = self.recording.spec.profile.tick_hz
         tick = self.recording.rows.find_unread_tick()
         end = self.recording.telemetry.count

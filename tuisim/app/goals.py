@@ -100,7 +100,7 @@ class GoalsController:
         return (was.background, was.start) == (now.background, now.start)
 
     def change(self, file: GoalsFile | None) -> None:
-        """Replace the goals by changed goals of the same task, and judge the run in view again."""
+        """Replace the goals by changed goals of the same task, None for no goals, and judge the run in view again."""
         self.file = file
         self._forget()
 

@@ -27,7 +27,7 @@ class LabHost(ActionHost, TerminalApp):
         super().action_act(name)
 
     def answer(self, text: str) -> None:
-        """Show the result of a key until another key does something.
+        """Show a notice with the result of a key until another key does something.
 
         Args:
             text: Ids of actions in braces, such as `{run}`, are shown as their keys.

@@ -27,7 +27,7 @@ class StoredBreaks:
 
 
 def load_kept(program: str) -> StoredBreaks:
-    """Return the stored breakpoints and watches of a program; none if nothing is stored or it cannot be read.
+    """Return the stored breakpoints and watches of a program; none of either if nothing is stored or can be read.
 
     Args:
         program: Its path, or its name if it is in no file.
@@ -61,7 +61,7 @@ def keep(program: str, stored: StoredBreaks) -> None:
 
 
 def choose_sign(entry: Breakpoint) -> str:
-    """Return the sign of a breakpoint beside its line: whether it is disabled, or has a condition."""
+    """Return the sign of a breakpoint beside its line: `○` if it is disabled, `◆` if it has a condition, else `●`."""
     if entry.disabled:
         return "○"
     return "◆" if isinstance(entry.rule, LineBreak) and entry.rule.condition else "●"

@@ -109,7 +109,7 @@ class Loader:
         )
 
     def prepare_mat_again(self) -> None:
-        """Prepare the mat again if that has failed before."""
+        """Prepare the mat of the next run again, unless it is being prepared already."""
         if not self.is_preparing:
             self.prepare_mat()
 
@@ -523,7 +523,7 @@ class Loader:
 
         Args:
             differences: The new values of the changed settings.
-            program: The program of the next run.
+            program: The program of the next run; None for none.
             source: The program with its magic line, if its text has changed; else None.
             gone: The settings that the file no longer has.
         """
@@ -565,7 +565,10 @@ def _plan_in_world(
 
 
 def _find_program_path(word: str) -> str:
-    """Return the path of the program that a world file names by its path, or as an example."""
+    """Return the path of the program that a world file names by its path, or by the name of an example.
+
+    A name that is neither is returned unchanged.
+    """
     from tuisim.programs.program_file import list_programs
 
     examples = {name: path for name, path, _ in list_programs()}

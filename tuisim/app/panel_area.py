@@ -186,7 +186,7 @@ class PanelArea(Container):
             self.request({panel: True})
 
     def show_next_panel(self, by: int) -> str:
-        """Return the id of the panel that is `by` panels after the focused one; empty if there is none.
+        """Return the id of the panel that is `by` panels after the focused one; empty if no panel can have the focus.
 
         In an area with room for only one panel, count from the shown panel, and show the result.
         """
@@ -251,7 +251,10 @@ class PanelArea(Container):
         return self.preset
 
     def show_next_preset(self) -> None:
-        """Show the next preset that differs from the present one in its panels or in their arrangement."""
+        """Show the next preset that differs from the present one in its panels or in their arrangement.
+
+        After the last preset comes the first.
+        """
         before = self.arrangement.boxes
         presets = list(Preset)
         index = presets.index(self.preset)
@@ -315,7 +318,10 @@ class PanelArea(Container):
             self.lay_out()
 
     def make_room(self, panel: str, columns: int, rows: int) -> None:
-        """Enlarge a panel to this size at the cost of the panels beside it; if that is not enough, show it alone."""
+        """Enlarge a panel to a width in columns and a height in rows, at the cost of the panels beside it.
+
+        If that is not enough, show the panel alone.
+        """
         if panel != self.alone:
             self._roomy = panel, columns, rows
             self.lay_out()

@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Pending:
-    """User actions that were sent to the run but are not in its newest record yet."""
+    """User actions that were sent to the run but are not in its newest record yet.
+
+    With them, the app shows the effect of an action before the run has recorded it.
+    """
 
     _after: tuple[int, int] = (-1, 0)
     """Tick of the record after which the actions were sent, and the number of actions that it counts."""

@@ -48,7 +48,7 @@ class PlotStrip(JoinedStrip):
         self._spare = spare
 
     def make(self) -> list[Segment]:
-        """Return the row as segments, with characters only."""
+        """Return the row as Textual segments, with characters only."""
         return list(self._spare())
 
     def _part(self, start: int, end: int) -> PlotStrip:
@@ -75,7 +75,10 @@ class PlotView(LinesView):
 
     @property
     def graphics(self) -> Graphics | None:
-        """How pixels are drawn now; None for characters: without colours, or on a slow link while the chart changes."""
+        """How pixels are drawn now; None if characters are drawn instead.
+
+        Characters are drawn if there are no colours, and on a slow link while the chart changes.
+        """
         picture_mode = find_picture_mode(self.app)
         is_coarse = self.app.no_color or (picture_mode.is_slow() and not self._sharpness.is_still)
         return None if is_coarse else picture_mode.graphics

@@ -30,7 +30,7 @@ class ReasonTour:
         """Index of the reason in view; None before the first, and after the last."""
 
     def is_about(self, recording: Recording | None, has_ended: bool) -> bool:
-        """Return whether the reasons are those of a run, even if they are still being searched for.
+        """Return whether the reasons are those of a run, or are those that are still being searched for.
 
         Args:
             recording: The run.
@@ -42,7 +42,7 @@ class ReasonTour:
     def has_gone_wrong(self, runs: RunController) -> bool:
         """Return whether the run in view is known to have gone wrong, or repeats the earlier run beside it.
 
-        The repetition may differ from the earlier run, which is also a reason.
+        A repetition may differ from the earlier run, which is also a reason.
         """
         recording = runs.timeline.recording
         earlier = runs.earlier

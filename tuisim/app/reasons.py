@@ -32,7 +32,7 @@ FoundReasons = tuple[tuple["Reason", ...], "Recording | None"]
 
 
 def look(context: ActionContext) -> None:
-    """If the run in view has ended, begin once to search in the background for the reasons why it went wrong."""
+    """Begin to search in the background for the reasons why the run in view went wrong, once after its end."""
     recording = context.runs.timeline.recording
     tour = context.reasons
     if recording is None or context.runs.state is not RunPhase.ENDED:

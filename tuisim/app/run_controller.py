@@ -243,10 +243,7 @@ class RunController:
         return instant, line, down
 
     def _find_present(self, record: TickRecord) -> Present | None:
-        """Return what the program would read at the pause in view.
-
-        The result is None if it is not paused at the instant of a record.
-        """
+        """Return what the program would read at the pause in view; None if `record` is not the record of that pause."""
         pause = self.shown_pause
         is_there = pause is not None and (pause.past or self._is_paused)
         return pause.find_present(record, self.spec.robot) if pause and is_there else None
@@ -368,7 +365,7 @@ class RunController:
         return branch
 
     def replay(self, run: StoredRun) -> None:
-        """Show a stored run as a run that has ended; only while no run is live."""
+        """Show a stored run as a run that has ended; call this only while no run is live."""
         self.close()
         self._end = run.state
         self._show_recording(Recording(run))
@@ -379,7 +376,10 @@ class RunController:
         self.earlier = earlier if earlier and later and is_comparable(earlier, later) else None
 
     def set_companion(self, companion: Recording | None) -> None:
-        """Draw this run beside every later run; None draws the previous run beside them again."""
+        """Draw a run beside the run in view and beside every later run.
+
+        None draws the previous run beside every later run again.
+        """
         self.companion = companion
         self.shows_earlier = True
         self.show_earlier(companion)
@@ -470,7 +470,14 @@ class RunController:
         self._moved = True
 
     def load(self, plan: NextRun, program: Program | None) -> None:
-        """Set another world or program for the next run while no run is live; the robot goes to its start."""
+        """Set another world or program for the next run; the robot goes to the start pose of that world.
+
+        Call this only while no run is live.
+
+        Args:
+            plan: The plan of the next run.
+            program: The program of the next run; None for none.
+        """
         self.timeline.go(None)
         self.next_run = plan
         self.program = program
@@ -478,9 +485,9 @@ class RunController:
         self._set_start(plan.spec.world.start)
 
     def change(self, plan: NextRun) -> None:
-        """Set a plan of the next run with the same start pose, while no run is live; the robot stays where it is.
+        """Set a plan of the next run with the same start pose; call this only while no run is live.
 
-        The view returns from the past, so that the change is visible.
+        The robot stays where it is. The view returns from the past, so that the change is visible.
         """
         self.timeline.go(None)
         self.next_run = plan

@@ -66,7 +66,11 @@ class NearSampleWatch:
         """The last run of which a line was reported."""
 
     def look(self, recording: Recording, rows: list[OutputRow]) -> list[str]:
-        """Return a line for the output about a near sample in new rows; none without one, or after the first."""
+        """Return in a list the line for the output about a printed row that is nearly a sample; at most one in each
+        run.
+
+        The list is empty if no new row is nearly a sample, or if the run has had its line already.
+        """
         if self._told is recording or not (words := describe_near_sample(rows)):
             return []
         self._told = recording
@@ -74,7 +78,9 @@ class NearSampleWatch:
 
 
 def describe_contacts(telemetry: TelemetryView, spec: RunSpec) -> str:
-    """Return in words where something solid stopped or pushed the robot, or that it left the field; else "".
+    """Return in words where something solid stopped or pushed the robot, and whether it left the field.
+
+    The text is empty if nothing of this happened.
 
     Raises:
         LogError: the recording is damaged.

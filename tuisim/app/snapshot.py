@@ -177,7 +177,7 @@ class Snapshot:
 
     @property
     def turning(self) -> str:
-        """A text on wheels that still turn at the end of a run, to append to the run's state; else an empty text."""
+        """Words to append to the state of an ended run whose wheels still turn; empty in any other case."""
         is_end = self.state is RunPhase.ENDED and not (self.past or self.placed)
         turns = self.instant.left_speed_dps or self.instant.right_speed_dps
         return f", {self.wheels}" if is_end and turns else ""
@@ -198,7 +198,7 @@ class Snapshot:
 
     @property
     def planned(self) -> RunSpec:
-        """The specification of the next run."""
+        """The specification of the next run; without a plan of its own, that of the run in view."""
         return self.next_spec or self.spec
 
 

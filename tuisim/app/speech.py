@@ -64,7 +64,7 @@ class Voice:
     """Plays the sounds of the brick, one at a time; a sound that arrives while another one plays is dropped.
 
     Args:
-        quiet: Never make a sound.
+        quiet: Whether never to make a sound.
         environment: Variables that tell whether the terminal is remote; by default the variables of this process.
     """
 

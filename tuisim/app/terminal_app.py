@@ -162,7 +162,7 @@ class TerminalApp(BufferedApp):
         timeout: float | None = None,
         markup: bool = False,
     ) -> None:
-        """Show a notice to the user on borders of the panels.
+        """Show a notice to the user, on borders of the panels; see `Notices`.
 
         Args:
             message: The text, without markup.
@@ -180,7 +180,7 @@ class TerminalApp(BufferedApp):
         self.notices.clear()
 
     async def on_event(self, event: events.Event) -> None:
-        """Handle an event; for a resize, lay out at least the minimum size; ignore clicks outside the terminal."""
+        """Handle an event; a resize gives the layout at least the minimum size."""
         if isinstance(event, events.Resize):
             was = self.too_small
             self.too_small = event.size if is_too_small(event.size) else None
@@ -311,7 +311,10 @@ class TerminalApp(BufferedApp):
 
     @on(ActionAsked)
     def act_as_asked(self, event: ActionAsked) -> None:
-        """Run the action of a button of the web page, also while the user types; a dialog must be closed first."""
+        """Run the action that a button of the web page requests, also while the user types.
+
+        If a dialog is open, or the action works only on another screen, show a notice instead.
+        """
         host = self.screen if isinstance(self.screen, ActionHost) else self
         if isinstance(self.screen, Dialog):
             self.notify("A dialog is open: escape closes it", markup=False)

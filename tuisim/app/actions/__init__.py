@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ActionContext:
-    """The parts of the app, for the functions that keys run."""
+    """The controllers and panels of the app; each function that a key runs gets them as its first argument."""
 
     app: LabHost
     runs: RunController

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def toggle(context: ActionContext, panel: str) -> None:
-    """Focus a shown panel that does not have the focus; hide one that has it; show and focus a hidden one."""
+    """Focus a shown panel, given by its id; hide it if it has the focus already; show and focus a hidden one."""
     area = context.panels
     was_shown = area.is_shown(panel)
     if not area.can_take_focus(panel):
@@ -68,7 +68,7 @@ def choose_preset(context: ActionContext, preset: Preset) -> None:
 
 
 def show_next_preset(context: ActionContext) -> None:
-    """Show the panels of the next preset."""
+    """Show the panels of the next preset that changes the screen; after the last preset comes the first."""
     context.panels.show_next_preset()
     _say_layout(context, context.app.fill_keys(" ({layout-next}: next, {layout-keep}: keep)"))
 
@@ -82,7 +82,7 @@ def _say_layout(context: ActionContext, more: str) -> None:
 
 
 def keep_layout(context: ActionContext) -> None:
-    """Store the preset and the shown panels for the next start in a terminal of this size."""
+    """Store the preset and the shown panels; the next start in a terminal of this size class shows them."""
     context.panels.keep_panels()
     context.app.say(
         f"The next start in a terminal of this size shows these panels: layout {context.panels.preset}"
@@ -90,7 +90,7 @@ def keep_layout(context: ActionContext) -> None:
 
 
 def focus_next_panel(context: ActionContext, by: int) -> None:
-    """Move the focus to the panel that is `by` panels after the focused one.
+    """Move the focus by `by` panels; a negative number moves it back, and after the last panel comes the first.
 
     In an area with room for one panel, that panel is also shown in place of the present one.
     """
@@ -141,10 +141,7 @@ def show_help(context: ActionContext) -> None:
 
 
 def choose_cells(context: ActionContext) -> None:
-    """Show a test picture in each set of glyphs.
-
-    Draw all pictures with the set that the user chooses, and store the choice.
-    """
+    """Show a dialog with a test picture in each set of glyphs; use and store the set that the user chooses."""
     from tuisim.app.dialogs.cells import CellsCard
 
     app = context.app
@@ -235,7 +232,7 @@ def redraw(context: ActionContext) -> None:
 
 
 def save_screen(context: ActionContext) -> None:
-    """Save a screenshot of the app in files of the working directory."""
+    """Save a screenshot of the app as an SVG and a PNG file in the working directory."""
     context.app.action_save_screen()
 
 

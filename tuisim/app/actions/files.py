@@ -221,7 +221,7 @@ def export(context: ActionContext) -> None:
 
 
 def edit(context: ActionContext) -> None:
-    """Show the code panel, and start typing in it."""
+    """Show the code panel, and put the focus in its text so that letters are typed into the program."""
     if not context.panels.is_shown("code"):
         context.panels.toggle("code")
     context.app.call_after_refresh(_type, context)
@@ -241,7 +241,7 @@ def save_program(context: ActionContext) -> None:
 
 
 def edit_in_own_editor(context: ActionContext) -> None:
-    """Save unsaved changes, and open the program's file in the editor that the environment names."""
+    """Save unsaved changes, and open the program's file in the editor that the variable `VISUAL` or `EDITOR` names."""
     context.document.run_with_file(partial(_open_in_own_editor, context))
 
 
@@ -253,7 +253,7 @@ def _open_in_own_editor(context: ActionContext, path: Path) -> None:
 
 
 def start_program(context: ActionContext) -> None:
-    """Ask for the mat, sensor and skeleton of a new program, and show its text in the code panel."""
+    """Ask for the mat, sensor and skeleton of a new program, and show the text of the new program in the code panel."""
     context.document.run_when_saved(partial(_ask_new_program, context))
 
 
@@ -285,7 +285,7 @@ def _ask_new_program(context: ActionContext) -> None:
 
 
 def compare(context: ActionContext) -> None:
-    """Ask for a stored run, and show where the run in view differs from it."""
+    """Ask for a stored run, and show how the run in view differs from it; do nothing if no run is in view."""
     from tuisim.app.dialogs.runs import RunChooser
 
     recording = context.runs.timeline.recording

@@ -107,7 +107,10 @@ def show_menu(context: ActionContext) -> None:
 
 
 def _find_current_lesson(context: ActionContext) -> str:
-    """Return the name of the lesson to select in the menu: the open lesson or, if that is done, the next lesson."""
+    """Return the name of the lesson to select in the menu: the open lesson or, if that is done, the next lesson.
+
+    The name is empty if no lesson is open.
+    """
     lesson = context.lesson
     if lesson.lesson is None:
         return ""

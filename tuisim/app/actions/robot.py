@@ -55,7 +55,7 @@ def clear_trace(context: ActionContext) -> None:
 
 
 def place_randomly(context: ActionContext) -> None:
-    """Put the robot at a random place on the field where it touches no obstacle; a notice says if there is none."""
+    """Put the robot at a random place on the field where it touches no obstacle; if none is found, show a notice."""
 
     from tuisim.app.setup.poses import choose_random_pose
 
@@ -98,7 +98,10 @@ def choose_mat(context: ActionContext) -> None:
 
 
 def _propose_write(context: ActionContext, mat: str) -> None:
-    """Offer to write a mat into the magic line of the open program, unless that line names the mat already."""
+    """Ask whether to write a mat, given by name, into the magic line of the open program.
+
+    Do not ask if the line already names this mat, if there is no magic line to write to, or while a lesson is open.
+    """
     from tuisim.app.dialogs.question import Question
 
     document = context.document

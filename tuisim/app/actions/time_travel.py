@@ -87,7 +87,7 @@ def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -
 
 
 def skip_ticks(context: ActionContext, ticks: int) -> None:
-    """Go forward in the recording by a number of ticks; a negative number goes back."""
+    """Go forward in the recording by a number of ticks, at most to the newest; a negative number goes back."""
     timeline = context.runs.timeline
     tick = timeline.tick
     if ticks < 0 and tick <= 0:
@@ -178,7 +178,7 @@ def ask_instant(context: ActionContext) -> None:
 
 
 def go_to_sample(context: ActionContext, words: str) -> None:
-    """Go to the tick of the sample that some words describe, as `find` reads them; show a notice if there is none.
+    """Go to the tick of a printed sample; if there is no such sample, show a notice.
 
     Args:
         context: The parts of the app.

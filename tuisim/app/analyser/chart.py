@@ -194,7 +194,10 @@ class LogChart(LinesPanel):
         return max(self._pictures[0][1].columns, 1) if self._pictures else 1
 
     def time_beside(self, time_s: float, columns: int) -> float:
-        """Return the time that is a number of columns to the right of `time_s`, in the unit of the time axis."""
+        """Return the time that is a number of chart columns to the right of `time_s`.
+
+        Both are in the unit of the horizontal axis: seconds, or mm if the runs are aligned by distance.
+        """
         low, high = self._model.find_x_limits() if self._model else (0.0, 1.0)
         return time_s + columns * (high - low) / self.columns()
 
@@ -252,9 +255,9 @@ def _select_facets(facets: list[LogTrace], selected: str, max_count: int) -> lis
 
 
 def _build_measure_line(model: AnalysisModel, unit: str, width: int) -> list[list[Run]]:
-    """Return a line of text about the selected variable between the two cursors: time, change, slope and statistics.
+    """Return time, change, slope and statistics of a variable between the two cursors, as a list of one line.
 
-    The list of lines is empty without a second cursor.
+    The variable is the selected one. The list is empty without a second cursor, or if the log has no rows.
     """
     if model.mark_s is None or not model.log.rows:
         return []
@@ -289,7 +292,13 @@ def _build_measure_line(model: AnalysisModel, unit: str, width: int) -> list[lis
 
 
 def draw_event_marks(model: AnalysisModel, limits: Limits, columns: int) -> str:
-    """Return a line of text with a mark in each column of the chart that has events."""
+    """Return a line of `columns` characters with a mark in each column of the chart that has an event, else a blank.
+
+    Args:
+        model: The log with its events.
+        limits: The least and the greatest value of the horizontal axis.
+        columns: Width of the chart's canvas in characters.
+    """
     line = [" "] * columns
     for event in model.events.list_events(model.log):
         if isinstance(event, CommandRow):

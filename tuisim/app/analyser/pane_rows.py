@@ -39,9 +39,14 @@ def build_rows(
 
 
 def fit_columns(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
-    """Return the columns that fit into a width, at least the first one.
+    """Return the indices of those columns, from the first on, that fit into a width; at least the first one.
 
     The last of them may fit only in part: if it has wide texts, these are cut.
+
+    Args:
+        columns: The indices of the columns to show, in order.
+        widths: The widths of all columns in characters.
+        width: The width of the pane in characters.
     """
     left = width
     seen: list[int] = []

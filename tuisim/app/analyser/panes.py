@@ -255,7 +255,12 @@ PANES: Mapping[str, Pane] = {
 
 
 def build_frame(name: str, model: AnalysisModel) -> pd.DataFrame:
-    """Return the rows of any pane but the table as a data frame; for bands, the frame has all their properties."""
+    """Return the rows of a pane as a data frame; for bands, the frame has all their properties as columns.
+
+    Args:
+        name: Key of `PANES`, except for the table.
+        model: The state of the analysis.
+    """
     import pandas as pd
 
     if name == "bands":
@@ -498,7 +503,10 @@ class PaneView(LinesPanel):
             self.styles.max_height = max(_count_rows(self.name_shown, model, width), _MIN_ROWS) + 2
 
     def _compute(self, model: AnalysisModel, pane: str) -> None:
-        """Compute the content that a pane lacks, unless a job already does; for a long log, in the background."""
+        """Compute what a pane shows but the model has not computed yet; for a long log, in the background.
+
+        Do nothing if a background job already computes it.
+        """
         names = {"bands": model.list_unsearched, "statistics": model.list_unsummed}.get(
             pane, list
         )()
@@ -531,7 +539,7 @@ class PaneView(LinesPanel):
 
 
 def find_bands(model: AnalysisModel, names: Sequence[str]) -> None:
-    """Search variables of a log for bands.
+    """Search variables, given by name, for bands, and store the bands in the model.
 
     If the log has more than `SEARCHED_AT_ONCE` rows, call this in a worker.
     """

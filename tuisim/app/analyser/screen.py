@@ -307,7 +307,11 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     # Selection
 
     def choose(self, number: int) -> None:
-        """Select a row of the pane and move the cursor to the time of that row; the pane must not be the table."""
+        """Select a row of the pane and move the cursor to the time of that row; the pane must not be the table.
+
+        Args:
+            number: Index of the row, from 0; one outside the pane selects its first or last row.
+        """
         model = self.model
         name = self.pane.name_shown
         count = len(PANES[name].rows(model))
@@ -391,7 +395,10 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             self.app.push_screen(dialog, self._set_choices)
 
     def _set_choices(self, choices: ReadChoices | None) -> None:
-        """Open the file with the user's choices; if nothing was chosen and no log is open, close the screen."""
+        """Read the file again with the user's choices; None means that the user has chosen nothing.
+
+        If nothing was chosen and no log is open, close the screen.
+        """
         if choices is None:
             if not self.is_open:
                 self.dismiss()
@@ -448,7 +455,10 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.update()
 
     def end(self, task: TableTask, then: Callable[[], None]) -> None:
-        """Call `then` for a finished background job, and update the screen; do nothing if a newer job has started."""
+        """Call `then` for a finished background job, and update the screen; do nothing if a newer job has started.
+
+        An error that `then` raises is shown.
+        """
         if task is self.job:
             self.job = None
             try:

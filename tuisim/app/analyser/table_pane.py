@@ -71,7 +71,7 @@ def _build_head_line(
 
 
 def _read_cells(rows: Rows, column: str, shown_rows: Sequence[int]) -> list[str]:
-    """Return the cells of a column as texts; the decimal points of numbers are below each other."""
+    """Return the texts of a column at some rows of the log; the decimal points of numbers are below each other."""
     texts = [rows.text(row, column).replace("\n", "↵").replace("\t", " ") for row in shown_rows]
     tails = [len(text) - len(text.partition(".")[0]) if _is_number(text) else 0 for text in texts]
     return [
@@ -124,9 +124,9 @@ def build_heading(model: AnalysisModel, column: str) -> str:
 
 
 def count_rows(model: AnalysisModel) -> str:
-    """Return as text how many rows the table shows, and its filter.
+    """Return in words how many rows the table shows, and the filter that selects them.
 
-    If the selected column is `index` of a log of stored runs, the text also says what it means.
+    If the selected column is `index` of a log of stored runs, the text also says what `index` means.
     """
     rows = model.rows
     if rows.columns and rows.chosen == "index" and model.opened.runs:

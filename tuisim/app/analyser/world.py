@@ -49,8 +49,8 @@ class RunWorld:
     """Gives snapshots of one run's world at any time of the run.
 
     Args:
-        spec: The run's specification.
-        mat: Its mat.
+        spec: The specification of the run.
+        mat: The mat of the run.
         run: The run, if it is in the store.
         log: The log that has the poses if the run is not in the store.
     """
@@ -64,7 +64,7 @@ class RunWorld:
         """The program of the run; None if it is unknown."""
 
     def find_snapshot(self, time_s: float, row: int) -> Snapshot:
-        """Return the state of the run at a time.
+        """Return the state of robot and run at a time: from the recording, or without one from the row of the log.
 
         Args:
             time_s: Simulated time.
@@ -127,7 +127,9 @@ def has_poses(opened: OpenedLog) -> bool:
 
 
 def load_world(opened: OpenedLog, run: int) -> RunWorld | None:
-    """Return the world of a run of a log; None if it cannot be found. This blocks, long the first time for each mat.
+    """Return the world of a run of a log; None if the log has no poses for it. A missing mat becomes a blank one.
+
+    This blocks, for long when a mat is prepared for the first time.
 
     Args:
         opened: The log.
@@ -234,7 +236,7 @@ class WorldPane(Vertical):
             self.show(model)
 
     def _list_lines(self, world: RunWorld, line: int) -> list[list[Run]]:
-        """Return the lines of the program around `line`, which is in the middle."""
+        """Return the lines of the program around `line`, from 1; only `line N` if the program's text is unknown."""
         texts = source_lines(world.program.text if world.program else "")
         height, width = self._source.size.height, self._source.size.width
         if not texts or not height:

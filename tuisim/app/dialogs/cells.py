@@ -39,9 +39,9 @@ def draw_test_card(cols: int, rows: int, cell_px: tuple[int, int]) -> Pixels:
     """Return the test picture, which has a disc, a line and three greys.
 
     Args:
-        cols: Cells across.
-        rows: Cells down.
-        cell_px: Points across and down a cell.
+        cols: Width of the picture in cells.
+        rows: Height of the picture in cells.
+        cell_px: Width and height of a cell in pixels.
     """
 
     def compute_middles(cells: int, points: int, size: float) -> npt.NDArray[np.float64]:

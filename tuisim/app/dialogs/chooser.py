@@ -55,7 +55,7 @@ MAX_TRIED = 50
 
 @dataclass(frozen=True, slots=True)
 class ChoiceGroup:
-    """A titled group of entries in a list of choices."""
+    """Entries of a list of choices under one title."""
 
     title: str
     entries: Sequence[tuple[str, str, str]]
@@ -65,7 +65,7 @@ class ChoiceGroup:
 def list_files(
     suffixes: Iterable[str], fits: Callable[[Path], object] | None = None
 ) -> ChoiceGroup:
-    """Return the files in the current folder, without hidden ones, as a group of choices.
+    """Return the files in the current folder with some suffixes as a group of choices, without hidden files.
 
     Args:
         suffixes: Suffixes of the files, with their dots.

@@ -39,7 +39,7 @@ _IMPERATIVES = {"applies": "apply", "goes": "go"}
 
 
 def name_and_title(name: str, title: str, name_cells: int, wraps: bool = True) -> Table:
-    """Return a line of a list: a name in `name_cells` cells, and a title beside it.
+    """Return an entry of a list as a table: a name in `name_cells` cells, and a title beside it.
 
     Args:
         name: The name.

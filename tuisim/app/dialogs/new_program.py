@@ -39,7 +39,7 @@ SKELETON_TITLES = {
 
 
 class SkeletonSensor(NamedTuple):
-    """The words for one sensor of the usual robot in the text of a new program."""
+    """The words and expressions for one sensor of the usual robot, from which the text of a new program is composed."""
 
     noun: str
     """The sensor in words."""

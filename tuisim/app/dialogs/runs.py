@@ -98,7 +98,7 @@ _MIN_LIST_ROWS = 5
 
 
 def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
-    """Return the cells of a line of the list of runs, by column; columns without room are left out.
+    """Return the cells of a row in the list of runs, by column; the columns for which there is no room are left out.
 
     Args:
         texts: The text of each column.

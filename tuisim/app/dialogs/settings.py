@@ -49,7 +49,10 @@ def describe_setting(setting: Setting) -> str:
 
 
 def parse_value(setting: Setting, text: str) -> Scalar:
-    """Return the value that a typed text stands for: a number if the setting takes one, else the text."""
+    """Return the value that a typed text stands for: a number if the setting takes one, else the text.
+
+    A text that is no number is returned as it is.
+    """
     if not isinstance(setting.default, int | float):
         return text.strip()
     for kind in (int, float):
@@ -64,8 +67,8 @@ class SettingsScreen(Dialog[None]):
     """The dialog with the settings; it writes each change to the file when the user makes it.
 
     Args:
-        change: Writes and applies a setting.
-        themes: Makes the dialog of the themes.
+        change: Called with a setting and its new value, None for the default; writes and applies it.
+        themes: Returns a new dialog of the themes.
     """
 
     TITLE_TEXT: str = "Settings"

@@ -209,10 +209,10 @@ class CandidateList(Widget):
         )
 
     def takes_key(self, event: events.Key) -> bool:
-        """Return whether the list, and not the text, handles a key.
+        """Return whether the open list, and not the text, handles a key.
 
-        Enter is left to the text, where it begins a new line, if it was pressed before the list was visible. So it is
-        after a complete name if the list has opened by itself.
+        Enter begins a new line in the text instead if it was pressed before the list was visible, or if the list has
+        opened by itself and the word is a complete name already.
         """
         is_whole = self.is_offered and self._has_whole_name(self._word)
         ends_line = event.key == "enter" and (is_whole or event.time < self._opened_s)

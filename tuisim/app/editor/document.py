@@ -228,7 +228,7 @@ class Document:
     # Editing
 
     def handle_edit(self, text: str) -> None:
-        """Store the new text after an edit in the code panel; a draft of the text is saved soon after."""
+        """Store the text after an edit in the code panel, and save it as a draft `DRAFT_DELAY_S` seconds later."""
         self._text = text
         self._error_line = 0
         if code := self._panel_area.code:
@@ -346,8 +346,7 @@ class Document:
         """Show the line of the mistake because of which the text cannot run, if there is one.
 
         Returns:
-            Why the text cannot run. It is empty if the text can run, or if the run in view ran this text: its error
-            then says
+            Why the text cannot run; empty if it can run, or if the run in view ran this text, whose own error then says
             more.
         """
         self.run_changed()
@@ -365,7 +364,9 @@ class Document:
 
     @property
     def _lacks_mat(self) -> bool:
-        """Whether the program was opened without its mat, which is wrong, and the user has chosen no other."""
+        """Whether the program was opened without its mat, because the magic line names a wrong one and no other was
+        chosen.
+        """
         settings = self._run_controller.next_run.settings
         is_usual = settings["background"] == Settings()["background"]
         return is_usual and find_wrong_mat(self._text, self._name, settings["mats"]) is not None

@@ -125,7 +125,11 @@ class Draft:
 
 
 def find_program_data(folder: str, path: str) -> Path:
-    """Return the path of the file about a program in a folder of the app's data; it need not exist.
+    """Return the path of the JSON file in which the app stores data about a program; the file need not exist.
+
+    Args:
+        folder: Name of the folder of the app's data, such as the one for drafts.
+        path: Path of the program, or its name if it has no file.
 
     Args:
         folder: Name of the folder.
@@ -196,5 +200,5 @@ def drop_draft(path: str) -> None:
 
 
 def _locate(path: str) -> str:
-    """Return the absolute path of a program, which tells it apart from programs of the same name in other folders."""
+    """Return the absolute path of a program; empty if `path` is empty, for a program without a file."""
     return path and os.path.abspath(path)

@@ -81,7 +81,7 @@ def find_matches(lines: Sequence[str], search: str) -> list[tuple[int, int]]:
 
 
 def count_differing_lines(text: str, other: str) -> int:
-    """Return how many lines a diff of two texts changes; for a replaced block, the lines of its longer side."""
+    """Return how many lines a diff of two texts changes; a replaced block counts with the lines of its longer side."""
     matcher = SequenceMatcher(None, source_lines(text), source_lines(other), autojunk=False)
     changes = (op for op in matcher.get_opcodes() if op[0] != "equal")
     return sum(
@@ -90,7 +90,7 @@ def count_differing_lines(text: str, other: str) -> int:
 
 
 def count_same_lines(lines: Sequence[str], other: Sequence[str]) -> int:
-    """Return the number of lines at the start of two texts that are the same."""
+    """Return how many lines at the start of two texts are the same in both."""
     pairs = enumerate(zip(lines, other, strict=False))
     return next(
         (index for index, (ours, theirs) in pairs if ours != theirs), min(len(lines), len(other))

@@ -440,10 +440,7 @@ class GuideScreen(Dialog[None]):
         self._search.select_all()
 
     def action_down(self) -> None:
-        """Move the focus from the search field down to the contents.
-
-        With the answers of a search, to the second answer.
-        """
+        """Move the focus from the search field down to the contents or, after a search, to the second answer."""
         if self._search.has_focus and len(self._found) > 1:
             self._answers.highlighted = 1
         self.action_contents()

@@ -417,7 +417,10 @@ class KeptLayout:
 
 
 def load_layout(size: TerminalSize) -> KeptLayout:
-    """Return the stored arrangement for a size of the terminal, without damaged or unknown parts of it."""
+    """Return the stored preset and panels for a size of the terminal, without damaged or unknown parts.
+
+    If nothing is stored, return the standard preset, in which no panel was shown or hidden.
+    """
     size_table = _check_table(get_preference(_NAME)).get(size)
     layout_table = _check_table(size_table)
     layout = KeptLayout()
@@ -434,7 +437,10 @@ def load_layout(size: TerminalSize) -> KeptLayout:
 
 
 def save_layout(size: TerminalSize, layout: KeptLayout) -> None:
-    """Store an arrangement for a size of the terminal; if the folder cannot be written, it lasts until the app ends."""
+    """Store a preset and panels for a size of the terminal.
+
+    If the folder cannot be written, they last until the app ends.
+    """
     # The panels are stored as a list, since their order counts and the file sorts the keys of tables.
     panels = [[panel, on] for panel, on in layout.asked.items()]
     with suppress(OSError):

@@ -131,7 +131,7 @@ class Brick(LinesPanel, can_focus=True):
     def _has_program(self, name: str) -> bool:
         """Return whether the live run is in view, so that its program can read a pressed button.
 
-        Otherwise post the press of the button `name`, so that the app says why it has no effect.
+        If not, post a message that the button `name` was pressed, so that the app says why it has no effect.
         """
         if (
             self._snapshot is not None

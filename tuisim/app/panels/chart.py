@@ -91,8 +91,8 @@ class Chart(LinesPanel, can_focus=True):
         """Add points to a trace, which is made if it does not exist.
 
         Args:
-            name: A logged NAME, or the name of a column of telemetry, whose trace is hidden at first.
-            times_s: Simulated times.
+            name: The name of a printed sample, or of a column of telemetry, whose trace is hidden at first.
+            times_s: Simulated times in s.
             values: The values at these times.
             logged: Whether the program has printed them.
         """
@@ -131,7 +131,7 @@ class Chart(LinesPanel, can_focus=True):
             self._schedule_drawing()
 
     def show_lag(self, words: str) -> None:
-        """Show in the border how far the printed values are drawn; empty if all are."""
+        """Show in the border a text about how far the printed values are drawn; an empty text removes it."""
         if words != self._lag:
             self._lag = words
             self._read(self._pointed_s)

@@ -74,7 +74,7 @@ class FindBar(Horizontal):
         yield Static(id="found", markup=False)
 
     def open(self, mode: str) -> None:
-        """Open the bar.
+        """Open the bar of the code panel for a search or a line number, and focus its field.
 
         Args:
             mode: `FIND` for a field for a search; any other mode is for a field for a line number.
@@ -303,7 +303,7 @@ class Code(Vertical):
         """Set the breakpoint markers: `●` a breakpoint, `○` a disabled one, `◆` one with a condition.
 
         Args:
-            breaks: The markers by line.
+            breaks: The marker of each line with a breakpoint, by line number from 1.
             words: Words for the frame about breakpoints that are on no line.
         """
         self._area.set_breaks(breaks)
@@ -421,7 +421,7 @@ class Code(Vertical):
         return Copied("Program", self._area.program_text)
 
     def page(self, by: int) -> None:
-        """Move the cursor down by a number of pages; negative moves it up."""
+        """Move the cursor one page down if `by` is positive, else one page up."""
         if by > 0:
             self._area.action_cursor_page_down()
         else:

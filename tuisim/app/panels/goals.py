@@ -42,7 +42,7 @@ class Goals(LinesPanel, can_focus=True):
         self._drawn: object = None
 
     def watch_has_focus(self, _has_focus: bool) -> None:
-        """Show what the keys of the panel do while it has the focus."""
+        """Show in the frame what the keys of the panel do while the panel has the focus."""
         super().watch_has_focus(_has_focus)
         self._show_subtitle()
 

@@ -65,7 +65,7 @@ class Instrumentation(LinesPanel, can_focus=True):
 
 
 def build_subtitle(now: Snapshot, height: int) -> str:
-    """Return time and state for the frame of a panel with so few rows that it has no lines for them; else ""."""
+    """Return time and state for the frame of a panel that is too low for lines about them; empty for a higher panel."""
     return (
         f"{now.time_s:.2f} s {_describe_state(now)[0]}{now.turning}"
         if _is_small(now, height)
@@ -218,7 +218,7 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
 def _add_pose(
     lines: list[Line], columns: list[list[Line]], places: list[list[Line]], width: int
 ) -> None:
-    """Put the pose, for which the columns have no room, behind the only reading of the last such row, if it fits.
+    """Put the pose behind the reading in the last row that has only one reading and enough room; else leave it out.
 
     Args:
         lines: The rows of the panel; one of them is replaced.

@@ -49,7 +49,7 @@ def format_unit(text: str) -> Run:
 
 
 def format_values(*texts: str) -> list[Run]:
-    """Return values and units in their styles; the texts are values and units in turn."""
+    """Return values and units in their styles; the texts are a value, its unit, the next value, and so on."""
     return [
         format_unit(text) if index % 2 else format_value(text) for index, text in enumerate(texts)
     ]
@@ -64,7 +64,7 @@ PORT_CELLS = 4
 
 @dataclass(frozen=True, slots=True)
 class LightSeen:
-    """A reading of a colour sensor, and which of its numbers the program gets."""
+    """A reading of a colour sensor, and which of its numbers the program reads."""
 
     color: ColorReading
     read: LightRead
@@ -73,7 +73,7 @@ class LightSeen:
 
     @property
     def value(self) -> str:
-        """The number that the program gets, as a text."""
+        """The number that the program reads, as a text."""
         number = self.read.compute_value(self.color, self.reflected_max)
         if self.read is LightRead.REFLECTED:
             return f"{number:3.0f}"
@@ -86,12 +86,15 @@ class LightSeen:
 
     @property
     def unit(self) -> str:
-        """The unit of the number that the program gets."""
+        """The unit of the number that the program reads."""
         return f"/{self.reflected_max}" if self.read is LightRead.REFLECTED else "%"
 
 
 def list_seen(now: Snapshot) -> list[tuple[str, str, LightSeen | None]]:
-    """Return the name, the port and the reading of each colour sensor; the reading is None while the mat is unknown."""
+    """Return a label such as `Sensor1`, the port and the reading of each colour sensor.
+
+    A reading is None while the mat is unknown.
+    """
     robot = now.spec.robot
     reads = read_facts(now.program).find_light_reads(robot) if now.program else {}
     lines: list[tuple[str, str, LightSeen | None]] = []

@@ -34,12 +34,12 @@ _NONE = "none: + or drag adds one"
 
 
 def label_box(number: int, box: Obstacle) -> str:
-    """Return an obstacle as an entry of the list."""
+    """Return an obstacle as an entry of the list: its number, its size in mm, and the position of its corner in mm."""
     return f"{number:>2}  {box.width_mm:g}×{box.height_mm:g} at {box.x_mm:g}, {box.y_mm:g}"
 
 
 def add_box(boxes: Boxes) -> Boxes:
-    """Return the obstacles with a new one: in the middle of the field, or beside the others that are there."""
+    """Return the obstacles with a new one: in the middle of the field or, if that is taken, at a free place near it."""
     half_mm = _NEW_SIZE_MM / 2
     xs_mm, ys_mm = map(_list_places_mm, (FIELD_WIDTH_MM, FIELD_HEIGHT_MM))
     places = [(x_mm, y_mm) for y_mm in ys_mm for x_mm in xs_mm]
@@ -52,7 +52,11 @@ def add_box(boxes: Boxes) -> Boxes:
 
 
 def _list_places_mm(side_mm: float) -> list[float]:
-    """Return where a new obstacle may begin along a side of the field: in its middle, then farther and farther off."""
+    """Return where a new obstacle may begin along a side of the field, in mm, from its middle outwards.
+
+    Args:
+        side_mm: Length of the side.
+    """
     middle_mm = (side_mm - _NEW_SIZE_MM) // 2
     step_mm = _NEW_SIZE_MM + _GAP_MM
     steps = int(middle_mm / step_mm)
@@ -239,7 +243,10 @@ class BoxGrip:
     y_mm: float
 
     def drag_boxes(self, x_mm: float, y_mm: float) -> tuple[tuple[Obstacle, ...], int] | None:
-        """Return the obstacles after a drag to a point, and the index of the dragged one; None without any change."""
+        """Return the obstacles after a drag to a point of the field in mm, and the index of the dragged one.
+
+        The result is None if nothing has changed.
+        """
         if self.index is None:
             box = self._draw_box(x_mm, y_mm)
             return None if box is None else ((*self.boxes, box), len(self.boxes))

@@ -133,10 +133,7 @@ class Output(Vertical):
         self.post_message(self.Answered(None))
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show what the panel is for before the first run.
-
-        Output rows do not come from the snapshot, but through `add`.
-        """
+        """Before the first run, show in the empty panel what it is for; the output itself comes through `add`."""
         self._log.say_if_empty(
             fill_keys(self.app, IDLE_WORDS) if snapshot.state is RunPhase.IDLE else ""
         )
@@ -304,7 +301,7 @@ class Log(Widget, can_focus=True):
 
     @property
     def _all(self) -> int:
-        """The number of lines to scroll through; one line may stand for older rows that are no longer stored."""
+        """The number of lines to scroll through; all older rows that are no longer stored have one line."""
         return len(self._lines) + (1 if self._count > len(self._rows) else 0)
 
     def _find_line(self, index: int) -> Line:

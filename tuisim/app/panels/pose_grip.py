@@ -25,7 +25,12 @@ class PoseGrip:
     """Whether it may lead off the field."""
 
     def drag_pose(self, x_mm: float, y_mm: float) -> Pose:
-        """Return the pose of the robot after a drag to a point of the field."""
+        """Return the pose of the robot after a drag to a point of the field, in whole mm and degrees.
+
+        Args:
+            x_mm: World x of the point.
+            y_mm: World y of the point.
+        """
         start = self.pose
         if self.turns:
             before = math.atan2(self.y_mm - start.y_mm, self.x_mm - start.x_mm)

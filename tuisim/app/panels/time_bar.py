@@ -74,7 +74,7 @@ class BarTimes:
 
 @lru_cache(maxsize=1)
 def _round_end_s(now_s: int) -> float:
-    """Return the time in s at the right end of the bar during a run; it changes at whole seconds only."""
+    """Return the time in s at the right end of the bar for a run that has reached the second `now_s`: a round time."""
     return time_limits(now_s)[1]
 
 
@@ -221,7 +221,7 @@ _SPANS_S = (5.0, 10.0, 20.0, 30.0, 60.0)
 
 
 def time_limits(end_s: float) -> Limits:
-    """Return limits from 0 to a round time in s after `end_s`.
+    """Return 0 and a round time in s that is not before `end_s`, as limits of an axis.
 
     There are few of these round times, so that the axes seldom change.
     """

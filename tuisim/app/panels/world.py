@@ -182,7 +182,7 @@ class World(Widget, can_focus=True):
         self._view.trace.add(Piece.from_points(np.array(xs_mm), np.array(ys_mm), pen))
 
     def clear_trace(self) -> list[Piece]:
-        """Remove the pen trace from the picture, and return its pieces."""
+        """Remove the pen trace from the picture, and return its pieces for `restore_trace`."""
         pieces = self._view.trace.clear()
         self._view.repaint_scene()
         return pieces
@@ -195,7 +195,7 @@ class World(Widget, can_focus=True):
     def show_past_trace(
         self, points_mm: tuple[Sequence[float], Sequence[float]] | None, pen: PenSpec = _ANY_PEN
     ) -> None:
-        """Show the pen trace up to a past instant, instead of the whole trace.
+        """Show the pen trace up to a past instant, in place of the whole trace.
 
         Args:
             points_mm: x and y of the points; None shows the whole trace again.
@@ -286,10 +286,7 @@ class WorldView(PixelView):
     def _follow(
         self, width_px: int, height_px: int, pose: Pose, now: Snapshot, cell: CellPoints
     ) -> Viewport:
-        """Return the part of the world to draw.
-
-        If the mat lies on a floor, it follows a robot that leaves the field.
-        """
+        """Return the part of the world to draw; above zoom 1 it follows the robot, on a floor also off the field."""
         on_floor = now.spec.world.is_open
         previous = self._port
         zoom = self.zoom

@@ -178,7 +178,7 @@ def _scale_line(face: DiscFace, width: int) -> Line:
 
 
 def _ring_lines(face: DiscFace, width: int) -> list[Line]:
-    """Return the mean value of each ring of a sensor's area, behind a label; if one line is too short, below it."""
+    """Return the mean value of each ring of a sensor's area behind a label; in two lines if one is too short."""
     values: Line = [
         part
         for word in face.ring_words
@@ -193,9 +193,9 @@ def _ring_lines(face: DiscFace, width: int) -> list[Line]:
 
 
 def list_border_names(names: Sequence[str], where: Arrangement, *, has_limits: bool) -> str:
-    """Return the text for the frame of the panel: the names of the sensors.
+    """Return the text for the frame of the panel: the names of the sensors, or that up is up on the mat.
 
-    If there is only one sensor, or the lines beside the discs have the names, the text says that up is up on the mat.
+    The names are left out if there is only one sensor, or if the lines beside the discs have them.
 
     Args:
         names: The names of the sensors.

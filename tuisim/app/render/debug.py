@@ -47,7 +47,7 @@ _KEYS = (
 
 @dataclass(frozen=True, slots=True)
 class DebugView:
-    """The content of the debug panel: the pause, its frames and variables, and whether they are being computed."""
+    """The content of the debug panel: where the program is paused, and its frames and variables there."""
 
     state: RunPhase = RunPhase.IDLE
     paused: Paused | None = None
@@ -164,7 +164,7 @@ def _known(view: DebugView, paused: Paused, inspected: Inspected, width: int) ->
 
 
 def _build_text(head: str, texts: Sequence[str], width: int) -> list[Line]:
-    """Return a heading and texts as lines for an otherwise empty panel; in a narrow one, each text has its own line."""
+    """Return a heading and texts as lines for an otherwise empty panel; in a narrow panel, the texts are wrapped."""
     if max(map(len, texts)) > width:
         parts = [part for text in texts for part in re.split(" {3,}", text)]
         texts = [row for part in parts for row in textwrap.wrap(part, width) or [""]]

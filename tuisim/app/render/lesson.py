@@ -92,13 +92,13 @@ class LessonView:
 
     @property
     def page(self) -> int:
-        """The number of the page to show unless the user turns to another one."""
+        """The number of the page to show, from 0: that of the step to do, or the last page if no step is to be done."""
         return self.last_page if self.at is None else self.at
 
 
 @dataclass(frozen=True, slots=True)
 class LessonPicture:
-    """The lines of the lesson panel, and which part of the text they are."""
+    """The lines of the lesson panel, and which rows of the lesson's text they show."""
 
     lines: list[Line]
     first: int = 0

@@ -97,7 +97,10 @@ def build_legend(now: Snapshot, width: int, view: Viewport | None = None) -> str
 
 
 def draw_signs(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
-    """Return the signs that show the robots in a picture without colours: numbers of cells by row and column."""
+    """Return the signs that show the robots in a picture without colours.
+
+    Each is a cell's number, as `sign_cell` returns it, by the row and column of the cell.
+    """
     outline = build_outline(scene.robot)
     reach_mm = outline.front_mm * choose_scale(outline, port)
     now = dict(scene.faint).get(Faint.NOW)
@@ -119,7 +122,9 @@ _AHEAD_CELLS = 2.0
 def draw_pointer(
     view: Viewport, pose: Pose, reach_mm: float, pivot: str
 ) -> dict[tuple[int, int], int]:
-    """Return the signs that show a robot's position and heading: numbers of cells by row and column.
+    """Return the signs that show a robot's position and heading.
+
+    Each is a cell's number, as `sign_cell` returns it, by the row and column of the cell.
 
     Args:
         view: The visible part of the field.

@@ -392,7 +392,9 @@ def find(plan: NextRun, edit_id: str) -> FormField | None:
 
 
 def step(edit: FormField, plan: NextRun, by: int) -> str:
-    """Return the value that is `by` steps after the present one in the list of a field's choices, which is circular.
+    """Return the value that is `by` steps after the present one in the choices of a field; they are circular.
+
+    If the present value is none of the choices, return the first choice.
 
     Args:
         edit: The field.

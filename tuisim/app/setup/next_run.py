@@ -58,7 +58,7 @@ WORLD_PATHS = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class NextRun:
-    """The plan of the next run: its settings, its specification, and where they come from."""
+    """The plan of the next run: its settings, the specification that is built from them, and the source of each."""
 
     settings: Settings
     """The choices. Robot, obstacles and profile are objects, so that no later change depends on a file."""
@@ -164,10 +164,7 @@ def read_first_line(program: Program | None) -> Mapping[str, Any]:
 
 
 def _resolve_choices(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return two mappings by setting: the robot, obstacles and profile that words have named, as objects.
-
-    And these words.
-    """
+    """Return the choices with robot, obstacles and profile as objects in place of words, and these words by setting."""
     resolved = dict(choices)
     words = {}
     for key, load in (
@@ -278,7 +275,7 @@ def follow_program_robot(plan: NextRun) -> NextRun:
 
 
 def list_notes(before: NextRun, plan: NextRun) -> list[str]:
-    """Return what the user should be told about the robot of a plan, without what the plan `before` already caused."""
+    """Return messages to the user about the robot of a plan, without those that the plan `before` had already."""
     notes = () if plan.robot == before.robot else plan.robot.notes
     known = list_ineffective(before.spec)
     return [*notes, *(text for text in list_ineffective(plan.spec) if text not in known)]
@@ -360,7 +357,10 @@ def change_obstacles(plan: NextRun, obstacles: tuple[Obstacle, ...]) -> NextRun:
 
 
 def _put(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
-    """Return a plan with other values, by path; not for values on which others in the specification depend."""
+    """Return a plan with other values of settings, by path.
+
+    Call this only for settings on which no other value of the specification depends.
+    """
     spec_values = {RUN_VALUES[path].spec_path: value for path, value in values.items()}
     return replace(
         plan, settings=plan.settings.changed(values), spec=tree.put_all(plan.spec, spec_values)

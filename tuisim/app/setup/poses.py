@@ -72,7 +72,7 @@ def _overlap(first: Corners, other: Corners, heading_deg: float) -> bool:
 
     Args:
         first, other: Their corners.
-        heading_deg: By how much one of them is turned; the sides of the other one are parallel to the axes.
+        heading_deg: By how much the other one is turned, in degrees.
     """
     heading = math.radians(heading_deg)
     axes = (

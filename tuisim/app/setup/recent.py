@@ -24,7 +24,7 @@ _MOST_OF_KIND = 3
 
 
 class Kind(StrEnum):
-    """The type of a piece of recent work."""
+    """The type of a piece of recent work: an unsaved text (draft), a program or a run."""
 
     DRAFT = "draft"
     PROGRAM = "program"

@@ -57,14 +57,19 @@ def switch_facets(screen: LogScreen) -> None:
 
 
 def switch(screen: LogScreen, option: str) -> None:
-    """Switch one of the `ChartOptions` on if it is off, and off if it is on."""
+    """Turn an option of the chart on, or off if it is on.
+
+    Args:
+        screen: The analyser.
+        option: Name of a field of `ChartOptions` that is True or False.
+    """
     options = screen.chart.options
     setattr(options, option, not getattr(options, option))
     screen.redraw_chart()
 
 
 def align(screen: LogScreen) -> None:
-    """Ask what the runs in the chart are aligned by, such as time or distance, and draw the chart again."""
+    """Ask by what to align the runs in the chart, such as time or distance, and draw the chart again."""
 
     def go(text: str) -> None:
         screen.model.align(text or TIME)
@@ -74,7 +79,7 @@ def align(screen: LogScreen) -> None:
 
 
 def ask_axes(screen: LogScreen) -> None:
-    """Ask which variables to draw against each other."""
+    """Ask which two variables to draw against each other; an empty answer draws all variables over time again."""
     options = screen.chart.options
 
     def go(text: str) -> None:

@@ -153,7 +153,7 @@ def show_all(screen: LogScreen) -> None:
 
 
 def search(screen: LogScreen) -> None:
-    """Ask for a text to search the pane for, and go to its first match."""
+    """Ask for a text to search the pane for, and go to the next match; an empty text ends the search."""
 
     def go(text: str) -> None:
         screen.searched = text
@@ -229,9 +229,9 @@ def go_to_end(screen: LogScreen, last: bool) -> None:
 
 
 def columns(screen: LogScreen, step: int) -> None:
-    """Move the cursor by a number of columns of the chart, but at least to the next sample.
+    """Move the cursor right by the time of `step` columns of the chart, but at least to the next sample.
 
-    A negative number moves it back.
+    A negative number moves it left.
     """
     model = screen.model
     before = model.row
@@ -267,7 +267,10 @@ def go_to(screen: LogScreen) -> None:
 
 
 def _go_to_next(screen: LogScreen, text: str) -> None:
-    """Go to the next row at which a variable crosses a threshold, given as text, or the program gives a command."""
+    """Go to the next row at which an event that `text` describes happens; if there is none, show a notice.
+
+    The event is the crossing of a threshold by a variable, or a command that the program gives.
+    """
     model = screen.model
     model.add_named_columns(text)
     log = model.log
