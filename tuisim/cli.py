@@ -36,7 +36,7 @@ EXIT_INTERRUPTED = SIGNALLED + 2
 
 @dataclass(frozen=True, slots=True)
 class CommandEntry:
-    """What the command line knows of a command without importing it: where its function is, and what it does."""
+    """Where the function of a command is, and what the command does, so that it is imported only when it is called."""
 
     path: str
     """MODULE:NAME, imported on use."""

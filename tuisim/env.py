@@ -190,6 +190,9 @@ def follow_line(**how: Any) -> LabEnv:
     """Return the task to drive along the edge of a line; it ends when the robot leaves the mat.
 
     The reward is the progress in mm: all of it where the left sensor reads 50 %, none of it at 0 % or 100 %.
+
+    Args:
+        how: Arguments of `LabEnv`.
     """
 
     def reward(before: Values, after: Values) -> float:
@@ -208,6 +211,9 @@ def stop_on_band(**how: Any) -> LabEnv:
     """Return the task to stop on a dark band; it ends when the left sensor reads less than 10 % and both wheels stand.
 
     The reward is by how many percent the reading of the left sensor has fallen in a step.
+
+    Args:
+        how: Arguments of `LabEnv`.
     """
 
     def reward(before: Values, after: Values) -> float:
@@ -226,6 +232,9 @@ def avoid_obstacles(**how: Any) -> LabEnv:
     """Return the task to drive past obstacles; it ends when the ultrasonic sensor reads less than 30 mm.
 
     The reward is the progress in mm.
+
+    Args:
+        how: Arguments of `LabEnv`.
     """
 
     def is_over(values: Values) -> bool:
@@ -236,7 +245,13 @@ def avoid_obstacles(**how: Any) -> LabEnv:
 
 
 def reach_goals(columns: Sequence[str], goals: str | Path, **how: Any) -> LabEnv:
-    """Return the task to earn the points of a goals file."""
+    """Return the task to earn the points of a goals file; it ends when no goal can be met any more.
+
+    Args:
+        columns: What the robot observes.
+        goals: The goals file.
+        how: Further arguments of `LabEnv`.
+    """
     return LabEnv(columns, goals=goals, **how)
 
 

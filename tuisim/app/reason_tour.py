@@ -30,7 +30,7 @@ class ReasonTour:
         """Index of the reason in view; None before the first, and after the last."""
 
     def is_about(self, recording: Recording | None, has_ended: bool) -> bool:
-        """Return whether the reasons are those of a run, or are those that are still being searched for.
+        """Return whether this tour is about a run: its reasons are known, or are still being searched for.
 
         Args:
             recording: The run.

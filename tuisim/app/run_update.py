@@ -66,8 +66,7 @@ class NearSampleWatch:
         """The last run of which a line was reported."""
 
     def look(self, recording: Recording, rows: list[OutputRow]) -> list[str]:
-        """Return in a list the line for the output about a printed row that is nearly a sample; at most one in each
-        run.
+        """Return in a list the line for the output about a printed row that is nearly a sample; at most one per run.
 
         The list is empty if no new row is nearly a sample, or if the run has had its line already.
         """

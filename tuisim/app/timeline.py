@@ -94,7 +94,7 @@ class Timeline:
         return self._played_s is not None
 
     def find_tick(self, time_s: float) -> int:
-        """Return the last tick up to a time in s."""
+        """Return the number of the last tick that is not after a simulated time in s."""
         return int(time_s * self.tick_hz + 1e-6)
 
     def record(self) -> TickRecord | None:
@@ -242,9 +242,9 @@ class _Search:
         return (row for row in found if row.stream in TEXT_STREAMS)
 
     def find_tick(self, condition: ValueCondition) -> int | None:
-        """Return the tick of the nearest printed row, in the direction of the search, that meets a condition.
+        """Return the tick of the nearest printed row that meets a condition, in the direction of the search.
 
-        The result is None without one.
+        The result is None if no such row does.
         """
         if condition.operator is Operator.CHANGES:
             every = (row for row in self.recording.rows.rows(0) if row.stream in TEXT_STREAMS)

@@ -97,7 +97,7 @@ _Stems: TypeAlias = frozenset[str]
 
 @dataclass(frozen=True, slots=True)
 class SearchResult:
-    """A passage of the guide that answers a question."""
+    """A passage of the guide, such as a paragraph, that answers a question."""
 
     name: str
     """The name of its page."""

@@ -159,7 +159,7 @@ class BufferedApp(HookedApp):
 
     @property
     def has_pixels(self) -> bool:
-        """Whether pictures are drawn with pixels, or were until the user switched to characters in this session."""
+        """Whether pictures are drawn with pixels, or were until the user chose characters for this session."""
         return self.picture_mode.graphics is not None or self._left_pixels is not None
 
     def handle_painted(self, size: int) -> None:

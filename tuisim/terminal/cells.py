@@ -50,6 +50,8 @@ def _view_words(picture: Pixels, word: type[np.unsignedinteger]) -> npt.NDArray[
 def find_changed_runs(old: Cells, new: Cells) -> list[CellRun]:
     """Return the runs of cells that differ between two frames of the same shape; close runs are joined.
 
+    Each run is (row, first column, number of cells).
+
     Args:
         old: The frame on the screen.
         new: The next frame.
@@ -58,9 +60,9 @@ def find_changed_runs(old: Cells, new: Cells) -> list[CellRun]:
 
 
 def find_runs(changed: npt.NDArray[np.bool_], gap: int = 1) -> list[CellRun]:
-    """Return the runs of the true cells in an array of shape (rows, columns).
+    """Return the runs of true values in each row of an array of shape (rows, columns).
 
-    Runs with fewer than `gap` cells between them are joined.
+    Each run is (row, first column, number of cells). Runs with fewer than `gap` cells between them are joined.
     """
     rows, cols = np.nonzero(changed)
     if not len(rows):

@@ -145,7 +145,9 @@ class FrameBuffer:
     def _put(
         self, pen: _Pen, y: int, first: int, cells: Sequence[Cell]
     ) -> Iterator[tuple[int, PictureCell]]:
-        """Pass changed cells of a row to the pen; instead, yield column and cell of those that are parts of a picture.
+        """Write the changed cells of a row with the pen, except those that are parts of a picture: yield these.
+
+        Each is yielded with its column.
 
         Args:
             pen: Writes the cells.

@@ -67,7 +67,7 @@ class Turn:
 
     @contextmanager
     def step(self, pump: MessagePump) -> Iterator[None]:
-        """In a `with` block, handle one message or callback of the turn.
+        """In a `with` block, handle one message or callback of the turn, which is done at the end of the block.
 
         Messages that are posted in the block belong to the turn, too.
         """

@@ -71,7 +71,7 @@ class TerminalFacts:
 
     @property
     def without_refusal(self) -> TerminalFacts:
-        """The facts, in which kitty's protocol is unknown unless the terminal itself has answered about it."""
+        """The facts, with `has_kitty_graphics` None unless it is True or the terminal has reported an error."""
         return (
             self
             if self.has_kitty_graphics or self.kitty_error

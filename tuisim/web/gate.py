@@ -33,7 +33,7 @@ _NO_ROOM = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
 
 
 class Door:
-    """A listening socket that closes each connection that does not send the server's token in `STRANGER_S`.
+    """A listening socket that closes each connection that does not send the server's token within `STRANGER_S` seconds.
 
     While more than `MAX_STRANGERS` connections have not sent it, the oldest of these is closed.
 
@@ -133,7 +133,7 @@ def create_token() -> str:
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """The rules of a server: which requests it answers, and which sites may show its page in a frame."""
+    """The rules of a server: the token that requests must have, and the sites that may show its page in a frame."""
 
     listens_on: str
     """Host name or address that the server listens on."""

@@ -115,7 +115,7 @@ class WebSession(AppService):
         return process
 
     async def on_meta(self, data: bytes) -> None:
-        """Handle a message of the app."""
+        """Handle a message of the app, which is a JSON object; ignore one that is too long."""
         if len(data) > _MAX_MESSAGE_BYTES:
             return
         message = json.loads(data)

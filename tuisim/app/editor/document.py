@@ -364,8 +364,9 @@ class Document:
 
     @property
     def _lacks_mat(self) -> bool:
-        """Whether the program was opened without its mat, because the magic line names a wrong one and no other was
-        chosen.
+        """Whether the program was opened without the mat that its magic line names, because that mat is wrong.
+
+        It is False once the user has chosen another mat.
         """
         settings = self._run_controller.next_run.settings
         is_usual = settings["background"] == Settings()["background"]

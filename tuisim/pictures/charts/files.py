@@ -136,7 +136,8 @@ def save_chart(
     """Write a chart to a file, which may exist.
 
     Args:
-        chart_of: Returns the chart for a width and a height, in pixels or in parts of characters.
+        chart_of: Returns the chart for a width and a height in the smallest parts that the format can show: pixels, or
+            for text the dots of a character.
         path: Its suffix selects the format, one of `CHART_FORMATS`.
         size: Width and height in the format's unit; None for its own.
 

@@ -186,14 +186,14 @@ class Frame:
     y: Limits
 
     def find_xs(self, values: FloatArray | float) -> FloatArray:
-        """Return the pixel columns of values of x."""
+        """Return where values of x are in the picture: in pixels from its left edge."""
         return np.asarray(
             self.left
             + (np.asarray(values) - self.x[0]) / (self.x[1] - self.x[0]) * (self.right - self.left)
         )
 
     def find_ys(self, values: FloatArray | float) -> FloatArray:
-        """Return the pixel rows of values of y."""
+        """Return where values of y are in the picture: in pixels from its upper edge."""
         return np.asarray(
             self.bottom
             - (np.asarray(values) - self.y[0]) / (self.y[1] - self.y[0]) * (self.bottom - self.top)
@@ -401,7 +401,7 @@ class Scales:
         return next((scale for scale in self.right if name in scale.names), self.left)
 
     def on_left(self, values: FloatArray, scale: Scale) -> FloatArray:
-        """Return the values on the left scale that are at the same height as values on another scale."""
+        """Return values that are drawn to `scale`, converted to the left scale: to values at the same height."""
         if scale is self.left:
             return values
         share = (values - scale.limits[0]) / (scale.limits[1] - scale.limits[0])

@@ -57,7 +57,7 @@ class Plot:
         """Return how many points of the image times are to the right of the image's left edge.
 
         Args:
-            times_s: The times.
+            times_s: The times in s, shape (n,).
             width: Width of a cell in points.
         """
         # Place times as `axes.find_column` does, so that a label is below its tick.
@@ -68,7 +68,7 @@ class Plot:
         """Return how many points of the image values are below the top of the canvas.
 
         Args:
-            values: The values.
+            values: The values, shape (n,).
             height: Height of a cell in points.
         """
         return axes.measure_row(values, self.y_limits, self.rows) * height
@@ -198,7 +198,7 @@ def _draw_axes(
 
 
 def _clip_places(points: _Points, length: int) -> npt.NDArray[np.intp]:
-    """Return positions as indices of an image's points, without those outside the image."""
+    """Return positions, in points of an image, as whole indices; those outside the `length` points are left out."""
     places = np.floor(points).astype(np.intp)
     return places[(places >= 0) & (places < length)]
 
@@ -211,7 +211,13 @@ def _mix_colors(ground: Rgb, rgb: Rgb, share: float) -> Rgb:
 
 
 def _measure_coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np.uint8]:
-    """Return for each point of the canvas how much of the point a curve covers, from 0 to `_LEVELS`."""
+    """Return how much of each point of the canvas a curve covers, from 0 to `_LEVELS`, shape (rows, columns) of points.
+
+    Args:
+        plot: The chart.
+        curve: The curve.
+        cell: Width and height of a cell in points.
+    """
     # This is imported on demand, since few terminals need it.
     from PIL import Image, ImageDraw
 

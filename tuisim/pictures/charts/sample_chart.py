@@ -29,7 +29,7 @@ def build_sample_chart(
     Args:
         samples: The samples.
         columns: Width in pixels; points that it could not show apart are left out.
-        limits: Range of time; None for the time range of the samples.
+        limits: Range of time in s; None for the time range of the samples.
     """
     points: dict[str, list[tuple[float, float]]] = {}
     for sample in samples:

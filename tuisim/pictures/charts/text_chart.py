@@ -226,7 +226,7 @@ def _style_runs(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
 
 
 def _style_of_names(drawn: Sequence[Trace], spans: Sequence[Span]) -> Style:
-    """Return the style for the names of bands: if there are several curves, the colour of the curve with the bands."""
+    """Return the style for the names of bands: the colour of the curve with the bands; with only one curve, `NAME`."""
     names = {span.name for span in spans}
     of_bands = [trace for trace in drawn if {trace.name} == names]
     return build_style(of_bands[0].rgb) if of_bands and len(drawn) > 1 else NAME
@@ -333,9 +333,9 @@ def format_values(
 
     Args:
         drawn: The traces.
-        cursor_s: The time.
-        unit: Its unit.
-        width: The width.
+        cursor_s: The time, in `unit`.
+        unit: The unit of the times, such as `s`.
+        width: The largest length of the text.
         end_s: The end of the tick at this time, up to which values count; None if they count up to the time itself.
     """
     line = f"{cursor_s:.2f} {unit}"

@@ -95,7 +95,7 @@ class _Palette:
 
 
 def _pack_pixels(pixels: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:
-    """Return for each pixel its red, green and blue as one number."""
+    """Return the colour of each pixel as a number 0xRRGGBB; the last axis of `pixels` has red, green and blue."""
     return pixels.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
 
 

@@ -16,7 +16,10 @@ _BODY = "&"
 
 
 def draw_body(view: Viewport, pose: Pose, outline: RobotOutline) -> dict[tuple[int, int], int]:
-    """Return signs for the cells of which a robot covers at least half, by row and column."""
+    """Return signs for the cells of which a robot covers at least half.
+
+    Each is a cell's number, as `sign_cell` returns it, by the row and column of the cell.
+    """
     empty = np.zeros((view.height_px, view.width_px, 3), np.uint8)
     draw_robot(empty, view, pose, outline, CLEARED)
     rows = view.height_px // view.cell.rows

@@ -80,7 +80,10 @@ def _spread(width_px: float) -> FloatArray:
 
 
 def _join_points(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a trace without NaN, with further points so that no gap is larger than `step_mm`."""
+    """Return the points of a trace without NaN, with further points between joined ones at most `step_mm` apart.
+
+    Two points that are farther apart than the pen can draw in one step are not joined.
+    """
     good = np.isfinite(xs) & np.isfinite(ys)
     if len(xs) < 2:
         return xs[good], ys[good]
@@ -120,7 +123,12 @@ class Piece:
 
     @classmethod
     def from_points(cls, xs_mm: FloatArray, ys_mm: FloatArray, pen: PenSpec) -> Piece:
-        """Return a piece of a trace that consists of the points that a pen has drawn."""
+        """Return a piece of a trace with the points at which a pen has drawn.
+
+        Args:
+            xs_mm, ys_mm: World x and y of the points, each of shape (n,); NaN where the pen is up.
+            pen: The pen.
+        """
         return cls(xs_mm, ys_mm, parse_pen_color(pen.color), pen.width_mm)
 
     def lift(self) -> Piece:

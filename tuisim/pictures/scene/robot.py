@@ -119,7 +119,7 @@ def measure_reach_mm(outline: RobotOutline) -> float:
 
 
 def choose_scale(outline: RobotOutline, view: Viewport) -> float:
-    """Return the factor, at least 1, by which a robot is drawn larger than it is."""
+    """Return the factor, at least 1, by which a robot is drawn larger, so that it is visible in a small picture."""
     return max(1.0, _MIN_CELLS * view.cell.cols * view.mm_per_px / (2 * outline.half_width_mm))
 
 
