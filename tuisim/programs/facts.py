@@ -84,7 +84,7 @@ def list_wheel_turns(tree: ast.Module) -> Iterator[WheelTurn]:
 
 
 def _list_pairs(tree: ast.Module) -> Iterator[tuple[ast.Call, ast.Call]]:
-    """Yield each two calls that follow each other as statements of the same block."""
+    """Yield each pair of calls that follow each other as statements of the same block."""
     for block in list_blocks(tree):
         for pair in pairwise(block):
             match pair:
@@ -247,7 +247,7 @@ class ProgramFacts:
 
     @cached_property
     def _short_tree(self) -> ast.Module:
-        """The syntax tree of the program; an empty one if it is not Python, or too long."""
+        """The syntax tree of the program; an empty tree if the program is not Python, or too long."""
         text = self._program.text
         return (parse(text) if len(text) <= MAX_TEXT else None) or ast.Module([], [])
 
@@ -263,7 +263,7 @@ class ProgramFacts:
             name: The structure, one of `STRUCTURES`.
 
         Raises:
-            SyntaxError, ValueError, RecursionError: it is not Python.
+            SyntaxError, ValueError, RecursionError: the program is not Python.
         """
         return STRUCTURES[name](self._tree)
 
@@ -275,7 +275,7 @@ class ProgramFacts:
                 or the name of a function or method alone. Methods of other objects of the same class are found as well.
 
         Raises:
-            SyntaxError, ValueError, RecursionError: it is not Python.
+            SyntaxError, ValueError, RecursionError: the program is not Python.
         """
         return list_calls(self._tree, self._program.prelude, call)
 

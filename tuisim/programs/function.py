@@ -31,8 +31,8 @@ def read_function(function: Callable[..., object]) -> ProgramSource:
     or as expressions that compute them. Names without a definition are those of the prelude.
 
     Raises:
-        ConfigError: it is no function with a name and a source, takes arguments, uses something else, or its file has
-            changed since.
+        ConfigError: `function` is no function with a name and a source, needs arguments, or uses something that cannot
+            be copied; or its file has changed since it was loaded.
     """
     plain = SimpleNamespace(func=function, args=(), keywords={})
     called: Any = function if isinstance(function, partial) else plain
@@ -146,7 +146,7 @@ class _Reader:
             user: What uses it, for errors.
 
         Raises:
-            ConfigError: it has no source, or uses something that cannot be copied.
+            ConfigError: the function has no source, or uses something that cannot be copied.
         """
         if not self._claim(name, id(function), user):
             return
@@ -222,11 +222,11 @@ class _Reader:
         self._blocks.append(_Block(name, "", 0, [f"{name} = SimpleNamespace({values})"]))
 
     def _claim_own(self, name: str, own: str, user: str) -> bool:
-        """Register the definition's own name of a function or class; return whether it must still be added.
+        """Register the name in the definition of a function or class; return whether the definition is still missing.
 
         Args:
-            name: The name by which the code uses it; if it is another one, it becomes an alias.
-            own: Its own name.
+            name: The name by which the code uses the function or class; if it differs from `own`, it becomes an alias.
+            own: The name in the definition.
             user: What uses it, for errors.
         """
         if name == own:

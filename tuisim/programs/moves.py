@@ -140,7 +140,8 @@ _PAIRS = re.compile("Move[A-Z]|DriveBase|tank_|steering_")
 def list_parted_moves(tree: ast.Module) -> Iterator[PartedMove]:
     """Yield each pair of equal moves of two motors, the first of which the program waits for without saying so.
 
-    A program that can move both wheels with one call means to move one alone. So does a loop that has no other moves.
+    Programs that also move both wheels by one call, and loops with no other statements, are left out: they probably
+    move one wheel alone on purpose.
     """
     names = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
     if any(map(_PAIRS.match, names)):

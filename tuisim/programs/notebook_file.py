@@ -75,7 +75,7 @@ def read_notebook_programs(path: Path) -> list[NotebookProgram]:
     """Return the programs in a notebook, from the top, without settings that contain the notebook's variables.
 
     Raises:
-        ConfigError: it cannot be read, is no notebook, or a magic line in it is wrong.
+        ConfigError: the file cannot be read, is no notebook, or has a wrong magic line.
     """
     programs: list[NotebookProgram] = []
     title = ""
@@ -111,7 +111,17 @@ def read_notebook_programs(path: Path) -> list[NotebookProgram]:
 
 
 def _parse_magics(text: str, where: str) -> Iterator[_Words]:
-    """Yield each magic of a cell that sets the world, parsed; a cell magic is in the first line of its cell."""
+    """Yield the parsed magic lines of a notebook cell.
+
+    If the cell begins with a cell magic (`%%`), that is the only one; otherwise, every line can be a line magic (`%`).
+
+    Args:
+        text: The text of the cell.
+        where: The place of the cell, for errors.
+
+    Raises:
+        ConfigError: a magic is not one of `PRELUDES`, or has a wrong option.
+    """
     stripped = text.lstrip()
     lines = source_lines(stripped)
     if stripped.startswith("%%"):

@@ -26,7 +26,7 @@ def describe_plugged(run: StoredRun) -> str:
 def _name_remedy(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
     """Return the option that adds walls for a sensor that was plugged in.
 
-    The result is empty if no sensor needs walls, or if there are some.
+    The result is empty if no such sensor needs walls, or if the world has walls.
     """
     is_blind = spec.world.is_open and any(DEVICES.get(part.part) in SENSES_WALLS for part in parts)
     return "; there are no walls: --walls on" if is_blind else ""
@@ -35,7 +35,7 @@ def _name_remedy(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
 def describe_newest(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
     """Return a sentence about the part that was plugged in last.
 
-    For a left wheel, it is empty: the sentence about the right wheel names both.
+    If that is the left wheel, the result is empty: the sentence about the right wheel names both wheels.
     """
     last = parts[-2:] if parts[-1].role == RIGHT else parts[-1:]
     words = f"{list_parts(last)}{_name_remedy(last, spec)}"

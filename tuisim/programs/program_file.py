@@ -57,7 +57,9 @@ class WrongMat(NamedTuple):
 
 
 def find_wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
-    """Return the fault of the mat in a magic line; None if there is none, or if this function does not check the mat.
+    """Return the fault of the mat that a program's magic line names; None if it names no mat, or an existing one.
+
+    A mat that is given as a path, or with another folder of mats, is not checked: the result is then None, too.
 
     Args:
         text: The program.
@@ -422,12 +424,12 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
 
     Args:
         path: The file.
-        as_python: Whether to read a file that is not UTF-8, too, with wrong bytes as lone surrogates: when it is run,
-            it raises the error that Python raises.
+        as_python: Whether to accept a file that is not UTF-8: wrong bytes become lone surrogates, and the program
+            raises Python's own error when it is run. If this is False, such a file raises ConfigError.
         alone: Whether other files in its folder are not its modules, as in a folder with the files of a whole class.
 
     Raises:
-        ConfigError: it is missing, a directory, not Python text, too large, or its magic line is wrong.
+        ConfigError: the file is missing, a directory, not Python text or too large, or its magic line is wrong.
     """
     file_name = str(path)
     hint = "give a Python file"

@@ -373,7 +373,7 @@ def _check_prelude(program: Program) -> None:
     """Check that a program with a prelude, which uses ev3dev2, does not import Pybricks.
 
     Raises:
-        ProfileError: it does.
+        ProfileError: the program imports Pybricks.
     """
     if Library.PYBRICKS in program.text and find_library(read_modules(program)) is Library.PYBRICKS:
         raise ProfileError(

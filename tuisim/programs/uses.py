@@ -75,8 +75,8 @@ class Uses:
 def _list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoopEnd]:
     """Yield each use in a loop of a reading that was taken before the loop and that nothing in the loop reads again.
 
-    A use is a comparison with a constant. Another test, or a move, is yielded without an operator. Its lines are those
-    of the loop.
+    A use is a comparison with a constant, another test, or a move; the last two are yielded without an operator. The
+    first and last line of a use are those of the loop.
 
     Args:
         tree: The program.

@@ -44,7 +44,7 @@ class LoopEnd:
 
     @property
     def is_endless(self) -> bool:
-        """Whether nothing that comes can end the loop: it renews nothing that it compares, or compares nothing."""
+        """Whether the loop cannot end: the compared value never changes, or the loop only computes without an end."""
         return bool(self.set_line) or (self.is_silent and not self.name)
 
     @property
@@ -308,7 +308,7 @@ def _has_any(loop: _Loop, *kinds: type[ast.AST]) -> bool:
 
 
 def _has_exit(loop: _Loop) -> bool:
-    """Return whether anything but its condition can end a loop."""
+    """Return whether something else than a loop's condition can end it, such as a `break` or a call of `exit`."""
     return _has_any(loop, ast.Break, ast.Return, ast.Raise) or any(map(_is_exit, ast.walk(loop)))
 
 

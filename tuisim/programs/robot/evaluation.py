@@ -229,10 +229,9 @@ class Evaluation:
         return bases
 
     def method(self, scope: Scope, name: str) -> OwnFunction | LibraryClass | None:
-        """Return the method of a class: its own, or the one that it inherits.
+        """Return the method of a class: its own, or the one that it inherits; None if there is no such method.
 
-        If a base class is one of a library, which may define the method, return that class. The result is None without
-        one.
+        If the class inherits from a class of a library, which may define the method, the library's class is returned.
 
         Args:
             scope: The scope of the class.
@@ -413,7 +412,7 @@ class Evaluation:
 
 
 def _add_call(call: ast.Call | None, values: Iterable[Value]) -> Iterator[Value]:
-    """Yield values; an instance that has no call in `via` yet gets `call` there."""
+    """Yield the values; in an instance without a call in its attribute `via`, the attribute is set to `call`."""
     for value in values:
         yield (
             replace(value, via=call) if isinstance(value, Instance) and value.via is None else value

@@ -144,7 +144,7 @@ class _MechanicsReader:
             self.places.setdefault(port, set()).update(self._find_numbers(value, scope))
 
     def _read_forwards(self, scope: Scope) -> None:
-        """Record each motor that a function for driving forwards, by its name, only turns backwards."""
+        """Record each motor that a function only turns backwards although its name says that it drives forwards."""
         speeds: dict[str, list[float]] = {}
         where: dict[str, Where] = {}
         for node in scope.body:

@@ -380,7 +380,7 @@ class _Reader:
     def _read_gears(self, call: Call) -> float:
         """Return a motor's turns per turn of the axle that it drives, from the list of gears in a call.
 
-        1.0 without gears.
+        The result is 1.0 if the call has no list of gears.
         """
         parts = [*self._flatten(self.evaluation.find_argument(call, library.GEARS, 2) or ())]
         trains = [

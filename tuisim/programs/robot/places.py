@@ -25,9 +25,9 @@ _ROW = (Side.LEFT, Side.MIDDLE, Side.RIGHT)
 
 
 def add_sides(mentions: Sequence[Mention]) -> list[Mention]:
-    """Return the mentions.
+    """Return the mentions; of three colour sensors that one call creates, the names get left, centre and right.
 
-    Three colour sensors that one line creates, without sides in names, become left, centre and right.
+    This is done only if none of the program's names for the three sensors says a side.
     """
     calls = [
         mention.call for mention in mentions if mention.kind is DeviceKind.COLOR and mention.port
@@ -190,13 +190,13 @@ KINDS: Mapping[type, DeviceKind] = {spec: kind for kind, spec in SENSOR_SPECS.it
 
 
 def name_sensor(sensor: SensorSpec) -> str:
-    """Return a sensor's name in words."""
+    """Return a sensor in words, such as `left colour sensor`."""
     kind = KINDS[type(sensor)]
     return f"{sensor.name} {kind}" if kind is DeviceKind.COLOR else str(kind)
 
 
 def find_path(sensor: SensorSpec) -> str:
-    """Return the key of a sensor in a robot file."""
+    """Return the key of a sensor in a robot file, such as `color_sensors.left`."""
     match sensor:
         case ColorSensorSpec():
             return f"color_sensors.{sensor.name}"

@@ -15,7 +15,10 @@ _PORT = re.compile(r"(?:ev3-ports:)?(out[A-D])")
 
 
 def add_port_texts(mentions: Mentions, modules: Iterable[Module]) -> Mentions:
-    """Return the mentions of a program; if it creates no device, with a motor for each port that texts in it name."""
+    """Return the mentions of a program; those of a program that creates no device get motors.
+
+    There is a motor for each port, such as `outA`, that a text in the program names.
+    """
     if mentions.devices or mentions.pairs:
         return mentions
     motors: dict[str, Mention] = {}

@@ -92,10 +92,10 @@ class Scope:
         return []
 
     def list_items(self, node: ast.expr) -> Iterator[ast.expr]:
-        """Yield an expression and, for a loop variable, also the motors of pairs that it stands for in turn.
+        """Yield an expression and, if it is a loop variable, the expressions that it may stand for in turn.
 
-        These are the attributes in a list over which the loop goes. For `for motor in tank.motors.values()`, the pair
-        is yielded for its motors.
+        These are the attributes in the list or tuple over which the loop goes, such as `tank.left_motor`. For a loop
+        over `tank.motors.values()`, `tank` is yielded.
         """
         yield node
         for binding in self.names.get(node.id, ()) if isinstance(node, ast.Name) else ():

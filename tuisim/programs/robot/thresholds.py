@@ -67,7 +67,7 @@ _READ = re.compile("|".join(rf"\.{read}\b" for read in LightRead if not read.is_
 def find_light_read(text: str) -> LightRead:
     """Return the kind of a colour sensor's reading that comes first in the text of a program.
 
-    Percent if it has none.
+    The result is `LightRead.PERCENT` if the text has no such reading.
     """
     match = _READ.search(text)
     return LightRead(match[0][1:]) if match else LightRead.PERCENT
