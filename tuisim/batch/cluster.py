@@ -44,7 +44,7 @@ def call_within_s(seconds: float, call: Callable[..., _Found], *args: Any, **nam
         *args, **named: Its arguments.
 
     Raises:
-        TimeoutError: it takes longer than `seconds`; it goes on in its thread.
+        TimeoutError: the call takes longer than `seconds`; it goes on in its thread.
     """
     answers: queue.SimpleQueue[tuple[_Found | None, BaseException | None]] = queue.SimpleQueue()
 
@@ -109,7 +109,8 @@ class ClusterWatch:
         """Check the cluster, unless it was checked just before.
 
         Raises:
-            HostError: it has had no scheduler or no worker for a while, or a worker has no tuisim or another version.
+            HostError: the cluster has had no scheduler, no worker, or no answer from its workers for `PATIENCE_S`
+                seconds; or a worker has no tuisim, or another version.
         """
         begun = self._clock()
         if begun < self._look_at:
@@ -129,7 +130,7 @@ class ClusterWatch:
         """Check whether the cluster has a fault at this moment.
 
         Raises:
-            HostError: it has one.
+            HostError: the cluster has a fault.
         """
         wrong, hint = self._find_fault()
         if wrong:
@@ -159,7 +160,7 @@ class ClusterWatch:
         """Check that workers have the same version of tuisim.
 
         Raises:
-            HostError: one of them has none, or another version.
+            HostError: a worker has no tuisim, or another version.
         """
         run = self._client.run
         versions = call_within_s(

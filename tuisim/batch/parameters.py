@@ -221,7 +221,7 @@ def parse_seeds(text: str, key: str = "--seeds") -> tuple[int, ...]:
         key: The option, for errors.
 
     Raises:
-        ConfigError: one is not a whole number in the range of seeds, or occurs twice.
+        ConfigError: a seed is not a whole number in the range of seeds, or occurs twice.
     """
     choice = parse_values(text, key)
     if isinstance(choice, SampleValues):
@@ -237,7 +237,7 @@ def check_seeds(values: Sequence[object], key: str) -> tuple[int, ...]:
         key: The option, for errors.
 
     Raises:
-        ConfigError: one is not a whole number in the range of seeds, or occurs twice.
+        ConfigError: a seed is not a whole number in the range of seeds, or occurs twice.
     """
     seeds: dict[int, None] = {}
     for value in values:

@@ -92,7 +92,7 @@ class Plan:
         """Check the combinations of a program's parameters, except for the seeds.
 
         Raises:
-            ConfigError: one is wrong.
+            ConfigError: a combination has a wrong value.
         """
         own = [axis for axis in self.grid.axes if axis.names != (SEED,)]
         for name in self.choices:
@@ -128,8 +128,8 @@ class Plan:
             expressions: The expressions by the name of their column.
 
         Raises:
-            ConfigError: one cannot be parsed, names a column that the table will not have, or has the name of a column
-                that the table will have.
+            ConfigError: an expression cannot be parsed, names a column that the table will not have, or has the name of
+                a column that the table will have.
         """
         check_expressions(expressions, self.names, [goal.name for goal in self.goals])
 
@@ -186,7 +186,7 @@ class Plan:
     def count_seeds(self) -> int:
         """Return how many successive runs differ only in their seed.
 
-        1 if another parameter varies faster than the seed.
+        The result is 1 if another parameter than the seed varies fastest.
         """
         last = self.grid.axes[-1] if self.grid.axes else None
         return len(last.points) if last and last.names == (SEED,) else 1

@@ -28,7 +28,7 @@ _FORM = re.compile(rf"\s*(?P<column>[^±]+?)\s*(?:±|\+-)\s*(?P<margin>{NUMBER})
 
 @dataclass(frozen=True, slots=True)
 class Precision:
-    """How precisely the mean of a column must be known: its margin."""
+    """How precisely the mean of a column must be known: the margin within which it must be with 95 %."""
 
     column: str
     margin: float
@@ -41,11 +41,11 @@ def parse_precision(text: str, key: str, plan: Plan, columns: Iterable[str]) -> 
     Args:
         text: The text; `+-` is the same as `±`.
         key: The argument, for errors.
-        plan: The runs.
-        columns: The columns of this batch's table that not every batch has.
+        plan: The plan of the batch.
+        columns: Numeric columns of this batch's table besides time, pose, goals and points, such as metrics.
 
     Raises:
-        ConfigError: it cannot be parsed, there will be no such column of numbers, or the seeds are too few.
+        ConfigError: the text cannot be parsed, there will be no such column of numbers, or there is only one seed.
     """
     match = _FORM.fullmatch(text) if isinstance(text, str) else None
     if match is None or not 0 < float(match["margin"]) < math.inf:

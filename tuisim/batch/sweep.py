@@ -300,7 +300,8 @@ class Sweep:
             workers: The processes that execute the tasks.
             on_row: Called with each new row.
             measure: Returns further columns of a run by name.
-            due: The indices of the tasks; None for all. An iterator that has stopped is asked again after further rows.
+            due: The indices of the tasks; None for all. If the iterator has stopped, its `next` is called again after
+                further results.
 
         Raises:
             ConfigError, HostError: there is no such cluster, or the connection to it is lost.
@@ -350,7 +351,7 @@ class Sweep:
         """Write the table to the file `out`.
 
         Raises:
-            ExportError: it cannot be written.
+            ExportError: the file cannot be written.
         """
         if self._out is not None:
             export_frame(frame, self._out, build_metadata(frame, self._identity))
@@ -359,12 +360,15 @@ class Sweep:
         """Remove the file with the rows, which only an interrupted batch needs.
 
         Raises:
-            ExportError: it cannot be removed.
+            ExportError: the file cannot be removed.
         """
         if self._partial is not None:
             self._partial.remove()
 
     def summarize(self, frame: pd.DataFrame) -> list[ColumnSummary]:
-        """Return statistics of the result columns for each combination of parameters, or if there are many, for all."""
+        """Return statistics of the result columns for each combination of parameters.
+
+        If there are too many combinations, the statistics are those of all runs together.
+        """
         parameters = [*([PROGRAM] if PROGRAM in frame.columns else []), *self._plan.names]
         return build_summaries(frame, parameters, list_result_columns(frame, self._expressions))

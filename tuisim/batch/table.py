@@ -147,7 +147,7 @@ def _is_numeric(column: Any) -> bool:
 
 
 def is_statistic(name: str) -> bool:
-    """Return whether a column of a sample variable can have a name, such as `Light_mean`."""
+    """Return whether a name, such as `Light_mean`, can be that of a column of a sample variable."""
     return name.endswith(tuple(f"_{statistic}" for statistic in STATISTICS))
 
 
@@ -158,7 +158,7 @@ def quote_names(text: str, columns: Iterable[str]) -> str:
 
 
 def name_goals(goals: Iterable[str]) -> list[str]:
-    """Return the names of the columns of goals."""
+    """Return the names of the table's columns for some goals: the goals' names with the prefix `GOAL`."""
     return [f"{GOAL}{name}" for name in goals]
 
 
@@ -188,8 +188,8 @@ def check_expressions(
         goals: The names of the goals.
 
     Raises:
-        ConfigError: one cannot be parsed, names a column that the table will not have, or has the name of a column that
-            the table will have.
+        ConfigError: an expression cannot be parsed, names a column that the table will not have, or has the name of a
+            column that the table will have.
     """
     known = list_usual_columns(parameters, goals)
     for name, text in expressions.items():
@@ -227,7 +227,9 @@ class ColumnSummary:
 def build_summaries(
     frame: pd.DataFrame, parameters: Sequence[str], columns: Sequence[str]
 ) -> list[ColumnSummary]:
-    """Return statistics of some columns for each combination of parameters, or if there are many, for all runs.
+    """Return statistics of some columns for each combination of parameters.
+
+    If there are more than `MAX_GROUPS` combinations, the statistics are those of all runs together.
 
     Args:
         frame: The table.

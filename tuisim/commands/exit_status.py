@@ -128,7 +128,7 @@ def describe_last_state(facts: dict[str, Any]) -> str:
 
 
 def has_shown_error(run: StoredRun) -> bool:
-    """Return whether a run's output has error texts: an error that ended the run is then among them."""
+    """Return whether a run's output has lines on stderr; if so, an error that ended the run is among them."""
     return any(row.stream == Stream.STDERR for row in run.output.rows())
 
 

@@ -22,7 +22,11 @@ if TYPE_CHECKING:
 
 
 def list_names(field: str) -> Iterable[str]:
-    """Return the names to offer for an argument: `programs`, `columns`, `goals`, or an option such as `background`."""
+    """Return the names that the shell offers to complete an argument; empty if there are none.
+
+    Args:
+        field: What the argument names: `programs`, `columns`, `goals`, or an option such as `background`.
+    """
     match field:
         case "programs":
             from tuisim.programs.program_file import list_programs

@@ -356,7 +356,7 @@ def _build_progress(number: int, count: int) -> Callable[[RunHandle], None]:
     """Return a function that shows the progress of a run.
 
     Args:
-        number: The run's index among the runs.
+        number: The index of the run among all runs of the command, from 0.
         count: The number of runs.
     """
 

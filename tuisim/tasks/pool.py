@@ -48,8 +48,8 @@ def run_many(tasks: Iterable[Task], jobs: int = 0) -> Generator[Result]:
     generator stops the running tasks.
 
     Args:
-        tasks: The tasks; the next ones are taken as workers become free. If this iterator has ended, its `next` is
-            called again after each result.
+        tasks: The tasks; the next ones are taken as workers become free. If the iterator has stopped, its `next` is
+            called again after each result, as it may then have further tasks.
         jobs: Number of workers; 0 is one for each processor. With 1, the tasks run in this process.
 
     Raises:

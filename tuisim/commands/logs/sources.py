@@ -38,7 +38,7 @@ def build_request(arguments: Arguments) -> LogRequest:
     """Return the file or the runs that the arguments name, with the columns to use.
 
     Raises:
-        ConfigError: a file together with another log.
+        ConfigError: a file is named together with another log.
     """
     words = arguments.words or ["last"]
     files = [word for word in words if is_file(word)]
@@ -84,8 +84,8 @@ def open_single(arguments: Arguments) -> Log:
     """Return the only log that the arguments name.
 
     Raises:
-        ConfigError: none or several are named.
-        LogError: it cannot be read.
+        ConfigError: no log is named, or several.
+        LogError: the log cannot be read.
     """
     logs = list(open_sources(arguments))
     if len(logs) > 1:

@@ -195,10 +195,10 @@ def _show_commands(arguments: Arguments, words: str) -> int:
 
 
 def _parse_threshold_option(arguments: Arguments) -> EventChoice:
-    """Return the threshold in the arguments, or the search for commands; a name of "" stands for every variable.
+    """Return the threshold in the arguments, or the search for commands; the variable "" stands for every variable.
 
     Raises:
-        ConfigError: there is no threshold, there are two, or it cannot be read.
+        ConfigError: the arguments give no threshold or two, or a text that is none.
     """
     if bool(arguments.when) is (arguments.at is not None):
         raise ConfigError(
