@@ -138,7 +138,7 @@ class AnalysisModel:
     def sample(self) -> int:
         """The index of the selected variable's sample in the row of the cursor.
 
-        If it has none there, of its next sample.
+        If the variable has no sample there, it is the index of its next sample, or else of its last one.
         """
         return self._sample(self.trace, self.row)
 
@@ -175,7 +175,7 @@ class AnalysisModel:
             self.row = int(self.trace.series.rows[self.trace.pyramid.find_nearest(time_s)])
 
     def go_to_moment(self, time_s: float) -> None:
-        """Move the cursor to the selected variable's sample nearest to a time of its run, in s."""
+        """Move the cursor to the selected variable's sample nearest to a time of the variable's run, in s."""
         series = self.trace.series
         if len(series.rows):
             self.row = int(series.rows[int(np.nanargmin(np.abs(series.time_s - time_s)))])
@@ -409,11 +409,11 @@ class AnalysisModel:
         Args:
             text: The text of the note.
             start_s, stop_s: The time range of the run that the note is about, in s.
-            variable: The name of the variable that it is about.
+            variable: The name of the variable that the note is about.
             run: Index of the run in the log, from 0.
 
         Raises:
-            LogError: it cannot be written, or the log is the standard input.
+            LogError: the note cannot be written, or the log is the standard input.
         """
         place = self._place(run)
         notes = [*self._notes[run]]

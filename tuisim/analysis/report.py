@@ -64,7 +64,7 @@ def check_report(path: Path) -> None:
     """Check that a report can be written to a path.
 
     Raises:
-        ExportError: it cannot be written, or its suffix is not that of an HTML page.
+        ExportError: the path cannot be written, or its suffix is not that of an HTML page.
     """
     if path.suffix.lower() not in SUFFIXES:
         raise ExportError(

@@ -62,10 +62,10 @@ def find_choices(file: str) -> ReadChoices | None:
 def remember_choices(file: str, choices: ReadChoices) -> None:
     """Store the choices of how to read a file, in place of its earlier choices.
 
-    If choices for too many files are stored, the oldest are dropped.
+    Only the choices for the last `MAX_FILES` files are kept. For a file that is not a regular one, nothing is stored.
 
     Raises:
-        OSError: they cannot be stored.
+        OSError: the choices cannot be stored.
     """
     if (reading := _look_up(file)) is not None:
         others = [old for old in _load() if old.path != reading.path]
@@ -220,7 +220,7 @@ def read_notes(place: Path) -> tuple[Note, ...]:
     """Return the notes in a file; if the file does not exist, there are none.
 
     Raises:
-        LogError: it cannot be read, or a row is not a note.
+        LogError: the file cannot be read, or a row is not a note.
     """
     try:
         lines = [line for line in read_regular(place, _MAX_NOTES_BYTES).split(b"\n") if line]

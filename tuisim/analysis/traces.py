@@ -161,7 +161,7 @@ class LogTraces(Traces):
         """Return the trace of a variable, given by its name.
 
         Raises:
-            KeyError: there is none.
+            KeyError: there is no trace of this name.
         """
         return self._by_log_name[name]
 

@@ -26,10 +26,7 @@ _NO_NAME = frozenset("\n(=:")
 
 
 def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:
-    """Return the program that is given as a file, the name of an example, a text or a function.
-
-    Args:
-        program: One of these.
+    """Return the program that a caller gives as a file, the name of an example, a source text or a function.
 
     Raises:
         ConfigError: there is no such program, or its first line is wrong.
@@ -90,7 +87,7 @@ def read_texts(texts: Sequence[str], key: str) -> tuple[str, ...]:
         key: The name of the argument, for errors.
 
     Raises:
-        ConfigError: it is no list of texts.
+        ConfigError: the argument is no list of texts.
     """
     if isinstance(texts, str) or not all(isinstance(text, str) for text in texts):
         raise ConfigError(f"must be a list of texts, got {texts!r}", key=key)

@@ -154,7 +154,7 @@ def read_seeds(seeds: Any) -> tuple[int, ...]:
     """Return seeds as a tuple of whole numbers.
 
     Raises:
-        ConfigError: they are no list, there are none, or one is wrong.
+        ConfigError: the seeds are no list, there are none, or one of them is wrong.
     """
     if isinstance(seeds, str) or not isinstance(seeds, Iterable):
         raise ConfigError(f"must be several, got {seeds!r}", "such as range(200)", key="seeds")

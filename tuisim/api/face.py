@@ -274,8 +274,8 @@ def experiment(
         columns: Columns of the telemetry, such as `x_mm`: the table then has one row for each tick of each run, and of
             the values of a run only metrics and expressions.
         expressions: Further columns by name, such as `{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}`.
-        goals: A goals file; its world is used without a `world`, where no option says otherwise.
-        keep: Which runs to store: `load_run` takes their values of the column `id`, with `all` also those of `run`.
+        goals: A goals file; if no `world` is given, its world is used, and options take precedence over it.
+        keep: Which runs to store; `load_run` opens one by its value in the column `id`, with `all` also in `run`.
         jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
         out: A file for the table, in any format of a log; an interrupted experiment that is called again goes on with
             the rows so far.

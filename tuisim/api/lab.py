@@ -164,10 +164,10 @@ class Lab:
         Args:
             left, right: The speed for each wheel's motor in degrees per second, positive forwards, at most
                 `max_speed_dps`. Under `robolab` a motor gains at most 5000 / `weight` of the robot in each
-                second: 833 for the default robot; a weightless one has its speed at once. Without speeds, both motors
-                go on as before.
+                second: 833 for the default robot; a weightless one reaches its speed immediately. Without speeds, both
+                motors go on as before.
             period_s: Simulated seconds, rounded to ticks; at least one tick.
-            commands: What a program asks for meanwhile, such as the part of `Run.commands` that lies in the step: each
+            commands: Commands of a program during the step, such as those of `Run.commands` whose times lie in it; each
                 takes effect at its own time.
 
         Raises:
@@ -222,7 +222,7 @@ def read_speeds(left: Any, right: Any) -> tuple[float, float]:
     """Return two speeds, which may be NumPy numbers, as Python numbers.
 
     Raises:
-        ConfigError: one is no number.
+        ConfigError: a speed is no number.
     """
     try:
         left_dps, right_dps = float(left), float(right)

@@ -54,7 +54,7 @@ def mark(
 
     Raises:
         ConfigError: goals, folders or seeds are wrong, or bubblewrap does not start; nothing was run.
-        HostError: this machine could not make a run.
+        HostError: a run did not take place because of this machine; `resume` then runs what is missing.
         LogError: a recording cannot be written.
         KeyboardInterrupt: ctrl-C; the runs have been stopped.
     """

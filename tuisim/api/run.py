@@ -114,7 +114,7 @@ class Run:
         """The calls of the program to motors, gyro and pen, each `(time_ns, part, call, values)`, for `Lab.step`.
 
         Raises:
-            LogError: they are not recorded, or damaged.
+            LogError: the commands were not recorded, or their record is damaged.
         """
         return self.stored.read_commands()
 

@@ -155,7 +155,7 @@ class Study:
         options: Worlds, and values by the names of options, or several of each.
 
     Raises:
-        ConfigError: one of them is wrong.
+        ConfigError: an argument is wrong.
     """
 
     def __init__(
@@ -327,7 +327,7 @@ def _read_choice(name: str, values: Any) -> Choice:
     """Return the values of a parameter; a text is parsed like the value of the option `--set`.
 
     Raises:
-        ConfigError: there are none, or the text cannot be parsed.
+        ConfigError: there are no values, or the text cannot be parsed.
     """
     if isinstance(values, str):
         return parse_values(values, name)

@@ -113,7 +113,7 @@ class AppView:
             settings: The settings of the world, by path.
             program: The program; None leaves the program that is open.
             home: Whether to put the robot back to its start.
-            runs: Whether the app also runs the program; `told` gets the run, or why there is none.
+            runs: Whether the app also runs the program; the queue `told` then gets the run, or why there is none.
             speed: The speed of that run, as in `RunOptions`; None for the speed that the app's user has set, else as
                 fast as possible.
 

@@ -105,7 +105,7 @@ class AppRun:
                 self.ended = self.stored().end
 
     def pump(self) -> list[Message]:
-        """Return no events: the app handles them."""
+        """Return an empty list: the app handles the events of the run."""
         return []
 
     def send(self, command: Message) -> None:
@@ -506,7 +506,7 @@ def _convert_plain(value: Any) -> Any:
     """Return a number or array of another library, such as NumPy, as Python's own type.
 
     Raises:
-        TypeError: it is neither a number nor an array.
+        TypeError: the value is neither a number nor an array.
     """
     if hasattr(value, "tolist"):
         return value.tolist()

@@ -62,7 +62,7 @@ def picture_of(vals: Iterable[int]) -> Image:
     """Return the picture with the pixels in `vals`, a cell of `get_image_data_from_datalog`.
 
     Raises:
-        LogError: it is not the bytes of a square RGBA picture.
+        LogError: `vals` is not the bytes of a square RGBA picture.
     """
     from PIL import Image
 

@@ -356,7 +356,7 @@ class Lab:
     def _build_captions(self, words: Arguments, plan: _CellPlan) -> dict[str, dict[str, Any]]:
         """Return what a cell displays below its picture, as bundles of MIME data by name.
 
-        A cell without a picture can only display the offer of the app, and only if its words request that.
+        A cell without a picture only displays the offer of the app, and only if its magic requests the app.
         """
         app_words = words.app if words.app is not None and not words.app.off else None
         if words.app is not None:

@@ -83,12 +83,12 @@ class LiveRobot:
     def build_captions(self, background: str, words: AppWords | None) -> dict[str, dict[str, Any]]:
         """Return the displays below the picture of a cell, by name.
 
-        `offer` is a sentence with the offer of the app, if it is due; `drag` says how to drag the robot, if the text of
-        the cell has that word.
+        `offer` is a sentence that offers the app, if the cell requests the app or `_is_due` is true. `drag` says how to
+        drag the robot, if the text of the cell contains the word `drag`.
 
         Args:
             background: The mat that the app opens.
-            words: The cell's words about the app; None for none.
+            words: The options of the cell's magic that requests the app; None if the cell has no such magic.
         """
         kernel = _find_kernel()
         if kernel is None:

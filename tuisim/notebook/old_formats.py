@@ -209,8 +209,8 @@ def build_robot_state(
         record: The tick to describe.
         noise: The noise at that tick.
         field: The mat.
-        highest_deg: The largest heading up to that tick.
-        wheels: The registers of the wheel motors.
+        highest_deg: The largest heading up to that tick, in degrees.
+        wheels: The values in the drivers of the two wheel motors, such as the last command.
     """
     from tuisim.engine.core.sensors import measure_sensors
     from tuisim.notebook.image_log import add_alpha, read_arrays

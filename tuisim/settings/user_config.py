@@ -204,7 +204,7 @@ def read_config_text(path: Path) -> str:
     """Return the text of `config.toml`, empty if the file does not exist.
 
     Raises:
-        ConfigError: it cannot be read.
+        ConfigError: the file cannot be read.
     """
     try:
         return read_regular(path, MAX_FILE_BYTES, follow_links=True).decode()
@@ -224,7 +224,7 @@ def parse_config(text: str, path: Path) -> UserConfig:
         path: The file, for errors; paths in it are relative to its folder.
 
     Raises:
-        ConfigError: it is not TOML.
+        ConfigError: the text is not TOML.
     """
     data = parse_toml(text, str(path), ConfigError)
     location = Location(str(path))
@@ -383,7 +383,7 @@ def write_template() -> Path:
     """Write a `config.toml` with every setting as a comment, and return its path.
 
     Raises:
-        ConfigError: it exists, or cannot be written.
+        ConfigError: the file exists already, or cannot be written.
     """
     path = find_config_file()
     if path.exists() or path.is_symlink():
