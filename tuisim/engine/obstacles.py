@@ -33,10 +33,10 @@ _HEAD = "# Obstacles for tuisim: lower left corner and size in mm; x from the fi
 
 
 def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
-    """Return a set of obstacles by name, or from a TOML or JSON file.
+    """Return a set of obstacles by its name, or the obstacles in a TOML or JSON file.
 
     Args:
-        word: The name or the path.
+        word: The name of the set, or the path of the file.
         key: The option to blame in errors about a name.
 
     Raises:
@@ -101,12 +101,12 @@ def save_obstacles(obstacles: Sequence[Obstacle], path: Path | str) -> None:
 
 
 def obstacle_file(obstacles: Sequence[Obstacle]) -> list[str]:
-    """Return the lines of an obstacle file."""
+    """Return the lines of a TOML file with these obstacles."""
     return [_HEAD, "", *obstacle_lines(obstacles)]
 
 
 def obstacle_lines(obstacles: Sequence[Obstacle]) -> list[str]:
-    """Return obstacles as TOML lines."""
+    """Return the lines of TOML tables `[[obstacle]]`, one for each obstacle; without obstacles, `obstacle = []`."""
     if not obstacles:
         return ["obstacle = []"]
     boxes = [["[[obstacle]]", *files.value_lines(box, _KEYS), ""] for box in obstacles]

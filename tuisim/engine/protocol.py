@@ -492,7 +492,7 @@ class MotorRegisters:
 
 @dataclass(frozen=True, slots=True)
 class Wheels(Message):
-    """The registers of the two wheel motors; sent shortly before `Ended`, and not stored."""
+    """What programs have written to the two wheel motors, and their speeds; sent before `Ended`, and not stored."""
 
     left: MotorRegisters = MotorRegisters()
     right: MotorRegisters = MotorRegisters()

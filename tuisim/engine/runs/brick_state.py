@@ -80,13 +80,13 @@ class BrickState:
 
     @property
     def matrix(self) -> list[list[int]]:
-        """Brightness of the pixels of a hub's matrix of lights, row by row."""
+        """Brightness, 0 to 255, of the pixels of a hub's matrix of lights: a list for each row, from the top."""
         levels = [self.leds.get(name, 0) for name in PIXEL_NAMES]
         return [levels[start : start + SIDE_PIXELS] for start in range(0, len(levels), SIDE_PIXELS)]
 
     @property
     def port_lights(self) -> dict[str, int]:
-        """Brightness of the lights on ports of a hub, by port."""
+        """Brightness, 0 to 255, of the lights that are connected to a hub, by the name of the port."""
         return {
             name.removeprefix(PORT_LIGHT): level
             for name, level in self.leds.items()
@@ -94,7 +94,9 @@ class BrickState:
         }
 
     def find_light(self, controller: str = "") -> tuple[int, ...]:
-        """Return red, green and blue of the status light of a hub or a controller; empty if it is not connected.
+        """Return red, green and blue, 0 to 255, of the status light of a hub or a controller.
+
+        The result is empty if the controller is not connected.
 
         Args:
             controller: A key of `CONTROLLERS`; empty for the hub.
@@ -223,5 +225,8 @@ def _is_screen(screen: TextScreen) -> bool:
 
 
 def _unpack_picture(text: str) -> bytes:
-    """Return the picture that a row's text stores, cut off one byte after the length of a valid picture."""
+    """Return the picture that the text of a row stores, in the format of `BrickState.picture`.
+
+    It is cut off one byte after the length of a valid picture, because an invalid one may be of any length.
+    """
     return zlib.decompressobj().decompress(base64.b85decode(text), len(BLANK) + 1)

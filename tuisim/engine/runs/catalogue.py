@@ -76,7 +76,7 @@ class RunInfo:
     """Tags, separated by spaces."""
 
     def find_tag(self, prefix: str) -> str:
-        """Return the rest of the run's first tag that begins with a prefix; empty if there is none."""
+        """Return the rest of the run's first tag that begins with a prefix; empty if no tag begins with it."""
         return next(
             (tag.removeprefix(prefix) for tag in self.tags.split() if tag.startswith(prefix)), ""
         )
@@ -325,7 +325,10 @@ def _is_sound(path: Path) -> bool:
 
 
 def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
-    """Insert a run, with its number if that is free; return its actual number."""
+    """Insert a run, and return its number: the one in `info` if that is free, else the next one.
+
+    If the run is listed already, only return its number.
+    """
     listed = connection.execute("SELECT number FROM runs WHERE id = ?", (info.id,)).fetchone()
     if listed is not None:
         return int(listed[0])

@@ -385,7 +385,9 @@ class CommandIndex:
     # What came
 
     def _measure(self, number: int, aim: Aim) -> str:
-        """Return in words what a command to wheels or a drive base caused, such as a distance; empty for others.
+        """Return in words what a command to a wheel or a drive base caused, such as `turned 360° by 1.50 s`.
+
+        The result is empty for other commands, and if nothing was recorded after the command.
 
         Args:
             number: The number of the event with the command.
@@ -480,7 +482,7 @@ def _find_mains() -> Array:
 
 
 def _measure_way(records: Array) -> tuple[float, float]:
-    """Return how far the robot drove in mm, and by how many degrees it turned, clockwise."""
+    """Return how far the robot drove in tick records, in mm, and by how many degrees it turned, clockwise."""
     import numpy as np
 
     steps = np.hypot(np.diff(records["x_mm"]), np.diff(records["y_mm"]))

@@ -28,7 +28,7 @@ class Quantity:
     """Names that the values 0, 1, … stand for; empty if the value is a number."""
 
     def write(self, low: float, high: float) -> str:
-        """Return as text the value of a command that may have been repeated with other values.
+        """Return the value of a command as text; for a command that was repeated with other values, their range.
 
         Args:
             low, high: The lowest and the highest value; if they are equal, the text has one number.
@@ -182,13 +182,13 @@ def describe_aim(call: Call, values: Sequence[float]) -> str:
 def describe_command(
     call: Call, values: Sequence[float], low: float, high: float, tick_hz: int
 ) -> str:
-    """Return a command in words, such as `run 500 °/s`.
+    """Return a command in words, such as `run 500 °/s`; if it was repeated with other values, with their range.
 
     Args:
-        call: The call.
-        values: Its values.
-        low, high: Range of its main value over all repetitions.
-        tick_hz: Ticks per second.
+        call: The kind of command.
+        values: The values of one of the commands.
+        low, high: The lowest and the highest main value of all of them; see `CallWords.main`.
+        tick_hz: Ticks per second of the run, to show numbers of ticks in seconds.
     """
     if call is Call.PLUG:
         parts = decode_parts(values, 0)

@@ -43,14 +43,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class DeadReckoning:
-    """The poses of a robot as its wheels' encoders show them: arrays of shape (n,)."""
+    """The poses of a robot by dead reckoning, from its wheels' encoders: arrays of shape (n,), in mm and degrees."""
 
     x_mm: FloatArray
     y_mm: FloatArray
     heading_deg: FloatArray
 
     def compute_error_mm(self, x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
-        """Return the distance of each position from the true position in mm, shape (n,).
+        """Return how far each position is from the robot's true position, in mm, shape (n,).
 
         Args:
             x_mm, y_mm: The true positions, each of shape (n,).
@@ -382,7 +382,7 @@ def describe_damage(run: StoredRun) -> str:
 
 
 def _select_sound(records: Array) -> Array:
-    """Return those records that contain only plausible numbers."""
+    """Return those tick records in which every number is plausible, and none is NaN."""
     import numpy as np
 
     whole = np.ones(len(records), np.bool_)
@@ -393,7 +393,12 @@ def _select_sound(records: Array) -> Array:
 
 
 def tick_times_s(records: Array, spec: RunSpec) -> Array:
-    """Return the time at which each tick is due, in simulated seconds, shape (n,)."""
+    """Return the time at which each tick is due, in simulated seconds from the start, shape (n,).
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
+        spec: The run, whose profile has the tick rate.
+    """
     ticks = records["tick"].astype("i8")
     times: Array = -(-ticks * NS_PER_S // spec.profile.tick_hz) / NS_PER_S
     return times

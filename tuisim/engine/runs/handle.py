@@ -116,7 +116,7 @@ def _build_template_key(program: Program, spec: RunSpec, field: FieldFiles) -> H
 
 
 def _list_needs(program: Program, field: FieldFiles) -> list[Path]:
-    """Return the files and folders that a program needs besides its run folder and its working directory."""
+    """Return the folders of a program's modules and the files of its mat, which an isolated program needs to read."""
     own = [program.module_folder or os.path.dirname(program.path), *program.python_path]
     return [
         *(Path(os.path.abspath(folder)) for folder in own if folder),
@@ -601,7 +601,10 @@ class RunHandle:
 
 
 def describe_falsified(what: str) -> str:
-    """Return the summary of a falsified run; `what` names the thing in it that cannot come from the simulation."""
+    """Return the summary of a run whose program has falsified its recording.
+
+    `what` says in words what in it cannot come from the simulation.
+    """
     return f"the program has falsified its recording: {what}"
 
 

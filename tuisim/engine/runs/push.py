@@ -41,7 +41,7 @@ class Push:
 
     @property
     def words(self) -> str:
-        """A sentence for users about how the robot was pushed, without its subject, the robot."""
+        """A sentence for users without its subject, the robot, such as `was pushed 12 mm aside by the wall …`."""
         aside = f"was pushed {self.aside_mm:.0f} mm aside by {self.at} while it turned"
         if self.times > 1:
             return f"{aside}, {counted(self.times, 'time')}, first at {self.since_s:.2f} s"

@@ -83,7 +83,10 @@ _FIRST_BYTES = 1 << 14
 
 
 class ReadingsWriter(MappedWriter):
-    """A writer that appends readings to the record of a run; readers of the file can see each one immediately."""
+    """A writer that appends to a run's record of when the program reads which sensor, encoder or button.
+
+    Readers of the file can see each entry immediately.
+    """
 
     def __init__(self, folder: Path) -> None:
         super().__init__(
@@ -133,7 +136,7 @@ class ReadingsWriter(MappedWriter):
 
 @dataclass(frozen=True, slots=True)
 class Readings:
-    """The readings of a run, in the order in which they were taken."""
+    """The record of when a program has read which sensor, encoder or button during a run, in order of time."""
 
     rows: Array
     """One row of `READING_FIELDS` for each."""
@@ -141,7 +144,7 @@ class Readings:
     """Number of readings for which the file had no space."""
 
     def find(self, modes: tuple[str, ...]) -> Array:
-        """Return the rows of those readings that were taken in one of several modes, in their order."""
+        """Return the rows of those readings that were taken in one of these modes, such as `US-DIST-CM`, in order."""
         import numpy as np
 
         rows: Array = self.rows[

@@ -233,7 +233,7 @@ class _Level:
         self._low = self._high = self._level = value
 
     def changes(self, value: float) -> bool:
-        """Process the next value of the variable; return whether it differs notably from the last notable one."""
+        """Process the next value of the variable; return whether it differs notably from the last notable value."""
         self._low, self._high = min(self._low, value), max(self._high, value)
         if abs(value - self._level) <= _LEVEL_SHARE * (self._high - self._low):
             return False

@@ -214,7 +214,7 @@ def give_command(sim: Simulation, command: SimulationCommand) -> None:
 
 
 def _build_advance(sim: Simulation, actions: Iterable[UserAction]) -> Callable[[int], None]:
-    """Return a function that runs all ticks up to a given tick, with the user's actions right before their ticks."""
+    """Return a function that advances a simulation to a given tick, and applies the user's actions at their ticks."""
     script = deque(action for action in actions if not isinstance(action.command, Stop))
 
     def advance(tick: int) -> None:

@@ -172,7 +172,7 @@ def find_state_without_end(folder: Path) -> Unended:
 
 
 def restore_program(program: Program, folder: Path) -> Program:
-    """Return a run's program so that it can run again, with the copies of its own modules that the run folder has.
+    """Return a stored run's program, changed so that it loads its own modules from their copies in the run folder.
 
     Args:
         program: The program.

@@ -39,7 +39,7 @@ _MAX_ROWS_READ = 10_000
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """One value that a program has logged, with its name, its time and its line."""
+    """One value that a program has printed as a sample, with its variable's name, its time and its line."""
 
     name: str
     value: float
@@ -53,9 +53,9 @@ class Sample:
 
 
 def parse_sample(text: str) -> tuple[str, float, float | None] | None:
-    """Return the name, the value and the printed time of a sample; the time is None if the line has none.
+    """Return the name, the value and the time in seconds of a sample in a printed line; None if it is no sample.
 
-    Return None if the line is not a sample.
+    The time is None if the line has none.
     """
     if ":" not in text:
         return None
@@ -131,8 +131,8 @@ def list_samples(rows: Iterable[OutputRow]) -> list[Sample]:
 def build_value_reader(condition: ValueCondition) -> Callable[[str], float | None]:
     """Return a function that returns the value in a printed line that a condition tests.
 
-    The value is the number of a sample with the condition's name, or 1 for a line that matches its pattern; None for
-    any other line.
+    The value is the number of a sample with the condition's name, or 1 for a line that matches its pattern. The
+    function returns None for any other line.
     """
     if condition.source is ValueSource.PRINT:
         pattern = re.compile(condition.value)

@@ -40,7 +40,9 @@ Array = NDArray[Any]
 def measure_array(
     sensor: SensorSpec, records: Array, run: RunSpec, field: Field, has_light_noise: bool
 ) -> tuple[Array, ...] | None:
-    """Return the measured columns of a sensor at all ticks, in their order; None if it must be measured tick by tick.
+    """Return the measured columns of a sensor at all ticks, each of shape (n,), in the order of the sensor's columns.
+
+    Return None if the columns must be computed tick by tick, such as with light noise.
 
     Args:
         sensor: The sensor.

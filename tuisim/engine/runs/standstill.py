@@ -56,7 +56,7 @@ class Standstill:
 
     @property
     def words(self) -> str:
-        """A sentence about the standstill for users, without its subject, the robot."""
+        """A sentence for users without its subject, the robot, such as `stood at the wall from 1.50 s to 2.30 s, …`."""
         if self.on_floor and WALL in self.at:
             return f"stood at {self.at} for {self.pushed_s:.1f} s; --walls off takes the walls away"
         pushed = f"its wheels pushed for {self.pushed_s:.1f} s"

@@ -83,9 +83,12 @@ class SteppedRun:
     def read(
         self, readers: Mapping[str, Callable[[Instant, RunSpec, Field], float]]
     ) -> dict[str, float]:
-        """Return the present values of columns, by the names of their readers.
+        """Return the present values of columns, by name.
 
         Sensors see what the pen has drawn so far.
+
+        Args:
+            readers: Functions that return the value of a column at an instant, as from `build_reader`, by name.
         """
         mat = self._mat
         if self._marks is not None:
@@ -101,7 +104,9 @@ class SteppedRun:
         self._run(time_ns, 1, right_dps)
 
     def order(self, ticks: int, commands: Iterable[SimulationCommand]) -> list[SimulationCommand]:
-        """Return commands for `advance` by their times; one of the tick at which the run then stands is allowed.
+        """Return commands in the order of their times, checked for a call of `advance` with the same number of ticks.
+
+        A command may also be given at the tick at which that call ends.
 
         Raises:
             ConfigError: a command lies before the present tick, or after the last one.
@@ -119,7 +124,7 @@ class SteppedRun:
         return ordered
 
     def advance(self, ticks: int, commands: Iterable[SimulationCommand]) -> None:
-        """Advance the run by ticks; each command of `order` takes effect at its own time."""
+        """Advance the run by ticks, and give each command at its own time; `order` must have checked the commands."""
         sim = self._sim
         end = sim.tick + ticks
         for command in commands:
@@ -129,7 +134,7 @@ class SteppedRun:
 
     @property
     def ended(self) -> Ended:
-        """How the run would end at the present time."""
+        """The end of a run, as if the run ended at the present time."""
         return Ended(End.FINISHED, self._sim.tick, self._sim.compute_due_ns(self._sim.tick))
 
     def array(self) -> np.ndarray[Any, Any]:

@@ -455,7 +455,11 @@ def count_bytes(folder: Path) -> int:
 
 
 def _match(text: str, rows: Sequence[RunInfo]) -> RunInfo:
-    """Return the row that a text names; see `RunStore.find`."""
+    """Return the catalogue row that a text names; see `RunStore.find`.
+
+    Raises:
+        LogError: no row matches, or more than one.
+    """
     if text == LAST:
         return rows[-1]
     tests = (

@@ -75,10 +75,10 @@ def find_pen(commands: Iterable[SimulationCommand], *, is_down: bool) -> bool:
 
 
 def _find_position_deg(call: Call, values: Values, scale: float) -> float | None:
-    """Return the position to which a command sets a motor without turning it; None if it does not.
+    """Return the position in degrees that a command gives to a motor without turning it; None for other commands.
 
     Args:
-        call: The command.
+        call: The kind of command.
         values: Its values.
         scale: How many degrees the program counts for one of the motor.
     """

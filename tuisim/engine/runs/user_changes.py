@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def change_simulation(sim: Simulation, action: Message) -> None:
-    """Apply a user's action to a simulation right before the next tick, and add 1 to its number of user actions.
+    """Apply a user's action to a simulation right before the next tick, and count it in `sim.actions`.
 
     Answers to a program change nothing but this number.
 

@@ -198,7 +198,7 @@ class _View(ABC):
         return self._there
 
     def _look(self) -> tuple[memoryview, int]:
-        """Return the copy of the recording, and how many records or bytes it has."""
+        """Return the copy of the recording, read-only, and how many valid records or bytes it has."""
         there = self._measure_length()
         return memoryview(self._copy).toreadonly(), there
 
@@ -539,7 +539,10 @@ class OutputView(_View):
         return rows
 
     def may_contain(self, text: str) -> bool:
-        """Return False if a text is in no row so far: this takes much less time than to read all rows."""
+        """Return whether a text may be in one of the rows so far; False is certain.
+
+        This takes much less time than to read all rows.
+        """
         data, _ = self._look()
         return bool(self._dropped) or re.search(re.escape(text.encode()), data) is not None
 

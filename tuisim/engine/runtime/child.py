@@ -321,7 +321,7 @@ class Child:
         self._known_programs = KnownPrograms()
 
     def expect(self, folder: Path, changes: Mapping[str, Any]) -> None:
-        """Prepare for another run, without executing anything of its program; arguments as for `derive_config`."""
+        """Set the run that comes next, without executing anything of its program; arguments as for `derive_config`."""
         self._config = config = derive_config(self._config, folder, changes)
         drops_annotations = config.spec.profile.motor_law.library.drops_annotations
         self._runner.code = self._known_programs.code(config.program, drops_annotations)

@@ -215,7 +215,7 @@ class RunControl:
 
     @property
     def only_rushes(self) -> bool:
-        """Whether the run goes at full speed to a goal of the debugger, and no user action is due before."""
+        """Whether the run goes at full speed to a requested instant or line, and no user action is pending."""
         return self._rushing and not self._script and not self._waiting
 
     @staticmethod
@@ -328,9 +328,13 @@ class RunControl:
             self.holding = False
 
     def replay_next(self, session: ControlledRun, kind: type[Answer | Reply]) -> bool:
-        """Apply the next known user action if it answers a question of this kind that the program asks now.
+        """Apply the next known user action if it is an answer to the question that the program asks now.
 
         An answer that came only after some simulated time is not applied here.
+
+        Args:
+            session: The run.
+            kind: The class of answers to this question.
 
         Returns:
             Whether the action was applied.

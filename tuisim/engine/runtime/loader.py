@@ -43,7 +43,7 @@ LOOP_HOOK = "__loop_turn__"
 
 
 class _LoopHooks(ast.NodeTransformer):
-    """A transformer that inserts a call of the loop hook at the start of every loop body of a program."""
+    """A transformer of a program's syntax tree that inserts a call of `LOOP_HOOK` at the start of every loop body."""
 
     def _add_hook(self, node: ast.For | ast.While | ast.AsyncFor) -> ast.AST:
         self.generic_visit(node)
@@ -115,7 +115,7 @@ def _is_text_encoding(name: str) -> bool:
 
 
 def compile_program(text: str, file: str, drops_annotations: bool = False) -> types.CodeType:
-    """Return the program's code, with a loop hook in each loop, and with unchanged line numbers.
+    """Return the code of a program, with a call of `LOOP_HOOK` in each loop body, and with unchanged line numbers.
 
     Args:
         text: The source.
@@ -132,7 +132,7 @@ def compile_program(text: str, file: str, drops_annotations: bool = False) -> ty
 def compile_with_hooks(
     source: str | bytes, file: str, drops_annotations: bool = False
 ) -> types.CodeType:
-    """Return the code of a program or of one of its modules, with loop hooks; arguments as for `compile_program`.
+    """Return the code of a program or of one of its modules, as `compile_program` does; the arguments are the same.
 
     Raises:
         SyntaxError, ValueError: the source is not Python.

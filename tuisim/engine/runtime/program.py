@@ -182,7 +182,7 @@ def _is_data(value: object) -> bool:
 
 
 def _add(outcome: ProgramOutcome, words: str) -> ProgramOutcome:
-    """Return an outcome with words added to its summary."""
+    """Return an outcome with words added to its summary, after a semicolon; without words, an equal outcome."""
     return replace_fields(outcome, summary="; ".join(filter(None, (outcome.summary, words))))
 
 

@@ -58,7 +58,7 @@ CHUNK_TICKS = 2000
 
 @dataclass(frozen=True, slots=True)
 class RunLimits:
-    """The limits that end a run without a user; 0 is no limit."""
+    """The limits of simulated and of processor time that end a run; 0 is no limit."""
 
     time_ns: int = 0
     stall_s: float = 0.0
@@ -296,7 +296,7 @@ class Session:
         self.output.row(row, stream)
 
     def messages(self) -> list[Any]:
-        """Return all answers of the notebook's responder; wait for pending ones without simulated time."""
+        """Return all answers of the notebook's responder, oldest first; wait for pending ones in no simulated time."""
         self.command()
         steering = self.steering
         if not steering.replay_next(self, Reply) and self.replies and self.stop_reason is None:
@@ -398,7 +398,7 @@ class Session:
         return False
 
     def skip_control(self, tick: int) -> None:
-        """Run ticks without calling the control of the run until `tick` is due."""
+        """Run all ticks until `tick` is due at full speed, without a call of the run's control before each one."""
         self.flags &= ~LIVE
         self._quick_ns = min(self._limit_ns, self.sim.compute_due_ns(tick) - 1)
 

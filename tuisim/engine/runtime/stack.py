@@ -43,7 +43,7 @@ def show_whole_stacks() -> Iterator[None]:
 
 
 def _iterate_visible(walk: Iterable[Any], file_of: Callable[[Any], str]) -> Iterator[Any]:
-    """Yield those items whose frames a program may see: not those of the runtime, and none below the program.
+    """Yield those items whose frames a program may see: frames of tuisim, and those below the program, are left out.
 
     Args:
         walk: Items that stand for the frames of a stack.

@@ -92,7 +92,7 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
 
 
 def _cut(text: str) -> str:
-    """Return a text that is short enough for the host; of a longer one only the beginning."""
+    """Return a text for the host: if it is too long, only its beginning, with a note of its length."""
     if len(text) <= _MAX_CHARACTERS:
         return text
     return f"{text[:_MAX_CHARACTERS]}… (too long: {len(text):,} characters)"
@@ -114,7 +114,7 @@ def _add_text(error: BaseException, file: str, source: str) -> None:
 
 
 def find_line(trace: Any, file: str) -> int:
-    """Return the last line of a file in a traceback; 0 if the file is not in it."""
+    """Return the line number of the innermost frame of a file in a traceback; 0 if the file is not in it."""
     line = 0
     while trace is not None:
         line = trace.tb_lineno if trace.tb_frame.f_code.co_filename == file else line
@@ -141,7 +141,10 @@ def _add_suggestions(trace: Trace, error: BaseException) -> None:
 
 
 def _find_suggestion(error: Any) -> str:
-    """Return the suggestion that Python adds to the message of a NameError or an AttributeError."""
+    """Return the suggestion that Python adds to an error's message, such as `Did you mean: 'move'?`, or empty text.
+
+    The error is a NameError or an AttributeError.
+    """
     kind = type(error)
     # The copy of the error has no message, because the program may have written that.
     bare = kind(name=error.name) if kind is NameError else kind(name=error.name, obj=error.obj)
@@ -150,7 +153,7 @@ def _find_suggestion(error: Any) -> str:
 
 
 def _print_as_python(trace: Trace, error: SyntaxError) -> None:
-    """Format a syntax error as Python itself prints it; the module `traceback` sets the carets differently."""
+    """Make a traceback show a syntax error as Python itself prints it; `traceback` would set the carets differently."""
     bare: Any = type(error)()
     for name in (
         "msg",

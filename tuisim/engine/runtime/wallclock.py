@@ -44,5 +44,5 @@ start_folder = _start_folder()
 
 
 def absolute(path: str) -> str:
-    """Return the absolute path of a file, relative to the working directory at the start."""
+    """Return the absolute path for a path that may be relative to the working directory at the start of the process."""
     return os.path.normpath(os.path.join(start_folder, path))

@@ -164,11 +164,11 @@ def start_child(
         template_key: Names the template that forks the child; None, or a missing template, for the warm process.
         makes_template: Whether a missing template is made, and then forks the child.
         isolated_with: The files and folders that the child needs besides its run folder and its working directory. The
-            child is then a new process, isolated from the others. None starts it without isolation.
+        child is then a new process, isolated from the others. None starts it without isolation.
 
     Returns:
         The process; the write end of the pipe for commands and the read end of the pipe for events, both non-blocking;
-        and
+            and
         the write end of the lifeline, a pipe: the child is killed when it is closed.
     """
     _Starts.count += 1

@@ -70,7 +70,7 @@ class LineCondition:
         self._plain = all(isinstance(node, _PLAIN_NODES) for node in nodes)
 
     def holds(self, frame: types.FrameType, apart: Apart) -> str:
-        """Return the reason for a pause, such as `is true`; empty if the condition is false.
+        """Return why a breakpoint with this condition pauses the program now, such as `is true`; empty if it does not.
 
         Args:
             frame: Where the expression is evaluated.
@@ -208,7 +208,7 @@ class Watcher:
         return float(sum(motor.blocked_ticks >= sim.stall_ticks for motor in sim.motors))
 
     def _build_reader(self, column: str) -> Value | None:
-        """Return a function that reads a column; None if this robot does not have it."""
+        """Return a function that returns the present value of a column; None if this robot does not have the column."""
         session = self._session
         sim = self._session.sim
         spec = sim.spec

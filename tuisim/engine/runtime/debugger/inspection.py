@@ -444,7 +444,7 @@ def _find_names(expression: str) -> set[str]:
 
 
 def _copy_names(names: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a namespace as a dict, empty if that fails: a class body may use a mapping of the program."""
+    """Return a namespace as a dict; empty if the copy fails, because the namespace may be a mapping of the program."""
     try:
         return dict(names)
     except Exception:  # the mapping's own code may raise anything
@@ -452,9 +452,9 @@ def _copy_names(names: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _render_names(renderer: Renderer, names: Mapping[str, Any], whole: bool) -> Names:
-    """Return names with the types and texts of their values, without hidden names.
+    """Return a row for each variable: its name, the name of its value's type, and its value as text.
 
-    Modules, functions and classes are left out, too, unless `whole` is set.
+    Names with `__` at the start are left out; unless `whole` is True, so are modules, functions and classes.
     """
     texts: Names = []
     for name, value in list(names.items()):

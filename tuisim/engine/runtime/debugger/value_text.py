@@ -31,13 +31,13 @@ _BRACKETS = {
 
 
 def name_type(value: object) -> str:
-    """Return the name of a value's type."""
+    """Return the name of a value's type, cut to 60 characters; it runs no code of the program."""
     name = type.__dict__["__name__"].__get__(type(value))
     return cut(str(name), 60)
 
 
 def cut(text: str, most: int = MAX_CHARACTERS) -> str:
-    """Return a text as one line, cut off after `most` characters."""
+    """Return a text, cut to `most` characters, with `…` at the end if it was longer."""
     return text if len(text) <= most else text[: most - 1] + "…"
 
 

@@ -172,7 +172,7 @@ class FileWaits:
     def _build_noting(
         self, look: Callable[[], Found], descriptors: Iterable[int]
     ) -> Callable[[], Found]:
-        """Return a function that polls as `look` does, and records each poll that finds no new connection.
+        """Return a function that polls as `look` does, and records a reading at each poll that finds no new connection.
 
         If none of the descriptors is the socket of a server, it is `look` itself.
         """
@@ -367,7 +367,11 @@ class _Polling:
             self._real.unregister(file)
 
     def poll(self, timeout_ms: Any = None) -> Any:
-        """Return the events that have happened; blocks in simulated time until there is one."""
+        """Return the ready files and their events, as `select.poll` does; block in simulated time until one is ready.
+
+        Args:
+            timeout_ms: After this time the result is an empty list; None waits indefinitely.
+        """
         # A negative timeout has no limit, as in the real function.
         unlimited = timeout_ms is None or timeout_ms < 0
         limit = None if unlimited else _convert_to_ns(timeout_ms, _NS_PER_MS)
