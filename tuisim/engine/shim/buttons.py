@@ -86,7 +86,11 @@ class ButtonsFile(DeviceFile):
         opened.seen = self._session.pressed
 
     def read(self, opened: OpenFile, size: int) -> bytes:
-        """Return as many events as fit into `size` bytes; blocks until there is one."""
+        """Return as many whole events as fit into `size` bytes; block until there is one.
+
+        Raises:
+            OSError: EINVAL if not even one event fits.
+        """
         if size < EVENT.size:
             raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
         self._session.command()
@@ -135,7 +139,7 @@ class ButtonsFile(DeviceFile):
 
 
 def read_pressed(session: DeviceSession) -> list[str]:
-    """Return the names of the brick's pressed buttons, and charge the cost of a read."""
+    """Return the names of the brick's pressed buttons, empty if none is, and let the time of a read pass."""
     session.command()
     if not session.free:
         cost_ns = session.sim.spec.profile.attribute_read_ns

@@ -203,17 +203,17 @@ class DeviceFiles:
 
 
 def plain(number: float) -> float:
-    """Return a number as int if it is whole, so that it is shown without a decimal point."""
+    """Return a number as an int if it is whole, so that its text has no decimal point; else return it unchanged."""
     return int(number) if float(number).is_integer() else number
 
 
 def refuse(text: str) -> OSError:
-    """Return the error of a driver that rejects a written value."""
+    """Return the error EINVAL, with which a driver rejects a value that a program writes."""
     return OSError(errno.EINVAL, f"invalid value {text!r}")
 
 
 def free_of_charge(session: DeviceSession, function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a wrapper of `function` in which the library's reads and writes take no simulated time."""
+    """Return a wrapper of `function`, in which reads and writes of devices take no simulated time."""
 
     @wraps(function)
     def wrapper(*args: Any, **kwargs: Any) -> Any:

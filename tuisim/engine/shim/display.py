@@ -132,7 +132,11 @@ class DisplayFile(DeviceFile):
         return len(part)
 
     def ioctl(self, request: int) -> bytes:
-        """Return the kernel's information about the display: its size and the format of its pixels."""
+        """Return the kernel's information about the display: its size and the format of its pixels.
+
+        Raises:
+            NotSimulated: the request is for something else.
+        """
         match request:
             case 0x4600:
                 return VARIABLE_INFO

@@ -37,7 +37,7 @@ STATE_TEXTS = tuple(map(" ".join, STATES))
 
 
 class DriverTacho(SignedTacho):
-    """One motor on a port, with the attributes that the kernel's driver gives it."""
+    """The driver of one motor on a port, which has the attributes of the kernel's `tacho-motor` class."""
 
     _motor: SimulatedMotor
 

@@ -235,7 +235,7 @@ def _letter(large: FreeTypeFont, letter: str, face: Face) -> tuple[Picture, int,
 
 
 def _plain_letter(letter: str, times: float) -> Picture:
-    """Return the picture of a letter in the plain font, which also has accented letters, enlarged `times` times."""
+    """Return a grey picture of a letter of the plain font, with height and width multiplied by `times`."""
     from PIL import Image, ImageDraw
 
     image = Image.new("L", _PLAIN_CELL_PX)

@@ -31,7 +31,7 @@ STOP_POLL_NS = MS
 
 
 def led_name(name: str) -> str:
-    """Return the kernel's name of an LED of `LED_NAMES`, such as `led0:red:brick-status`."""
+    """Return the kernel's name of an LED; for `left red`, one of `LED_NAMES`, it is `led0:red:brick-status`."""
     side, color = name.split()
     return f"led{('left', 'right').index(side)}:{color}:brick-status"
 
@@ -48,7 +48,7 @@ class Lights:
         return {name: light.shining for name, light in self.lights.items()}
 
     def shine(self, brightness: Mapping[str, int]) -> None:
-        """Set the brightness of LEDs, by name."""
+        """Set the brightness of some LEDs, from 0 to 255, by their names in `LED_NAMES`, and record the change."""
         for name, value in brightness.items():
             self.lights[name].shining = value
         self.show()

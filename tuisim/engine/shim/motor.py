@@ -129,7 +129,7 @@ class Tacho(ABC):
         )
 
     def _limits(self, name: str) -> tuple[int, int]:
-        """Return the lowest and the highest number that a program may write to an attribute."""
+        """Return the lowest and the highest number that a program may write to the motor's attribute `name`."""
         max_speed = self._kind.max_speed_dps
         return {
             "speed_sp": (-max_speed, max_speed),
@@ -253,7 +253,7 @@ class TachoMotor(SignedTacho):
         return round(100 * self._speed() / self._kind.max_speed_dps)
 
     def state(self) -> str:
-        """Return the motor's states, separated by spaces, in the driver's order."""
+        """Return the motor's states, separated by spaces, such as `running ramping`; empty if it is stopped."""
         motor = self._motor
         if motor.mode == STOPPED:
             return "holding" if self._holding else ""

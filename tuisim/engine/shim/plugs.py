@@ -53,7 +53,7 @@ def find_port(address: object) -> str:
 
 
 class Plugs:
-    """The robot's parts that a program needs and the robot lacks: they are plugged in when the program looks for them.
+    """The parts that tuisim plugs into the robot because a program looks for them, and the robot lacks them.
 
     Args:
         built: The brick.

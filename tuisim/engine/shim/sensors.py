@@ -124,7 +124,10 @@ class LegoSensor:
             self._session.charge(self._switch_ns)
 
     def measure(self, mode: str) -> tuple[int, ...]:
-        """Return the values of one measurement in a mode, and let its time pass."""
+        """Return the numbers that the sensor measures in a mode, and let the time of the measurement pass.
+
+        They are the numbers of the driver's attributes `value0`, `value1` and so on.
+        """
         chosen = self.modes[mode]
         session = self._session
         if not session.free:
@@ -134,7 +137,7 @@ class LegoSensor:
         return chosen.measure()
 
     def measure_switched(self, mode: str) -> tuple[int, ...]:
-        """Return the values of the first measurement after a change of mode, whose time includes this measurement."""
+        """Return the numbers of the first measurement in a mode; its time has passed with the change of mode."""
         session = self._session
         if not session.free:
             session.note_reading(self._codes[mode])
@@ -214,7 +217,7 @@ class ColorDevice(LegoSensor):
         }
 
     def channels(self) -> tuple[int, int, int]:
-        """Return red, green and blue as integers, without time passing; they are measured once per tick."""
+        """Return red, green and blue, each 0 to 255, without time passing; they are measured once per tick."""
         sim = self._session.sim
         if sim.tick != self._seen_tick or sim.actions != self._seen_actions:
             self._seen_tick, self._seen_actions = sim.tick, sim.actions
@@ -336,7 +339,10 @@ class GyroDevice(LegoSensor):
         return super().writers() | {"direct": lambda _text: self._reset()}
 
     def switch(self, mode: str) -> None:
-        """Switch to a mode; a change that ends a calibration always resets the angle to 0."""
+        """Switch the gyro to a mode, even if it is in this mode, and let the time of the change pass.
+
+        The angle becomes 0 if the profile says so, and always at the end of a calibration.
+        """
         restarts = self.restarts or self.mode == "GYRO-CAL"
         super().switch(mode)
         if restarts:

@@ -76,7 +76,7 @@ class DeviceSession(Protocol):
         """Record a sound, and block for `wait_ns`; the other arguments are as in `engine.protocol.Spoke`."""
 
     def messages(self) -> list[Any]:
-        """Return all answers of the notebook's responder; waits for pending answers without simulated time."""
+        """Return all answers of the notebook's responder, oldest first; wait for pending ones in no simulated time."""
 
     def show(self, row: str, stream: Stream) -> None:
         """Record what the brick shows: a row of output in the format of `engine.runs.brick_state`.

@@ -92,7 +92,7 @@ class Mixer:
         self._volumes: dict[str, int] = {}
 
     def volume(self, channel: str | None) -> int:
-        """Return the volume of a channel in percent."""
+        """Return the volume of a mixer control in percent; None stands for the default control."""
         return self._volumes.get(channel or CHANNEL, LOUDEST)
 
     def do(self, words: Sequence[str]) -> str:

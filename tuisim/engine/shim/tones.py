@@ -150,7 +150,7 @@ def _repeated(note: dict[str, float]) -> list[Tone]:
 
 
 def beep_heard(words: Sequence[str]) -> Heard:
-    """Return the sound of the command `beep` with these arguments."""
+    """Return the sound that the command `beep` plays with these arguments; silence if `beep` rejects them."""
     try:
         tones = parse_beep(words)
     except ValueError as error:
@@ -162,7 +162,7 @@ def beep_heard(words: Sequence[str]) -> Heard:
 
 
 def tones_heard(tones: Sequence[Tone]) -> Heard:
-    """Return the sound of successive tones."""
+    """Return the sound that consists of these tones, one after another."""
     if len(tones) == 1:
         text = f"[tone {tones[0].frequency_hz:g} Hz {tones[0].length_ms / 1000:g} s]"
     elif len(tones) <= NAMED_TONES:

@@ -227,7 +227,14 @@ def _patch_pairs(motor: Any) -> None:
         brake: bool = True,
         block: bool = True,
     ) -> None:
-        """Rotate the faster motor by `degrees`; the slower one turns proportionally less."""
+        """Rotate the faster motor of a pair by `degrees`; the slower one turns proportionally less.
+
+        Args:
+            left_speed, right_speed: In percent, or objects such as `SpeedDPS`; a negative one turns backwards.
+            degrees: The angle of the faster motor.
+            brake: Whether the stop action is `hold`; otherwise it is `coast`.
+            block: Whether the call returns only when the motors have stopped.
+        """
         speeds = [
             round_half_up(speed)
             for speed in self._unpack_speeds_to_native_units(left_speed, right_speed)
@@ -249,7 +256,14 @@ def _patch_pairs(motor: Any) -> None:
         brake: bool = True,
         block: bool = True,
     ) -> None:
-        """Rotate both motors of a pair for `seconds`, each at its own speed."""
+        """Rotate both motors of a pair for some time, each at its own speed.
+
+        Args:
+            left_speed, right_speed: In percent, or objects such as `SpeedDPS`; a negative one turns backwards.
+            seconds: The time.
+            brake: Whether the stop action is `hold`; otherwise it is `coast`.
+            block: Whether the call returns only when the motors have stopped.
+        """
         _refuse_negative(seconds)
         speeds = self._unpack_speeds_to_native_units(left_speed, right_speed)
         for one, speed in zip(motors_of(self), speeds, strict=True):
@@ -258,7 +272,11 @@ def _patch_pairs(motor: Any) -> None:
         start(self, "run_timed", block)
 
     def on(self: Any, left_speed: Any, right_speed: Any) -> None:
-        """Rotate both motors of a pair until the next command, each at its own speed."""
+        """Rotate both motors of a pair until the next command, each at its own speed.
+
+        Args:
+            left_speed, right_speed: In percent, or objects such as `SpeedDPS`; a negative one turns backwards.
+        """
         speeds = self._unpack_speeds_to_native_units(left_speed, right_speed)
         for one, speed in zip(motors_of(self), speeds, strict=True):
             one.speed_sp = round_half_up(speed)

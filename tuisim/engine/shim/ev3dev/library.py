@@ -61,7 +61,10 @@ class MotorPoll:
 
     @waits_for(Wait.MOTOR)
     def poll(self, timeout_ms: float | None = None) -> list[Any]:
-        """Block until a motor ends a move or the timeout is over; return an empty list."""
+        """Block until a motor ends a move or the timeout is over; return an empty list.
+
+        `timeout_ms` is in simulated time; None waits for a second.
+        """
         timeout_ns = int((1000 if timeout_ms is None else timeout_ms) * MS)
         sim = self._session.sim
         # A running motor with target speed 0 never ends its move: only repeated polls show that it is stalled.

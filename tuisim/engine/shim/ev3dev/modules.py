@@ -228,7 +228,7 @@ def glue_module(session: DeviceSession) -> types.ModuleType:
         )
 
     def pyState() -> dict[str, list[Any]]:
-        """Return all answers of a notebook's responder, oldest first; empty without a responder.
+        """Return `{"messages": [...]}` with all answers of a notebook's responder, oldest first; none without one.
 
         The call waits, without simulated time, until the responder has answered every printed line.
         """

@@ -195,7 +195,10 @@ class InputDevice:
         self.version = 65537
 
     def capabilities(self, verbose: bool = False, absinfo: bool = True) -> dict[Any, list[Any]]:
-        """Return the codes that the device can send, by the type of event."""
+        """Return the codes that the device can send, those of the brick's buttons, by the type of event.
+
+        With `verbose`, types and codes are pairs of a name and a number.
+        """
         codes = sorted(KEY_CODES.values())
         if verbose:
             return {("EV_KEY", EV_KEY): [(_CODES.KEY[code], code) for code in codes]}

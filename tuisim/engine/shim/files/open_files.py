@@ -71,14 +71,22 @@ class OpenFiles:
 
 
 def read(opened: OpenFile, size: int) -> bytes:
-    """Return bytes of a device file, as `os.read` does."""
+    """Return bytes of a device file, at most `size`, as `os.read` does.
+
+    Raises:
+        OSError: EBADF if the file is not open for reading, or the driver's error.
+    """
     if not opened.readable:
         raise _error(errno.EBADF)
     return opened.file.read(opened, size)
 
 
 def write(opened: OpenFile, data: Any) -> int:
-    """Write bytes to a device file, and return their number, as `os.write` does."""
+    """Write bytes to a device file, and return their number, as `os.write` does.
+
+    Raises:
+        OSError: EBADF if the file is not open for writing, or the driver's error.
+    """
     if not opened.writable:
         raise _error(errno.EBADF)
     return opened.file.write(opened, bytes(data))

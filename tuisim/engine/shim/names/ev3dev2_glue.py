@@ -11,5 +11,5 @@ def get_clock() -> float:
 
 
 def pyState() -> dict[str, list[Any]]:
-    """Return all answers of a notebook's responder, oldest first; empty without a responder."""
+    """Return `{"messages": [...]}` with all answers of a notebook's responder, oldest first; none without one."""
     return {}

@@ -23,11 +23,11 @@ class Animation:
         """Show frames one after another, again and again, in the background.
 
         Args:
-            show: Shows a frame.
-            frames: Each with the time in ms that it stays.
+            show: Displays a frame.
+            frames: Pairs of a frame and the time in ms for which it is displayed.
 
         Raises:
-            ValueError: there is no frame, or one has no time.
+            ValueError: there are no frames, or a time is not above 0.
         """
         if not frames or any(whole(time) <= 0 for _, time in frames):
             raise ValueError("Invalid argument")

@@ -169,7 +169,7 @@ class Brick:
 
     @waits_for(Wait.MOTOR)
     def block(self, waiting: Waiting[Result]) -> Result:
-        """Block until a wait is over, and return its result."""
+        """Block until a wait, which yields times in microseconds, is over; return its result."""
         while True:
             try:
                 until_us = waiting.send(None) or self.command()
@@ -292,7 +292,7 @@ def no_device(hint: str) -> Any:
 
 
 def whole(value: Any) -> int:
-    """Return a number without its fraction, as the firmware converts it.
+    """Return a number cut to its whole part, as the firmware converts it: 2 for 2.9, and -2 for -2.9.
 
     Raises:
         TypeError: it is not a number.
@@ -303,7 +303,7 @@ def whole(value: Any) -> int:
 
 
 def round_number(value: float) -> float:
-    """Return a number rounded to the number of digits that floats of a hub have."""
+    """Return a number rounded to four decimals and seven digits in all, as the floats of a hub have."""
     return float(f"{round(value, 4):.7g}") + 0.0
 
 

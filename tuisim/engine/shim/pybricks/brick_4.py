@@ -25,7 +25,7 @@ class AnimatedLight:
     """A light that can blink and change its colour in the background.
 
     Args:
-        show: Shows a colour; None for darkness.
+        show: Shows the light in a colour; for None, it turns the light off.
     """
 
     def __init__(self, show: Callable[[Any], None]) -> None:
@@ -41,12 +41,17 @@ class AnimatedLight:
         self.on(None)
 
     def blink(self, color: Any, durations: Sequence[int]) -> None:
-        """Let the light blink in a colour; `durations` are the times in ms that it is on and off, in turn."""
+        """Let the light blink in a colour, in the background.
+
+        Args:
+            color: The colour.
+            durations: Times in ms for which the light is on and off, in turn; they are repeated.
+        """
         frames = [(None if number % 2 else color, time) for number, time in enumerate(durations)]
         self._animation.play(self._show, frames)
 
     def animate(self, colors: Sequence[Any], interval: int) -> None:
-        """Show colours one after another, each for `interval` ms."""
+        """Show colours one after another, each for `interval` ms, again and again in the background."""
         self._animation.play(self._show, [(color, interval) for color in colors])
 
 
@@ -56,7 +61,7 @@ class Speaker(TonePlayer):
     _volume = 100
 
     def volume(self, volume: int | None = None) -> int | None:
-        """Set the volume in percent; without an argument, return it."""
+        """Set the volume in percent, and return None; without an argument, return the volume."""
         if volume is None:
             return self._volume
         self.brick.command()
@@ -112,7 +117,7 @@ class System(Connected):
     def storage(
         self, offset: int, *, read: int | None = None, write: bytes | None = None
     ) -> bytes | None:
-        """Return `read` bytes of the storage from `offset` on, or write the bytes `write` there.
+        """Return `read` bytes of the storage from `offset` on; or write the bytes `write` there, and return None.
 
         The bytes stay when the program ends.
 
@@ -153,7 +158,7 @@ class Battery(hubs.Battery):
     )
 
     def type(self) -> str:
-        """Return the type of the battery."""
+        """Return the type of the battery: always `Li-ion`."""
         return "Li-ion"
 
 

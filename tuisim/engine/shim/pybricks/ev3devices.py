@@ -51,11 +51,14 @@ class Sensor(Connected):
         self._sensor = sensor
 
     def _read(self, mode: str) -> tuple[int, ...]:
-        """Return the values of a measurement in a mode; the first one after a change of mode takes more time."""
+        """Return the numbers that the sensor measures in a mode, as its driver gives them.
+
+        The first measurement after a change of mode takes more time.
+        """
         return self._sensor.measure(mode) if self._sensor.mode == mode else self._switched(mode)
 
     def _switched(self, mode: str) -> tuple[int, ...]:
-        """Switch to a mode, and return the values of the first measurement in it."""
+        """Switch to a mode, and return the numbers that the sensor's driver first measures in it."""
         self._sensor.switch(mode)
         return self._sensor.measure_switched(mode)
 
@@ -131,17 +134,30 @@ class InfraredSensor(Sensor):
         return number - 1
 
     def beacon(self, channel: int) -> tuple[int, int] | tuple[None, None]:
-        """Return the beacon's distance, 0 to 100, and direction in degrees; None for both if it is not found."""
+        """Return the beacon's distance, 0 to 100, and its direction in degrees, positive to the right.
+
+        Both are None if the sensor does not find the beacon on this channel.
+
+        Args:
+            channel: The channel of the beacon, 1 to 4.
+        """
         at = 2 * self._channel(channel)
         heading, distance = self._read("IR-SEEK")[at : at + 2]
         return (None, None) if distance == NO_BEACON else (distance, DEG_PER_HEADING * heading)
 
     def buttons(self, channel: int) -> Any:
-        """Return the buttons of the remote control that are pressed on a channel."""
+        """Return the remote control's buttons that are pressed on a channel, as members of `Button`; empty for none.
+
+        Args:
+            channel: The channel, 1 to 4.
+        """
         return self.COLLECT(REMOTE_BUTTONS[self._read("IR-REMOTE")[self._channel(channel)]])
 
     def keypad(self) -> Any:
-        """Return the buttons of the remote control that are pressed on channel 1, in any combination."""
+        """Return the remote control's buttons that are pressed on channel 1, as members of `Button`; empty for none.
+
+        Unlike `buttons`, it notices any combination.
+        """
         bits = self._read("IR-REM-A")[0]
         pressed = (key for place, key in enumerate(KEYPAD) if bits & FIRST_KEYPAD_BIT << place)
         return self.COLLECT(pressed)

@@ -48,7 +48,7 @@ class Buttons(Connected):
     """Makes the collections of buttons that it returns."""
 
     def pressed(self) -> Any:
-        """Return the buttons that are pressed now."""
+        """Return the buttons that are pressed now, as members of `Button`; empty for none."""
         self.brick.read("pressed", self._place)
         pressed = self.brick.session.pressed
         return self.COLLECT(button for name, button in self._buttons.items() if name in pressed)

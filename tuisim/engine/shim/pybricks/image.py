@@ -239,7 +239,7 @@ class Image(Connected):
         self._print_x = self._print_y = 0
 
     def draw_pixel(self, x: float, y: float, color: Color | None = Color.BLACK) -> None:
-        """Draw one pixel of the image in a colour; with None, draw nothing."""
+        """Draw one pixel of the image, `x` from the left and `y` from the top, in a colour; with None, draw nothing."""
         with self._drawing() as (_, pen):
             if paint := paint_of(color):
                 pen.point((whole(x), whole(y)), paint)
@@ -253,7 +253,7 @@ class Image(Connected):
         width: float = 1,
         color: Color | None = Color.BLACK,
     ) -> None:
-        """Draw a line between two points; `width` is in pixels."""
+        """Draw a line between two points; coordinates and `width` are in pixels. With `color` None, draw nothing."""
         with self._drawing() as (_, pen):
             if paint := paint_of(color):
                 pen.line((whole(x1), whole(y1), whole(x2), whole(y2)), paint, max(1, whole(width)))
@@ -304,7 +304,13 @@ class Image(Connected):
     def draw_image(
         self, x: float, y: float, source: Image | str, transparent: Color | None = None
     ) -> None:
-        """Draw an image with its top left corner at a point; pixels of the colour `transparent` are left out."""
+        """Draw an image with its top left corner at a point.
+
+        Args:
+            x, y: The point, in pixels from the top left corner of this image.
+            source: The image, or the path of a PNG file.
+            transparent: The colour whose pixels are left out; None for none.
+        """
         copied = pixels_of(source)
         paint = paint_of(transparent)
         with self._drawing() as (picture, _):
@@ -313,7 +319,7 @@ class Image(Connected):
             )
 
     def load_image(self, source: Image | str, /) -> None:
-        """Clear this image, and draw another one in its centre."""
+        """Clear this image, and draw another one, given as an object or by its path, in its centre."""
         centred = pixels_of(source)
         with self._drawing() as (picture, _):
             self._wipe(picture)
@@ -338,7 +344,14 @@ class Image(Connected):
         text_color: Color | None = Color.BLACK,
         background_color: Color | None = None,
     ) -> None:
-        """Draw a line of text with its top left corner at a point; other values are converted to text as by `print`."""
+        """Draw a line of text with its top left corner at a point.
+
+        Args:
+            x, y: The point, in pixels from the top left corner of the image.
+            text: The text; other values are converted to text as by `print`.
+            text_color: The colour of the text; None draws no text.
+            background_color: The colour behind the text; None for none.
+        """
         with self._drawing() as (_, pen):
             self._write(
                 pen,
@@ -375,7 +388,7 @@ class Image(Connected):
         return width
 
     def print(self, *args: Any, sep: str = " ", end: str = "\n") -> None:
-        """Print a line of text, black on white, below the last one; if the image is full, the lines move up."""
+        """Print values as text, black on white, after the text printed before; if the image is full, lines move up."""
         buffer = io.StringIO()
         print(*args, sep=sep, end=end, file=buffer)
         with self._drawing() as (picture, pen):
@@ -404,7 +417,11 @@ class Image(Connected):
 
 
 def pixels_of(source: Image | str) -> Picture:
-    """Return the pixels of an image, or of the image in a file."""
+    """Return the pixels of an image, given as an object or by the path of its file.
+
+    Raises:
+        OSError: there is no such file, or it is not an image.
+    """
     return (source if isinstance(source, Image) else Image(source))._pixels()
 
 

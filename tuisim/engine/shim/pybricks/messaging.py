@@ -60,7 +60,7 @@ class Mailbox(Connected):
         self._connection.send_to_mailbox(destination, self.name, self.encode(value))
 
     def wait(self) -> None:
-        """Block until a value arrives."""
+        """Block until the next value arrives in the mailbox, even if it equals the last one."""
         self._connection.wait_for_mailbox_update(self.name)
 
     def wait_new(self) -> Any:
@@ -145,7 +145,7 @@ class MailboxHandlerMixIn(Connected):
         self._wake(mbox)
 
     def wait_for_mailbox_update(self, mbox: str) -> None:
-        """Block until bytes arrive in a mailbox."""
+        """Block until the next bytes arrive in a mailbox, even if they equal the last ones."""
         # Imported here because the functions of the module must be patched before.
         import _thread
 

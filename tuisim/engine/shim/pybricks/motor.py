@@ -147,7 +147,11 @@ class Motor(DCMotor):
         return self.simulated.control.settings.units(self.simulated.find_counts_per_s(now_us))
 
     def reset_angle(self, angle: float | None = None) -> None:
-        """Set the angle that the motor shows now, in degrees; a motion under way ends."""
+        """Make the motor show the angle `angle`, in degrees, at its present position; a motion under way ends.
+
+        Raises:
+            OSError: the angle is None, because the EV3's motors do not know their absolute angle.
+        """
         if angle is None:
             raise OSError(
                 errno.EOPNOTSUPP,
@@ -284,7 +288,7 @@ class Motor(DCMotor):
         self.tell(Call.SET_CONTROL, setting, value)
 
     def has_let_go(self) -> bool:
-        """Return whether the move is over, and the motor coasts or brakes instead of holding."""
+        """Return whether the motor's move is over, and the motor coasts or brakes instead of holding."""
         return self.simulated.lets_go and self.move_done(self.brick.now_us, self.simulated.control)
 
     def move_done(self, now_us: int, control: Controller) -> bool:
@@ -296,7 +300,7 @@ class Motor(DCMotor):
     def run_until_stalled(
         self, speed: float, then: Stop = Stop.COAST, duty_limit: float | None = None
     ) -> int:
-        """Run the motor at a speed until something stops it, and return its angle in degrees.
+        """Run the motor at a speed until something blocks it, and return the angle in degrees that it has then.
 
         Args:
             speed: In degrees per second.
@@ -342,7 +346,7 @@ class Control(Connected):
 
     @property
     def scale(self) -> float:
-        """The number of counts of the controller per unit of the program."""
+        """Number of the controller's counts per degree or, for the distance of a drive base, per mm."""
         return self._control.settings.counts_per_unit
 
     def _access(self, **values: float | None) -> tuple[int, ...] | None:
@@ -376,7 +380,10 @@ class Control(Connected):
         acceleration: float | None = None,
         actuation: float | None = None,
     ) -> tuple[int, ...] | None:
-        """Set the highest speed, acceleration and power; without arguments, return them."""
+        """Set the highest speed, acceleration and power, and return None; without arguments, return them.
+
+        Speed and acceleration are in degrees (of a drive base's distance: mm) per second (squared), power in percent.
+        """
         if any(
             value is not None and whole(value) < 1 for value in (speed, acceleration, actuation)
         ):
@@ -405,17 +412,26 @@ class Control(Connected):
     def target_tolerances(
         self, speed: float | None = None, position: float | None = None
     ) -> tuple[int, ...] | None:
-        """Set how near to its target speed and position a move is done; without arguments, return these tolerances."""
+        """Set how near to its target speed and position a move is done; without arguments, return these two.
+
+        They are in degrees per second and degrees; for the distance of a drive base, in mm/s and mm.
+        """
         return self._access(speed_tolerance=speed, position_tolerance=position)
 
     def stall_tolerances(
         self, speed: float | None = None, time: float | None = None
     ) -> tuple[int, ...] | None:
-        """Set the speed below which, and the time after which, a motor is stalled; without arguments, return them."""
+        """Set below which speed, and after which time in ms, a motor is stalled; without arguments, return both.
+
+        The speed is in degrees per second; for the distance of a drive base, in mm/s.
+        """
         return self._access(stall_speed=speed, stall_time_ms=time)
 
     def trajectory(self) -> tuple[int, ...] | None:
-        """Return the present trajectory: four times in ms, four positions, the speed and the two accelerations."""
+        """Return the present trajectory: four times in ms, four positions, the speed and the two accelerations.
+
+        All but the times are in the controller's counts (per second). Return None if there is no trajectory.
+        """
         trajectory = self._control.trajectory
         if trajectory is None:
             return None

@@ -60,7 +60,7 @@ class DriveBase(Connected):
         self.reset()
 
     def _take_place(self, earlier: DriveBase) -> None:
-        """Stop the earlier drive base, because this one may use the same motors."""
+        """Stop the program's earlier drive base before this one is created, because both may use the same motors."""
         earlier.stop()
 
     def tell(self, call: Call, *values: float | None) -> None:
@@ -213,7 +213,10 @@ class DriveBase(Connected):
         turn_rate: float | None = None,
         turn_acceleration: float | None = None,
     ) -> tuple[int, ...] | None:
-        """Set the speeds and accelerations of `straight` and `turn`; without arguments, return them."""
+        """Set speed and acceleration of `straight` and of `turn`; without arguments, return these four.
+
+        They are in mm, and for turns in degrees, per second (squared).
+        """
         base = self._base
         given: tuple[Any, ...] = (
             straight_speed,
@@ -233,10 +236,10 @@ class DriveBase(Connected):
         return None
 
     def _check_setting(self, value: int, at: int) -> int:
-        """Return a speed or an acceleration in the program's units, at most the highest that the motors allow.
+        """Return a speed or an acceleration, reduced to the highest that the motors allow.
 
         Args:
-            value: In the program's units.
+            value: In mm or, for turns, in degrees per second (squared).
             at: 0 for the speed and 1 for the acceleration of straight moves, 2 and 3 for those of turns.
         """
         settings = (self._base.distance if at < 2 else self._base.heading).settings

@@ -115,7 +115,7 @@ def explain_hub(name: str, hub: str = "") -> tuple[str, str]:
 
 
 def refuse_all(classes: Mapping[str, Sequence[str]], instead: str) -> dict[str, dict[str, Any]]:
-    """Return classes that a program can import but not use, by module and name.
+    """Return objects for classes that a program can import but not use, by module and then by name.
 
     Args:
         classes: The names of the classes, by module.
@@ -130,5 +130,10 @@ def refuse_all(classes: Mapping[str, Sequence[str]], instead: str) -> dict[str, 
 
 
 def refused_classes(module: str, classes: Mapping[str, Hardware]) -> dict[str, Any]:
-    """Return those classes of a module of the library that a program can import but not use, by name."""
+    """Return objects for some classes of a module, by name; a program can import these objects, but not use them.
+
+    Args:
+        module: The module of the library.
+        classes: The hardware that each class is for, by the name of the class.
+    """
     return {name: refused_part(module, name, hardware) for name, hardware in classes.items()}

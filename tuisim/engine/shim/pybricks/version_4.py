@@ -92,7 +92,7 @@ class Motor(motor.Motor):
     """The angle, as the program counts it, of the mark on the shaft, where the motor began."""
 
     def reset_angle(self, angle: float | None = None) -> None:
-        """Set the angle that the motor shows now, in degrees.
+        """Make the motor show the angle `angle`, in degrees, at its present position.
 
         By default, it is the angle from the mark on the shaft, which the motor of a hub knows.
         """
@@ -126,7 +126,7 @@ class Motor(motor.Motor):
         return 0
 
     def settings(self, max_voltage: float | None = None) -> tuple[int] | None:
-        """Set the highest voltage in mV; without an argument, return it."""
+        """Set the highest voltage in mV, and return None; without an argument, return it in a tuple."""
         if max_voltage is None:
             return (self._max_mv,)
         self._max_mv = whole(max_voltage)
@@ -153,7 +153,11 @@ class Control(motor.Control):
     SETTINGS_WHILE_ACTIVE = True
 
     def check(self, value: float, kind: int) -> int:
-        """Return a speed (kind 0) or an acceleration (kind 1) of the program as a whole number.
+        """Return a speed or an acceleration that the program gives, without its fraction.
+
+        Args:
+            value: In degrees or mm per second (squared).
+            kind: 0 for a speed, 1 for an acceleration.
 
         Raises:
             ValueError: the firmware does not accept it.
@@ -166,7 +170,11 @@ class Control(motor.Control):
     def limits(
         self, speed: float | None = None, acceleration: Any = None, torque: float | None = None
     ) -> tuple[int, ...] | None:
-        """Set the highest speed, acceleration and torque in mNm; without arguments, return them."""
+        """Set the highest speed, acceleration and torque, and return None; without arguments, return them.
+
+        Speed and acceleration are in degrees (of a drive base's distance: mm) per second (squared), torque in mNm. Of a
+        pair of accelerations, only the first is used.
+        """
         if isinstance(acceleration, tuple):
             acceleration = acceleration[0]
         for kind, value in enumerate((speed, acceleration)):
@@ -313,9 +321,10 @@ class DriveBase(robotics.DriveBase):
         turn_rate: Any = None,
         turn_acceleration: Any = None,
     ) -> tuple[Any, ...] | None:
-        """Set the speeds and accelerations of moves; without arguments, return them.
+        """Set speed and acceleration of straight moves and of turns; without arguments, return these four.
 
-        An acceleration may be a pair: for the start and for the stop.
+        They are in mm, and for turns in degrees, per second (squared). An acceleration may be a pair: for the start and
+        for the stop.
         """
         values = straight_speed, straight_acceleration, turn_rate, turn_acceleration
         pairs = [value if isinstance(value, tuple) else (value, value) for value in values]
@@ -357,7 +366,7 @@ class DriveBase(robotics.DriveBase):
         return self._base.stalled
 
     def reset(self, distance: float = 0, angle: float = 0) -> None:
-        """Set the distance in mm and the angle in degrees that the drive base shows now."""
+        """Stop the drive base, and make it show a distance in mm and an angle in degrees, by default 0, from now on."""
         self.stop()
         base = self._base
         if base.uses_gyro:

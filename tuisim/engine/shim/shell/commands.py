@@ -229,7 +229,10 @@ class Running:
                 self._busy = False
 
     def wait(self, limit_ns: int | None = None) -> bool:
-        """Block until the commands have ended or the limit is over; return whether they have ended."""
+        """Block until the commands have ended or the limit is over; return whether they have ended.
+
+        `limit_ns` is in simulated time; None is no limit.
+        """
         until = None if limit_ns is None else self._session.now + limit_ns
         self.go_on()
         while self.status is None:

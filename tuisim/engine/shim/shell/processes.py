@@ -59,7 +59,7 @@ class OutPipe(io.RawIOBase):
         return size
 
     def take_speech(self) -> Heard | None:
-        """Return the speech that `espeak --stdout` has written to this pipe; None after the first call."""
+        """Return the speech that `espeak --stdout` has written to this pipe, and remove it; None if there is none."""
         speech = self.process.streams.speech
         self.process.streams.speech = None
         return speech

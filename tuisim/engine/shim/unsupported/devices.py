@@ -121,7 +121,7 @@ FOREIGN_MODES: Mapping[str, str] = {
 
 
 def of_driver(name: str) -> Hardware | None:
-    """Return the hardware that a driver is for, if that is not simulated; None for a simulated driver.
+    """Return the hardware that an ev3dev driver is for; None if the driver is simulated.
 
     As in the library, part of the name of a simulated driver is enough.
     """

@@ -120,7 +120,11 @@ OTHER_BOARDS = ("ev3dev.brickpi", "ev3dev.brickpi3", "ev3dev.pistorms")
 
 
 def refuse_board(module: types.ModuleType) -> NoReturn:
-    """Raise the error for a module that is for another board."""
+    """Raise the error for importing a module that is for another board than the EV3.
+
+    Raises:
+        NotSimulated: always.
+    """
     raise NotSimulated(
         f"{module.__name__} is not part of the simulated brick: it is an EV3", "import ev3dev.ev3"
     )

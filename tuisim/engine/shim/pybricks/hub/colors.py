@@ -41,7 +41,10 @@ def find_nearest(measured: tuple[int, int, int], colors: Sequence[Any]) -> Any:
 
 
 def _find_place(color: tuple[int, int, int]) -> tuple[float, float, float]:
-    """Return the coordinates of a colour in a double cone, in which distances between colours are measured."""
+    """Return the coordinates in a double cone of a colour, given by hue, saturation and value.
+
+    The firmware measures distances between colours there.
+    """
     hue, saturation, value = color
     chroma = max(0, value) * saturation
     angle = radians(hue)

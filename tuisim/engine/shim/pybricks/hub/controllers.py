@@ -71,7 +71,11 @@ class Keys(Buttons):
         self._controller = controller
 
     def pressed(self) -> Any:
-        """Return the pressed buttons of the controller."""
+        """Return the pressed buttons of the controller, as members of `Button`; empty for none.
+
+        Raises:
+            OSError: the controller is not connected.
+        """
         self._controller.check()
         return super().pressed()
 

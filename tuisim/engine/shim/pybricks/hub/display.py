@@ -92,7 +92,12 @@ class Display(Connected):
         self._show(DARK)
 
     def pixel(self, row: int, column: int, brightness: float = 100) -> None:
-        """Set the brightness of one pixel, in percent."""
+        """Set the brightness of one pixel of the matrix of lights, in percent; a pixel outside the matrix is ignored.
+
+        Args:
+            row, column: From 0, from the upper left corner.
+            brightness: The brightness.
+        """
         if 0 <= whole(row) <= LAST and 0 <= whole(column) <= LAST:
             pixels = [*self._pixels]
             pixels[SIDE_PIXELS * whole(row) + whole(column)] = whole(brightness)
@@ -103,7 +108,15 @@ class Display(Connected):
         self._show(_read_icon(icon))
 
     def animate(self, icons: Iterable[Any], interval: int) -> None:
-        """Show pictures one after another, each for `interval` ms, in the background."""
+        """Show pictures one after another, each for `interval` ms, again and again in the background.
+
+        Args:
+            icons: The pictures, as matrices of brightness values in percent.
+            interval: The time.
+
+        Raises:
+            ValueError: there are fewer than two pictures, or too many.
+        """
         frames = [(_read_icon(icon), interval) for icon in icons]
         if not 2 <= len(frames) <= MAX_FRAMES:
             raise invalid_argument()
@@ -150,7 +163,7 @@ class Display(Connected):
         show(symbol)
 
     def _choose(self, symbols: Sequence[Any]) -> Any:
-        """Let the user choose a symbol with the hub's buttons, and return it."""
+        """Let the user choose one of the symbols with the hub's buttons, and return the chosen symbol."""
         session = self.brick.session
         before = session.stop_buttons
         session.stop_buttons = frozenset()
@@ -170,10 +183,13 @@ class Display(Connected):
 
 
 def hub_menu(*symbols: Any) -> Any:
-    """Let the user choose a symbol, a character or a number, with the left, right and centre buttons, and return it.
+    """Let the user choose a symbol with the left, right and centre buttons, and return the chosen symbol.
+
+    Args:
+        symbols: Characters, or numbers of at most two digits.
 
     Raises:
-        ValueError: there are fewer than two symbols, or one is longer than a character or two digits.
+        ValueError: there are fewer than two symbols, or one is too long.
         RuntimeError: a task runs.
     """
     Connected.brick.require_no_task()

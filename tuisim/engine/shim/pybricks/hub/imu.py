@@ -59,12 +59,12 @@ class Accelerometer(Connected):
         return max(self._sides, key=lambda side: self._sides[side][2])
 
     def tilt(self, calibrated: bool = True) -> tuple[float, float]:
-        """Return pitch and roll of the hub in degrees."""
+        """Return pitch and roll of the hub in degrees: both are 0, because a robot on the mat never tilts."""
         self._read("TILT-ANG")
         return 0.0, 0.0
 
     def acceleration(self, axis: Matrix | None = None, calibrated: bool = True) -> Any:
-        """Return the acceleration in mm/s² along an axis; without an axis, a vector of all three."""
+        """Return the acceleration along an axis in mm/s²; without an axis, a vector for all three."""
         self._read("TILT-ANG")
         return _along(axis, vector(0, 0, GRAVITY_MM_S2))
 
@@ -92,7 +92,7 @@ class IMU(Accelerometer):
         return round_number(self._heading)
 
     def reset_heading(self, angle: float) -> None:
-        """Set the heading that the hub shows now, in degrees.
+        """Make the hub show the heading `angle`, in degrees clockwise, at the robot's present heading.
 
         Raises:
             OSError: a drive base drives or holds by the gyro.
@@ -118,7 +118,7 @@ class IMU(Accelerometer):
         return is_coasting and abs(self._rate_dps) < STILL_DPS
 
     def angular_velocity(self, axis: Matrix | None = None, calibrated: bool = True) -> Any:
-        """Return the rate of turn in degrees per second about an axis; without an axis, a vector for all three."""
+        """Return the rate of turn about an axis in degrees per second; without an axis, a vector for all three."""
         self._read("GYRO-RATE")
         return _along(axis, vector(0, 0, self._rate_dps))
 

@@ -29,7 +29,10 @@ class Sensor(ev3devices.Sensor):
     """How long the first reading in another mode takes."""
 
     def _read_as(self, mode: str, convert: Callable[[int], Result]) -> Result:
-        """Measure in a mode and return the converted number; while a task runs, return an object to await."""
+        """Measure in a mode, and return the result of `convert` for the measured number.
+
+        While a task runs, return an object to await instead.
+        """
         return self.brick.finish(self._measure(mode, convert))
 
     def _measure(self, mode: str, convert: Callable[[int], Result]) -> Waiting[Result]:
@@ -89,7 +92,10 @@ class ColorSensor(Sensor):
         self._sensor.mode = ""
 
     def _read_light(self, convert: Callable[..., Result]) -> Result:
-        """Measure red, green and blue, each from 0 to `HUB_WHITE`, and return `convert(red, green, blue)`."""
+        """Measure red, green and blue, each from 0 to `HUB_WHITE`, and return `convert(red, green, blue)`.
+
+        While a task runs, return an object to await instead.
+        """
         assert isinstance(self._sensor, ColorDevice)
         channels = self._sensor.channels
         return self._read_as("RGB-RAW", lambda _: convert(*color.measure_hub_channels(channels())))
@@ -103,12 +109,12 @@ class ColorSensor(Sensor):
         return self._read_as("COL-AMBIENT", int)
 
     def _read_hsv(self, surface: bool, convert: Callable[[tuple[int, int, int]], Result]) -> Result:
-        """Measure hue, saturation and value, and return the result of `convert` for them.
+        """Measure hue, saturation and value, and return what `convert` returns for them; in a task, an object to await.
 
         Args:
             surface: Whether to measure with the sensor's light; without it, only the ambient light is measured, as a
-                grey.
-            convert: Takes hue, saturation and value.
+            grey.
+            convert: Takes a tuple of hue in degrees, and saturation and value in percent.
         """
         if surface:
             return self._read_light(lambda *channels: convert(measure_hsv(*channels)))
@@ -126,7 +132,7 @@ class ColorSensor(Sensor):
         return self._read_hsv(surface, lambda measured: find_nearest(measured, self._colors))
 
     def detectable_colors(self, colors: Any = None) -> Sequence[Any] | None:
-        """Set the colours from which `color` chooses; without an argument, return them."""
+        """Set the colours from which `color` chooses, and return None; without an argument, return these colours."""
         if colors is None:
             return (*self._colors,)
         self._colors = tuple(colors)
@@ -158,11 +164,11 @@ class ForceSensor(Sensor):
         return self._read_as("TOUCH", lambda is_pressed: pressed if is_pressed else released)
 
     def force(self) -> float:
-        """Return the force on the sensor in newtons."""
+        """Return the force on the sensor in newtons: `MAX_FORCE_N` while it is pressed, else 0."""
         return self._push(MAX_FORCE_N, 0.0)
 
     def distance(self) -> float:
-        """Return how far the button is pressed, in mm."""
+        """Return how far the sensor's button is pushed in, in mm: `MAX_PRESS_MM` while it is pressed, else 0."""
         return self._push(MAX_PRESS_MM, 0.0)
 
     def pressed(self, force: float = 3) -> bool:
