@@ -25,6 +25,7 @@ FOUND: Sequence[tuple[str, str]] = (
     ("damage", "parquet:1560589855"),
     ("damage", "parquet:2962725307:value"),
     ("damage", "parquet:3152310975:value"),
+    ("damage", "parquet:3496095300:value"),
     ("damage", "parquet:644934153"),
     ("damage", "progress:4157507265:value"),
     ("damage", "run:183:text"),
