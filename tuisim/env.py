@@ -110,7 +110,7 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         return self._observe(self._before), dict(self._before)
 
     def step(self, action: Vector) -> tuple[Vector, float, bool, bool, dict[str, Any]]:
-        """Drive for a period.
+        """Drive for a period of simulated time, and return what the robot observes then, with its reward.
 
         Args:
             action: The speed of each wheel, from -1 to 1.

@@ -647,7 +647,7 @@ class LabApp(PanelMessages):
     # The following methods handle what the user does.
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Return whether a key runs an action of the app; if not, the focused widget gets the key.
+        """Return whether a key runs an action of the app now; if not, the focused widget gets the key.
 
         The keys that scroll the lesson or the code run no action while neither of them can be scrolled.
         """

@@ -255,7 +255,7 @@ class Slider(_Control):
 
     @dataclass
     class Changed(Message):
-        """Posted when the user has set another number."""
+        """Posted when the user has set another number with the slider."""
 
         slider: Slider
         value: int

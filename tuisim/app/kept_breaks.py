@@ -27,7 +27,7 @@ class StoredBreaks:
 
 
 def load_kept(program: str) -> StoredBreaks:
-    """Return the stored breakpoints and watches of a program; none of either if nothing is stored or can be read.
+    """Return the stored breakpoints and watches of a program, without any if none are stored or they cannot be read.
 
     Args:
         program: Its path, or its name if it is in no file.

@@ -614,7 +614,14 @@ def program_of(run: StoredRun) -> Program:
 
 
 def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | None]:
-    """Load a run and its mat; if that mat is missing, return a blank one and the error."""
+    """Return a stored run, its mat, and None; if the mat is missing, a blank mat and the error in place of None.
+
+    Args:
+        word: The run, or its number or id.
+
+    Raises:
+        LogError: there is no such run, it has no recording, or it cannot be read.
+    """
     run = RunStore().load_run(word) if isinstance(word, str) else word
     if not run.telemetry.count:
         raise LogError(

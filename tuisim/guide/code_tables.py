@@ -90,7 +90,7 @@ def list_formats() -> Table:
 
 
 def list_options() -> Table:
-    """Return the table of the shared options."""
+    """Return the table of the options that several commands share."""
     rows = [
         (
             " ".join(code(flag) for flag in option.flags),

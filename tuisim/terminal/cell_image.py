@@ -255,7 +255,7 @@ def _draw_svg_area(area: GlyphArea, x: float, y: float) -> str:
 
 
 def _draw_svg_shapes(grid: CellGrid) -> Iterator[str]:
-    """Yield an SVG path for each colour and opacity of shapes, and an element for each dot and line."""
+    """Yield SVG elements for the shapes of glyphs: a path for all rectangles of a look, one for each dot and line."""
     paths: dict[tuple[Rgb, float], list[str]] = {}
     for y, row in enumerate(grid):
         for x, (text, look) in enumerate(row):

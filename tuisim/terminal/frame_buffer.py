@@ -145,9 +145,8 @@ class FrameBuffer:
     def _put(
         self, pen: _Pen, y: int, first: int, cells: Sequence[Cell]
     ) -> Iterator[tuple[int, PictureCell]]:
-        """Write the changed cells of a row with the pen, except those that are parts of a picture: yield these.
-
-        Each is yielded with its column.
+        """Write those cells of a row that have changed, but yield the column and the cell of parts of a picture
+        instead.
 
         Args:
             pen: Writes the cells.

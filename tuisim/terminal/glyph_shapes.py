@@ -195,7 +195,10 @@ def _draw_arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> 
     }
 
     def find_edges(sides: tuple[str, str], axis: str) -> tuple[int, int]:
-        """Return the outer edges, in pixels along `axis`, of the strips that draw the arms on two opposite sides."""
+        """Return the first and the last edge, in pixels along `axis`, of the arms towards two opposite sides.
+
+        Without such arms, these are the edges of a light line.
+        """
         lines = [strip for side in sides if side in arms for strip in strips[arms[side]]] or [
             (0, thick)
         ]

@@ -180,7 +180,7 @@ class Server:
         self._lives: dict[str, asyncio.Task[None]] = {}
 
     def build_application(self) -> web.Application:
-        """Return the web application; to every request that the gate refuses, it gives the same answer."""
+        """Return the web application; it answers every request that the gate refuses with `403 Forbidden`."""
         application = web.Application(middlewares=[self._guard])
         # The router accepts any token, which may change; the gate compares it.
         application.router.add_routes(

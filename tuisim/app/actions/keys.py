@@ -706,8 +706,8 @@ def list_footer_actions(
 ) -> list[LabAction]:
     """Return actions with the words that the footer shows for them now; the word of the pause key depends on the run.
 
-    Keys of lessons that do nothing in the current step are left out, and so are `run` while a program is paused, and
-    the step out of a function while nothing is stepped.
+    Left out are the keys of a lesson that do nothing in its current step, `run` while the program is paused, and
+    `step-out` while the program is not paused.
 
     Args:
         table: The actions by id.

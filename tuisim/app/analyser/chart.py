@@ -164,7 +164,7 @@ class LogChart(LinesPanel):
         return [*lines, *(self._mark_events(model) if marked else []), *measured], self._pictures
 
     def _mark_events(self, model: AnalysisModel) -> list[list[Run]]:
-        """Return the line below the charts, with a mark at each threshold crossing."""
+        """Return the line below the charts, in a list, with a mark at each event such as a threshold crossing."""
         _, picture = self._pictures[-1]
         if not picture.columns:
             return [[]]

@@ -500,7 +500,11 @@ class MatPicker(Chooser):
         self.query_one("#title", Static).update(title if is_drawn else f"{title} · loading …")
 
     def _clear_stale(self, key: tuple[str, Viewport]) -> None:
-        """Remove the picture of the formerly highlighted mat, while the picture of the new one is being decoded."""
+        """Clear the picture if the mat of `key` is still the highlighted one, and is still being decoded.
+
+        Args:
+            key: The name of the mat, and the viewport of its picture.
+        """
         if self.is_attached and key[0] == self._shown and key not in self._pictures:
             self.query(PixelView).first().clear_picture()
 

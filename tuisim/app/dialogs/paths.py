@@ -17,14 +17,13 @@ def is_path(typed: str) -> bool:
 
 
 def list_completions(typed: str, suffixes: Collection[str]) -> list[tuple[str, str, str]]:
-    """Return the folders and files that a typed path may become, as entries of a list.
+    """Return the folders and files that a typed path may become, each as (value, name, title) for a list.
+
+    The value is the path, which ends with `/` for a folder; the title is empty.
 
     Args:
         typed: A path; in its last part, upper and lower case are the same.
         suffixes: Suffixes of the files, with their dots.
-
-    Returns:
-        For each the value, which ends with `/` for a folder, the name, and an empty title.
     """
     if typed in ("~", ".", ".."):
         return [(f"{typed}/", f"{typed}/", "")]

@@ -344,7 +344,10 @@ class RunsChooser(RunChooser):
 
     @on(Input.Submitted)
     def _open_named(self, event: Input.Submitted) -> None:
-        """Open the marked runs, or the runs with the typed numbers, such as `12 13`; any other text is a search."""
+        """Close the dialog with the marked runs or, if several numbers of runs were typed, such as `12 13`, with these.
+
+        Any other text searches the list.
+        """
         numbers = {str(run.number): run.id for run in self._runs}
         words = event.value.split()
         named = [numbers[word] for word in words if word in numbers]

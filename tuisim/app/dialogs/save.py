@@ -78,7 +78,7 @@ class FileDialog(Dialog[Path]):
         """Return the path of the file to write for a path that the user has typed.
 
         Raises:
-            TuisimError: it cannot be written.
+            TuisimError: the file cannot be written.
         """
         return path
 
@@ -159,7 +159,7 @@ class SaveDialog(FileDialog):
         self.TITLE_TEXT = f"Save the {what}"
 
     def resolve_target(self, path: Path) -> Path:
-        """Return the path of the file to write for a typed path, see `FileDialog`."""
+        """Return the typed path unchanged, after a check that a file there can be written; see `FileDialog`."""
         self._check(path)
         return path
 

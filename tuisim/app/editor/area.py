@@ -398,7 +398,7 @@ class CodeArea(TextArea):
         return self.typing or self.awaits_letters
 
     def await_letters(self, on: bool) -> None:
-        """Set whether the next letter that the user presses starts typing."""
+        """Set whether the next letter that the user presses starts typing; if `on` is False, it is a key of the app."""
         on = on and self.can_be_typed_in and not self.typing
         if on != self.awaits_letters:
             self.awaits_letters = on
@@ -542,7 +542,7 @@ class CodeArea(TextArea):
             self.parent.post_message(self.LookedUp())
 
     def _find_word(self) -> str | None:
-        """Return the word that ends at the cursor, see the function `find_word`."""
+        """Return the word that ends at the cursor, empty right after a dot; None if no name can be there."""
         row, column = self.cursor_location
         return find_word(self.document.get_line(row), column)
 

@@ -179,7 +179,7 @@ class Assistant:
     # Signature
 
     def ask_signature(self) -> None:
-        """Look up the signature of the function whose arguments are at the cursor."""
+        """Begin to look up the signature of the function whose arguments are at the cursor, to show it."""
         if self._is_asking:
             self._asks_again = True
         elif self._area.typing:

@@ -92,7 +92,8 @@ class Document:
         """Show the open program at the start of the app.
 
         Args:
-            asks: Whether to offer to restore the unsaved text of a new program, if there is no open one.
+            asks: Whether to offer the unsaved text of a program without a file, if there is such a text and no program
+                is open.
         """
         self.show_program()
         self.open_at_mistake()
@@ -292,7 +293,7 @@ class Document:
         self._show_restored()
 
     def run_when_saved(self, do: Callable[[], None]) -> None:
-        """Call a function that replaces the text.
+        """Call `do`, which replaces the text of the program, once no unsaved change would be lost.
 
         If the text has unsaved changes, first ask whether to save or discard them.
         """
@@ -475,7 +476,7 @@ class Document:
         )
 
     def run_with_file(self, do: Callable[[Path], None]) -> None:
-        """Save the program if necessary, then call a function with the path of its file."""
+        """Save the program if necessary, then call `do` with the path of its file."""
         if self._has_own_file and not self.dirty:
             do(Path(self._path))
         else:

@@ -385,8 +385,8 @@ def make_room(
 ) -> list[str]:
     """Return the panels to show so that one panel gets a minimum size.
 
-    These are all panels if it gets that size among them; else without the others in its own area of the screen; else
-    the panel alone.
+    These are all panels if it then gets that size; else it and the panels outside its own area of the screen, if it
+    then does; else the panel alone.
 
     Args:
         panel: The panel that needs room.

@@ -80,7 +80,7 @@ def is_tall(width: int, height: int) -> bool:
 
 
 def measure_side(width: int, panels: Sequence[str] = ()) -> int:
-    """Return the width of the side column; from 112 columns of the screen on, it has room for two sensor discs.
+    """Return the width of the side column in columns; on screens of 112 columns or more, two sensor discs fit into it.
 
     Args:
         width: Columns of the screen.
@@ -94,7 +94,7 @@ def measure_side(width: int, panels: Sequence[str] = ()) -> int:
 
 
 def select_panels(panels: Sequence[str], where: PanelPlace) -> list[str]:
-    """Return the panels among some that belong in one area of the screen, in the order of `PANELS`."""
+    """Return those panels that belong in the area `where` of the screen, in the order of `PANELS`."""
     return [info.id for info in PANELS.values() if info.place == where and info.id in panels]
 
 
@@ -238,7 +238,7 @@ _MAX_EMPTY_ROWS = 3
 def build_board(panels: Sequence[str], width: int, height: int) -> Node:
     """Return a node with the world and the readings side by side, above a strip with the chart.
 
-    If there is no room for that, or the set of panels is not one of a board, return the node of `build_wide`.
+    If the area is not of medium size, lacks one of these panels or has a lesson, return the node of `build_wide`.
     """
     side = select_panels(panels, PanelPlace.SIDE)
     main = select_panels(panels, PanelPlace.MAIN)

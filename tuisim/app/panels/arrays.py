@@ -70,7 +70,7 @@ class _Disc(Widget):
         yield self._text
 
     def place(self, where: Arrangement) -> None:
-        """Put the lines below the picture or beside it, as an arrangement says."""
+        """Put the lines with the values below the picture or beside it, as the arrangement `where` says."""
         self._where = where
         self.styles.layout = "vertical" if where.below else "horizontal"
         self._picture.styles.width = "1fr" if where.below else where.disc_cols
@@ -83,7 +83,7 @@ class _Disc(Widget):
 
         Args:
             face: What the sensor sees; None clears picture and lines.
-            has_limits: Whether to leave a line for thresholds.
+            has_limits: Whether to reserve a line for thresholds.
         """
         self._picture.show(face)
         lines: list[Line] = []
@@ -116,7 +116,7 @@ class Arrays(Widget, can_focus=True):
         self.call_after_refresh(self._draw)
 
     def render(self) -> str:
-        """Return the text that the panel shows in place of the discs while there are none."""
+        """Return the text that the panel shows in place of the discs; empty while there are discs."""
         if self._snapshot is not None and not self._snapshot.spec.robot.color_sensors:
             return "The robot has no colour sensor"
         return "" if self._discs else "Preparing the mat"

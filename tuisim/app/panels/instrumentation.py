@@ -182,8 +182,8 @@ def _build_further_line(column: str, value: float, width: int) -> Line:
 def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
     """Return the readings in columns, with as much detail as the width allows.
 
-    If the width is too small, the panel leaves out, in this order: the names of colours; instead of these the pose;
-    both; the speeds as well; whole columns. Colour sensors are named if that fits, and otherwise have their ports.
+    In a narrow panel, the first of these choices that is enough is left out: the names of colours; only the pose; both;
+    these and the speeds; whole columns. Colour sensors are named if that fits, and otherwise have their ports.
     """
     for detail, with_pose in ((2, True), (1, True), (2, False), (1, False), (0, False)):
         columns, sensing = _arrange_cells(now, height, detail)

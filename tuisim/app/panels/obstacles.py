@@ -134,7 +134,7 @@ class Obstacles(EntryPanel):
         self.post_message(self.Marked(self.at))
 
     def begin(self) -> None:
-        """Focus the list, in which letters are still keys of the app."""
+        """Focus the list of obstacles, in which letters are still keys of the app."""
         self.query_one(OptionList).focus()
         self.post_message(self.Marked(self.at))
 

@@ -106,7 +106,7 @@ class World(Widget, can_focus=True):
         """Set whether the mouse draws and moves obstacles.
 
         Args:
-            on: Whether it does.
+            on: Whether it does so; the mouse can move the robot in any case.
             marked: The index of the selected obstacle; None for none.
         """
         self._edits_boxes = on
@@ -266,7 +266,7 @@ class WorldView(PixelView):
         """Set whether the mouse draws and moves obstacles, see `World.edit_boxes`.
 
         Args:
-            on: Whether it does.
+            on: Whether it does so; the mouse can move the robot in any case.
             marked: The index of the selected obstacle; None for none.
         """
         if (on, marked) != (self._edits_boxes, self._marked):

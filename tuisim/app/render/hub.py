@@ -78,7 +78,12 @@ def draw_hub(
 
 
 def _draw_pixels(levels: Sequence[int], width: int) -> list[Run]:
-    """Return one row of the hub's matrix; lit pixels have another shape, too, for users without colour."""
+    """Return one row of the hub's matrix, centred; lit pixels have another shape, too, for users without colour.
+
+    Args:
+        levels: The brightness of each pixel, from 0 to 255.
+        width: Columns of the panel.
+    """
     line: list[Run] = [(" " * max(0, (width - 3 * len(levels)) // 2), _PLAIN)]
     for level in levels:
         shade = round(_DARK + (_LIT - _DARK) * level / 255)
@@ -100,7 +105,7 @@ def _draw_buttons(
 
 
 def _build_light(levels: Iterable[int]) -> Style:
-    """Return the style of a light from its red, green and blue levels."""
+    """Return the style of a light, given its red, green and blue levels, each from 0 to 255."""
     return Style(bgcolor=Color.from_rgb(*(max(_DARK // 2, level) for level in levels)))
 
 

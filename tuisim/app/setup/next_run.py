@@ -225,7 +225,9 @@ def apply_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
 
 
 def follow_program(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
-    """Return a plan with the settings that a program's text decides; those that the user has chosen stay.
+    """Return a plan with the settings that a program's text decides, and these settings.
+
+    Settings that the user has chosen stay.
 
     Returns:
         The plan, and the settings that the text has decided; none unless the robot or the profile have changed.

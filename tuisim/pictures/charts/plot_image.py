@@ -54,7 +54,7 @@ class Plot:
         return self.rows + self.has_time_line, 1 + self.columns
 
     def measure_across(self, times_s: FloatArray, width: int) -> _Points:
-        """Return how many points of the image times are to the right of the image's left edge.
+        """Return for each time its distance from the left edge of the image, in points of the image.
 
         Args:
             times_s: The times in s, shape (n,).
@@ -65,7 +65,7 @@ class Plot:
         return (times_s - low) / (high - low) * (self.columns - 0.5) * width + 1
 
     def down(self, values: FloatArray, height: int) -> _Points:
-        """Return how many points of the image values are below the top of the canvas.
+        """Return for each value its distance from the top of the canvas, in points of the image.
 
         Args:
             values: The values, shape (n,).

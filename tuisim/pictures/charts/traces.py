@@ -190,7 +190,7 @@ class Traces:
 def reduce_points(
     times_s: FloatArray, values: FloatArray, x_limits: tuple[float, float], columns: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a trace that a chart of a given width can show apart.
+    """Return the times and values of those points of a trace that a chart of a given width can show apart.
 
     Args:
         times_s: Rising times, shape (n,).

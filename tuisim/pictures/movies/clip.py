@@ -117,7 +117,7 @@ class ClipRun:
         return (len(self.telemetry) - 1) / self._hz
 
     def clip_span_s(self, start_s: float | None, stop_s: float | None) -> tuple[float, float]:
-        """Return a range of the run in simulated s; None stands for the run's own start or end.
+        """Return the start and the end of a range of the run in simulated s; None is the run's own start or end.
 
         Raises:
             ConfigError: the range is empty, or not in the run.

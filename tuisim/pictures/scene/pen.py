@@ -82,7 +82,7 @@ def _spread(width_px: float) -> FloatArray:
 def _join_points(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray, FloatArray]:
     """Return the points of a trace without NaN, with further points between joined ones at most `step_mm` apart.
 
-    Two points that are farther apart than the pen can draw in one step are not joined.
+    Points more than `_LONGEST_STEP_MM` apart are not joined.
     """
     good = np.isfinite(xs) & np.isfinite(ys)
     if len(xs) < 2:

@@ -242,7 +242,10 @@ def columns(screen: LogScreen, step: int) -> None:
 
 
 def go_to(screen: LogScreen) -> None:
-    """Ask for a row, a time or a threshold such as `Colour < 50`, and go to it: to the next crossing of a threshold."""
+    """Ask for a row, a time or a threshold such as `Colour < 50`, and go there.
+
+    For a threshold, go to its next crossing.
+    """
 
     def go(text: str) -> None:
         model = screen.model
