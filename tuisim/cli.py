@@ -107,7 +107,9 @@ _SYNONYMS = {"compare": "diff", "delete": "rm", "remove": "rm", "chart": "plot",
 
 
 def _find_commands(word: str, others: Sequence[str]) -> list[str]:
-    """Return the commands that a user may have meant by a mistyped word, as text, the best first; at most two.
+    """Return the commands that a user may have meant by a mistyped word, such as `` `tuisim log bands` ``; at most two.
+
+    The best one is first.
 
     Args:
         word: The first word of the command line.

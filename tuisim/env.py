@@ -36,7 +36,7 @@ _FARTHEST = 1e6
 
 
 class LabEnv(gymnasium.Env[Vector, Vector]):
-    """A robot that is rewarded for what it does.
+    """A Gymnasium environment: a robot that is rewarded for what it does.
 
     The action is the speed of each wheel, shape (2,), from -1 to 1, the highest speed of its motor. The observation has
     the values of `columns`, shape (n,), in their order; `info` has all columns by name.
@@ -139,7 +139,7 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         return self._observe(values), reward, is_over, False, dict(values)
 
     def render(self) -> Any:
-        """Return the world as an array of shape (height, width, 3) in the mode `rgb_array`, else None."""
+        """Return a picture of the world as an array of shape (height, width, 3) in the mode `rgb_array`, else None."""
         return np.asarray(self.lab.picture()) if self.render_mode else None
 
     def _judge(self) -> tuple[float, bool]:

@@ -69,7 +69,7 @@ class Branch:
 
     @property
     def tags(self) -> tuple[str, str]:
-        """The tags of the branch's run: the run from which it branched off, and the time."""
+        """The tags of the branch's run: the run from which it branched off, and the time, such as `at-3.50s`."""
         return f"{BRANCH_TAG}{self.of.number or self.of.run_id}", f"at-{self.time_s:.2f}s"
 
     @property

@@ -117,7 +117,7 @@ class DebugController:
         self.mark()
 
     def _send_breakpoints(self) -> None:
-        """Send the breakpoints to the live run; if the run has an older text, each with its line in that text."""
+        """Send the breakpoints to the live run; if the run executes an older text, with their lines in that text."""
         lines = self._lines()
         texts = []
         for entry in self.breaks:

@@ -138,7 +138,7 @@ class Feed:
         return {name: (times_s, values[name].tolist()) for name in values}
 
     def trace_points(self) -> Points:
-        """Return the points in mm at which the pen drew since the last call."""
+        """Return x and y, in mm, of the points at which the pen drew since the last call; NaN where it was lifted."""
         records = self.recording.telemetry.array(self._traced)
         if not len(records):
             return [], []
@@ -158,7 +158,7 @@ class Feed:
 
 
 def trace_run(run: Recording, tick: int) -> Points:
-    """Return the points in mm, x and y, at which the pen of a run has drawn up to a tick.
+    """Return x and y, in mm, of the points at which the pen of a run has drawn up to a tick; NaN where it was lifted.
 
     Of a long run every n-th point is returned, with the same n for all ticks.
     """
@@ -239,7 +239,7 @@ class PanelFeed:
         self._panel_area.clear_log()
 
     def begin_again(self) -> None:
-        """Pass the output and telemetry of the run in view on from its start again; the pen trace is not changed."""
+        """Pass on the output and telemetry of the run in view again, from its start; the pen trace is not changed."""
         recording = self._runs.timeline.recording
         if recording is not None and self._feed is not None:
             self._feed.restart_chart()

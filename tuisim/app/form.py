@@ -100,7 +100,7 @@ class FormPanel(Vertical):
 
     @on(Input.Changed)
     def _take_back(self, event: Input.Changed) -> None:
-        """Remove the error from the last line, because the user edits the wrong value."""
+        """Remove the error from the last line, because the user is correcting the wrong value."""
         event.stop()
         if self.has_class("-wrong"):
             event.input.remove_class("wrong")

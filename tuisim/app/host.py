@@ -71,7 +71,11 @@ class LabHost(ActionHost, TerminalApp):
 
     @abstractmethod
     def show_mat(self, pixels: Pixels | None) -> None:
-        """Show the image of the prepared mat; None if the world panel shows it already."""
+        """Show the image of the prepared mat.
+
+        Args:
+            pixels: The image; None if the world panel shows it already.
+        """
 
     @abstractmethod
     def show_next_run(self) -> None:

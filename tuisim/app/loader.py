@@ -119,7 +119,7 @@ class Loader:
             self._app.say(SOON)
 
     def _restore_mat(self, spec: RunSpec, error: TuisimError) -> None:
-        """Show the error in a mat, and return to the previous mat."""
+        """Show the error because of which a mat could not be prepared, and return to the previous mat, if any."""
         self.is_preparing = False
         self._app.complain(error)
         run_controller = self._run_controller
@@ -590,7 +590,7 @@ def _list_panels(magic: Mapping[str, Any]) -> dict[str, bool]:
 def _find_differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings of a file whose values have changed, with the new values.
 
-    A removed setting has its default.
+    A setting that was removed from the file is returned with its default value.
     """
     bare = Settings()
     removed = {path: bare[path] for path in before.keys() - now.keys() if path in plans.WORLD_PATHS}

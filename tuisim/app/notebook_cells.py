@@ -78,7 +78,7 @@ def _take_cell(
 
 
 def _choose_run_options(context: ActionContext, speed: float | None) -> RunOptions:
-    """Return the speed of the program of a cell, and the same limits as for a cell without the app.
+    """Return the options of a cell's run: its speed, and the same limits as for a cell without the app.
 
     The speed is that of the cell; without one, that of the app's user; without both, it is as fast as possible.
     """

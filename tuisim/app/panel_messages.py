@@ -101,7 +101,7 @@ class PanelMessages(LabHost):
         self.handle_situation_change()
 
     def _end_former_text(self) -> None:
-        """If the live run has the text before an edit, end the run, so that the edited text can run."""
+        """If the live run executes the text from before an edit, end the run, so that the edited text can run."""
         controller = self.context.runs
         code = self.context.panels.code
         if (

@@ -51,7 +51,7 @@ class ReasonTour:
         return has_gone_wrong or can_differ
 
     def begin(self, recording: Recording, has_ended: bool) -> None:
-        """Begin with a run whose reasons are not known yet; for another run, drop the reasons of the former run."""
+        """Begin the tour of a run whose reasons are not known yet, and drop the reasons of any other run."""
         if self._of is not recording:
             self.reasons = ()
             self.earlier = None

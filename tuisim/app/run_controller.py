@@ -270,9 +270,9 @@ class RunController:
         )
 
     def find_mat(self, spec: RunSpec) -> Field | None:
-        """Return the prepared mat that is the one of a specification: that of the next run, or that of the run in view.
+        """Return the prepared mat of the next run, or that of the run in view, whichever is the mat of `spec`.
 
-        The result is None if it is neither of them.
+        The result is None if neither is.
         """
         recording = self.timeline.recording
         mats = (self.mat, self._mat_of_run)
@@ -311,7 +311,9 @@ class RunController:
         self._show_run(start_run(program, self.next_run.spec, options))
 
     def prepare_next(self) -> None:
-        """Start a process for the next run in advance, so that the run begins sooner; it serves only the same world."""
+        """Start a process for the next run in advance, so that the run begins sooner; it can only run in the same
+        world.
+        """
         if self.run:
             self.run.prepare_next()
 

@@ -146,13 +146,17 @@ class BufferedApp(HookedApp):
             self.handle_painted(len(codes))
 
     def choose_cells(self, chosen: str) -> None:
-        """Set the glyphs with which pictures are drawn: the name of a set, or `AUTO`; draw all pictures again."""
+        """Draw all pictures from now on with a set of glyphs, given by its name; `AUTO` is the terminal's best set."""
         self.picture_mode.choose(chosen)
         self._choose_graphics()
         self.redraw_pictures()
 
     def choose_pixels(self, pixels: str) -> None:
-        """Set whether pictures are drawn with pixels or with glyphs, one of `PIXELS`; draw all pictures again."""
+        """Set whether pictures are drawn with pixels or with glyphs, and draw all pictures again.
+
+        Args:
+            pixels: One of `PIXELS`.
+        """
         self.pixels = pixels
         self._left_pixels = None
         self._choose_graphics()

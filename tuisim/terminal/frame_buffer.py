@@ -145,8 +145,9 @@ class FrameBuffer:
     def _put(
         self, pen: _Pen, y: int, first: int, cells: Sequence[Cell]
     ) -> Iterator[tuple[int, PictureCell]]:
-        """Write those cells of a row that have changed, but yield the column and the cell of parts of a picture
-        instead.
+        """Write the changed cells of a row; yield the column and the cell of each that is a part of a picture.
+
+        Parts of a picture are not written.
 
         Args:
             pen: Writes the cells.

@@ -117,7 +117,7 @@ class TilePicture:
         """Replace the content of the picture.
 
         Args:
-            points: `Graphics.cell_points` for each cell.
+            points: The new picture, with as many points in each cell as `Graphics.cell_points` says.
             coarse: Whether to draw the cells that change as half blocks.
 
         Returns:
@@ -141,7 +141,7 @@ class TilePicture:
         return find_runs(differs)
 
     def refine(self, cells: int) -> list[CellRun]:
-        """Draw about `cells` of the cells with pixels that are half blocks now.
+        """Draw with pixels about `cells` of the cells that are half blocks now.
 
         Returns:
             Runs of changed cells: row, first column, number of cells.

@@ -50,7 +50,7 @@ Version = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """The first versions of a terminal program that draw sextants and octants themselves, without a font."""
+    """The versions from which on a terminal program draws sextants and octants itself, without a font."""
 
     sextants: Version
     octants: Version | None

@@ -323,7 +323,7 @@ class HookedLinuxDriver(LinuxDriver):
 
 
 class ThoroughCompositor(Compositor):
-    """Textual's compositor, changed to compare each layout with the last layout about which widgets were sent messages.
+    """Textual's compositor, changed to compare each layout with the last one for which the widgets were sent messages.
 
     Textual compares it with the map of all widgets, and makes that map again when any code asks for the size of a
     widget between two layouts. It then would never send `Resize` or `Show` to a widget that was mounted in between, and
@@ -465,7 +465,7 @@ def set_input_parser(parser: type[XTermParser], decoder: Callable[[], Any]) -> N
 
 
 def set_page_parser(parser: type[XTermParser]) -> None:
-    """Let Textual's driver for browsers make its parser of this class."""
+    """Let Textual's driver for browsers use a parser of this class."""
     # This is imported on demand, since most apps run in a terminal.
     from textual.drivers import web_driver
 

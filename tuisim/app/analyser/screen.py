@@ -184,9 +184,9 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             self.update()
 
     def set_model(self, model: AnalysisModel) -> None:
-        """Show the log that was read, unless another one was requested meanwhile.
+        """Show a log that was read, unless another log was requested meanwhile.
 
-        If the program has printed no samples, the telemetry is opened instead.
+        If the program has printed no samples, open the telemetry instead.
         """
         opened = model.opened
         before = self._model

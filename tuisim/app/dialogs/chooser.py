@@ -350,7 +350,7 @@ def is_log(word: str) -> bool:
 
 
 def _read_openable(word: str) -> object:
-    """Read and check a program, a world or goals; for a log, check only that the file exists.
+    """Read, check and return a program, or a world with its goals; for a log, only check that its file exists.
 
     Raises:
         TuisimError: the file does not exist, or its content is wrong.

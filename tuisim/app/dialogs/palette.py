@@ -95,7 +95,7 @@ def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
 
 
 class SearchList(Dialog[str]):
-    """The dialog with a list that typed words search; it returns the id of the chosen entry.
+    """The dialog with a list that the user searches by typing words; it returns the id of the chosen entry.
 
     Args:
         entries: The list, in its order.

@@ -42,7 +42,7 @@ class Question(Dialog[str]):
     Args:
         title: The subject.
         text: The question.
-        answers: The answers; Enter chooses the first one.
+        answers: The key of each answer, and what it does, in words; Enter chooses the first one.
         escape: What Escape does, in words.
     """
 

@@ -106,7 +106,7 @@ class CodeArea(TextArea):
         command: EditorCommand
 
     class LookedUp(Message):
-        """Posted when a look-up of names begins, and when it ends; `is_completing` says which."""
+        """Posted when a look-up of names begins and when it ends; between these, `is_completing` is True."""
 
     class LettersChanged(Message):
         """Posted when typed letters begin to go into the text, and when they become keys of the app again."""
@@ -209,7 +209,7 @@ class CodeArea(TextArea):
         return True
 
     def scroll_cursor_visible(self, center: bool = False, animate: bool = False) -> Offset:
-        """Scroll so that the cursor is visible.
+        """Scroll so that the cursor is visible, and return by how much.
 
         If its line fits as far as the cursor, scroll to the left edge of the text.
         """
@@ -479,10 +479,7 @@ class CodeArea(TextArea):
         event.prevent_default()
 
     def _count_deletable_blanks(self) -> int:
-        """Return how many blanks backspace deletes before the cursor.
-
-        0 unless only indentation is before the cursor.
-        """
+        """Return how many blanks backspace deletes before the cursor; 0 if anything but indentation is before it."""
         row, column = self.cursor_location
         return text_lines.count_deletable_blanks(self.document.get_line(row)[:column])
 
@@ -547,7 +544,7 @@ class CodeArea(TextArea):
         return find_word(self.document.get_line(row), column)
 
     def _locate_word(self, word: str) -> Offset:
-        """Return the position on the screen where a word begins that ends at the cursor."""
+        """Return where on the screen the word begins that ends at the cursor."""
         x, y = self.cursor_screen_offset
         return Offset(x - cell_len(word), y)
 

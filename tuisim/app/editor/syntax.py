@@ -33,6 +33,9 @@ _CLOSING = {quote: re.compile(rf"(?:[^\\]|\\.)*?{quote}") for quote in ('"""', "
 def find_spans(line: str, before: str = "") -> tuple[list[Span], str]:
     """Return the coloured parts of a line of Python, and the quotes of a string that goes on in the next line.
 
+    Each part is its first column, the column after its last one, and its kind, such as `string`. Without such a string,
+    the second result is empty.
+
     Args:
         line: Without its line end.
         before: The quotes of the string in which the line begins, empty if in none.
@@ -88,7 +91,12 @@ class Colouring:
         del self._before[line + 1 :]
 
     def color_line(self, lines: Sequence[str], line: int) -> list[Span]:
-        """Return the coloured parts of one line of the text, from 0."""
+        """Return the coloured parts of one line of the text, as `find_spans` does.
+
+        Args:
+            lines: The lines of the text.
+            line: Index of the line, from 0.
+        """
         states = self._before
         while len(states) <= line:
             above = lines[len(states) - 1]

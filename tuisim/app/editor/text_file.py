@@ -93,7 +93,7 @@ def _encode_text(text: str, form: TextFormat, path: Path) -> bytes:
 
 
 def _is_declared(encoding: str, text: str) -> bool:
-    """Return whether Python would read a text in an encoding.
+    """Return whether Python would decode a file with this text in this encoding.
 
     Python does so if this is the default encoding, or the first two lines of the text name it.
     """

@@ -351,7 +351,11 @@ class GuideScreen(Dialog[None]):
         self._frame(reading)
 
     def _frame(self, reading: bool) -> None:
-        """Show in the frame the section of the answer that is read, and the keys that work."""
+        """Show in the frame which keys work and, while an answer is read, the section of that answer.
+
+        Args:
+            reading: Whether the user reads a page.
+        """
         frame = self.query_one(".dialog")
         one = self._answers.chosen
         frame.border_title, frame.border_subtitle = self.TITLE_TEXT, self.HINT

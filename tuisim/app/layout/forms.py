@@ -294,7 +294,7 @@ _TIGHT_ROWS: Mapping[str, int] = {
 
 
 def count_tight_rows(panels: Sequence[str], width: int) -> list[int]:
-    """Return for each panel the rows that it needs to be read in a narrow and high area."""
+    """Return for each panel how many rows it needs so that it can be read in a narrow and high area."""
     return [
         compute_ideal_rows(width)
         if panel == "world"

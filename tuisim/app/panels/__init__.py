@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class TerminalSize(StrEnum):
-    """The size of a terminal, which decides about the panels at the start."""
+    """The class of a terminal's size, which decides which panels are shown at the start."""
 
     SMALL = "small"
     """A terminal from 80×24 on."""

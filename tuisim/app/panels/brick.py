@@ -147,7 +147,7 @@ class Brick(LinesPanel, can_focus=True):
             self.post_message(self.Pressed(self.held))
 
     def action_tap_touch(self, key: str) -> None:
-        """Press a touch sensor for a moment, given by its key."""
+        """Press, for a moment, the touch sensor that has this key."""
         if self._snapshot is not None:
             touches = [sensor.port for sensor in self._snapshot.spec.robot.touch_sensors]
             if port := find_touch_keys(touches).get(key):

@@ -146,7 +146,13 @@ def draw_goals(
 def _select_rows(
     listed: list[tuple[Line, int]], chosen: int, max_rows: int
 ) -> list[tuple[Line, int]]:
-    """Return at most `max_rows` lines of a list, among them those of the chosen goal."""
+    """Return at most `max_rows` lines of a list, among them those of the chosen goal.
+
+    Args:
+        listed: The lines, each with the index of its goal.
+        chosen: Index of the chosen goal.
+        max_rows: The largest number of lines.
+    """
     begins = next(row for row, (_, index) in enumerate(listed) if index == chosen)
     first = max(0, min(begins - max_rows // 2, len(listed) - max_rows))
     return listed[first : first + max_rows]

@@ -100,7 +100,7 @@ class NextRun:
 
 
 def build_plan(settings: Settings, free: Iterable[str] = ()) -> NextRun:
-    """Return a plan with some settings.
+    """Return the plan of a run with these settings.
 
     Args:
         settings: The settings.

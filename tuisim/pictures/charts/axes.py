@@ -213,7 +213,7 @@ Places = TypeVar("Places", float, "FloatArray")
 
 
 def measure_row(values: Places, limits: Limits, rows: int) -> Places:
-    """Return for values how many rows of characters, as a fraction, they are below the top of a canvas.
+    """Return how far each value is below the top of a canvas, in rows of characters, with fractions.
 
     Args:
         values: The values.

@@ -139,7 +139,7 @@ def _place_points(
     y_limits: Limits,
     parts: tuple[int, int] = (1, 1),
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the positions of a curve's points on a canvas, from the left and from the top.
+    """Return how far a curve's points are from the left and from the top of a canvas, in cells or parts of cells.
 
     Args:
         curve: The curve.

@@ -152,7 +152,7 @@ def _measure_width(labels: dict[int, str]) -> int:
 def _place_end_values(
     drawn: Sequence[Trace], scales: Scales, rows: int, x_limits: Limits
 ) -> tuple[dict[int, Run], int]:
-    """Return the last visible values of the traces by row, and their width.
+    """Return the last visible values of the traces by row, and their width in columns.
 
     Each value is in the row in which its line ends, or in a row next to that.
     """

@@ -69,7 +69,7 @@ def build_line(
         points: Rising times, and values, each of shape (n,).
         number: Index that selects colour and marker.
         scale: The name of its scale.
-        limits: Range of time.
+        limits: Range of time in s.
         columns: Width in pixels; points that it could not show apart are left out.
         hold: Whether to draw a step line.
     """

@@ -310,7 +310,7 @@ def _draw_box(text: str, trace: Trace, selected: bool, by_mark: bool) -> list[Ru
 def measure_margins(
     parts: Sequence[Traces], state: ChartState, width: int, rows: int
 ) -> tuple[int, int]:
-    """Return the columns left and right of the canvases of several charts, so that the canvases are in line.
+    """Return how many columns several charts need left and right of their canvases, so that the canvases are in line.
 
     Args:
         parts: The traces of each chart.

@@ -238,7 +238,7 @@ def clip_line(
 
 
 def sample_and_hold(times_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a step line, which keeps each value until the next point."""
+    """Return the times and values of a step line, which keeps each value until the next point."""
     if len(times_s) < 2:
         return times_s, values
     return np.repeat(times_s, 2)[1:], np.repeat(values, 2)[:-1]
