@@ -197,7 +197,7 @@ def _list_span(statement: ast.stmt) -> Iterator[int]:
 
 
 def _measure_depth(node: ast.AST) -> int:
-    """Return how many blocks are nested in each other at the deepest place of a syntax tree, itself included."""
+    """Return the greatest number of blocks, such as loops, that are nested in each other in a syntax tree."""
     inner = max(map(_measure_depth, ast.iter_child_nodes(node)), default=0)
     return inner + isinstance(node, _BLOCKS)
 

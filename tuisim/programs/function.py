@@ -354,7 +354,8 @@ class _Reader:
         reserved = {
             number for block in self._blocks if block.file == own for number in block.numbered
         }
-        # All statements are in one line, so that functions keep theirs: in line 1 if it is free, for default values.
+        # All imports and values share one line, so that the functions keep their line numbers. It is line 1 if that is
+        # free, since default values of the functions may use them.
         place = max(reserved) + 1 if 1 in reserved else 1
         lines = {place: "; ".join(self._statements)}
         defined = place

@@ -228,7 +228,7 @@ def _read_head(lines: list[str]) -> Iterator[tuple[int, str]]:
 
 
 def resolve_files(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the options of a magic line, in which names of files are paths in a folder.
+    """Return the options of a magic line, with each name of a file replaced by its path in a folder.
 
     Args:
         folder: The folder of the program or notebook.

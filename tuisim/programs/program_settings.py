@@ -337,7 +337,9 @@ def has_brick_rules(profile: str | ProfileSpec) -> bool:
 
 
 def _decide_ground(facts: SourceFacts, free: Collection[str]) -> dict[str, bool]:
-    """Return the settings `floor` and `walls` for a program of a real brick, without those that the user has chosen.
+    """Return the settings that a program of a real brick has for `floor` and `walls`, by name.
+
+    Settings that the user has chosen are left out.
 
     Args:
         facts: The facts in the source of the program.

@@ -117,7 +117,7 @@ class Question:
         return tuple(dict.fromkeys(names[word] for word in words if word in names))
 
     def find_limit(self) -> float | None:
-        """Return the first number above 0 with which the program compares the value; None without one."""
+        """Return the first number above 0 with which the program compares the value; None if there is none."""
         numbers = (word for word in self.words if not isinstance(word, str))
         return next((number for number in numbers if number > 0), None)
 
@@ -344,9 +344,9 @@ def _is_test(step: ast.stmt) -> bool:
 
 
 def _is_noted(step: ast.stmt, compared: Set[str]) -> bool:
-    """Return whether a step does nothing but print a value, or store it in a variable with which the value is compared.
+    """Return whether a step only prints a value, or only stores it in a variable with which such values are compared.
 
-    Such a variable has, for example, the maximum so far.
+    For example, the variable contains the maximum so far.
 
     Args:
         step: The step.

@@ -134,7 +134,7 @@ def find_shown_ports(mentions: Mentions, robot: RobotSpec) -> tuple[str, ...]:
 
 
 def _on_ports(robot: RobotSpec) -> dict[str, object]:
-    """Return the kind of part on each port of a robot."""
+    """Return for each port of a robot, by its name, the kind of its motor or the spec class of its sensor."""
     return {motor.port: motor.kind for motor in robot.motors} | {
         sensor.port: type(sensor) for sensor in robot.sensors
     }
@@ -151,7 +151,10 @@ class _Builder:
     # Motors
 
     def motors(self) -> dict[str, Any]:
-        """Return the robot's fields for motors and wheels."""
+        """Return the robot's motors and wheels as values by field name of `RobotSpec`.
+
+        The parts and doubts that the builder finds are added to `parts` and `doubts`.
+        """
         motors = (device for device in self.mentions.devices if device.kind.is_motor)
         kinds = add_tools(self._find_kinds([*self._list_pairs(), *motors]), self.mentions)
         where = {
@@ -204,7 +207,7 @@ class _Builder:
         return HUBS[self.usual.hub].motor if self.usual.hub else usual
 
     def _find_reversed(self, wheels: WheelMotors) -> dict[str, bool]:
-        """Return the robot's fields for wheel motors that are mounted the other way round, as the program says."""
+        """Return the fields `left_reversed` and `right_reversed` of `RobotSpec` that the program shows to be True."""
         turned = self.mechanics.reversed
         sides = [
             side
@@ -219,7 +222,7 @@ class _Builder:
         return {f"{side}_reversed": True for side in sides}
 
     def _find_gears(self, wheels: WheelMotors) -> dict[str, float]:
-        """Return the robot's field for the gear ratio of the wheels.
+        """Return the wheels' gear ratio under its field name in `RobotSpec`, `gear_ratio`.
 
         The result is empty if the ratio is the usual one, or differs between the two wheels.
         """
@@ -243,10 +246,10 @@ class _Builder:
         return {"gear_ratio": ratio}
 
     def add_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
-        """Return the robot's fields, with the motors that press touch sensors at their end stops.
+        """Return values of `RobotSpec` in which motors press touch sensors at their end stops, as the program shows.
 
         Args:
-            changes: The robot's fields, among them its motors and touch sensors.
+            changes: The values, by field name, among them the motors and touch sensors.
         """
         motors = {motor.port: motor for motor in changes["extra_motors"]}
         touches = list(changes["touch_sensors"])
@@ -302,7 +305,10 @@ class _Builder:
                 missing -= 1
 
     def _read_sizes(self, pair: Pair | None) -> dict[str, float]:
-        """Return the wheel sizes in mm that the program gives to the class of its wheels, without the usual sizes."""
+        """Return the wheel sizes in mm that the program passes to the class of its wheels, by field of `RobotSpec`.
+
+        Sizes that equal those of the usual robot are left out.
+        """
         sizes: dict[str, float] = {}
         if pair and pair.wheel_mm and pair.wheel_mm[0] != self.usual.wheel_diameter_mm:
             sizes["wheel_diameter_mm"], width_mm = pair.wheel_mm
@@ -312,7 +318,10 @@ class _Builder:
         return sizes
 
     def find_sizes(self, motors: Mapping[str, Any]) -> dict[str, float]:
-        """Return the wheel sizes in mm from constants of the program, where the class of its wheels gives none."""
+        """Return the wheel sizes in mm from constants of the program, by field name of `RobotSpec`.
+
+        Sizes that the program passes to the class of its wheels are left out.
+        """
         sizes = self._find_sizes(motors)
         self._tell_sizes(sizes)
         return {key: size.mm for key, size in sizes.items()}
@@ -358,7 +367,10 @@ class _Builder:
         self._tell_sizes({key: Size(mm, wheels.where) for key, mm in sizes.items()})
 
     def _find_kinds(self, mentions: Iterable[Mention]) -> dict[str, DeviceKind]:
-        """Return the kind of device on each port that the program names; of several kinds, the most frequent one."""
+        """Return the kind of device on each port that the program names, by port.
+
+        If the program names several kinds for a port, the most frequent one is taken.
+        """
         votes: dict[str, Counter[DeviceKind]] = {}
         for mention in mentions:
             if mention.port:
@@ -379,10 +391,10 @@ class _Builder:
     # Sensors
 
     def sensors(self, motors: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the robot's fields for sensors.
+        """Return the robot's sensors as values by field name of `RobotSpec`.
 
         Args:
-            motors: The robot's fields for motors and wheels.
+            motors: The values for motors and wheels, by field name.
         """
         mentions = add_sides(
             [device for device in self.mentions.devices if not device.kind.is_motor]

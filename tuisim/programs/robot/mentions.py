@@ -532,7 +532,7 @@ class _Reader:
     def _find_ends(
         self, known: PairClass, call: Call, names: tuple[str, ...], devices: Sequence[Mention]
     ) -> Iterable[tuple[str, str]]:
-        """Return the ports of the left and the right motor of each pair that a call can create.
+        """Return a tuple of the left and the right motor's port for each pair that a call can create.
 
         Args:
             known: The library class of the pair.

@@ -163,7 +163,10 @@ def mount(sensor: SensorSpec, mention: Mention) -> SensorSpec:
 
 
 def build_fields(placed: Mapping[str, SensorSpec], usual: RobotSpec) -> dict[str, Any]:
-    """Return sensors as fields of a robot: first the sensors of the usual robot in its order, then all others."""
+    """Return sensors as values by field name of `RobotSpec`.
+
+    In each field, the sensors of the usual robot come first, in its order, and then all others.
+    """
     order = [sensor.name for sensor in usual.sensors]
     sensors = sorted(
         placed.values(),

@@ -123,7 +123,7 @@ class ProgramRobot:
 
 
 def _build_table(spec: RobotSpec) -> dict[str, Any]:
-    """Return a robot as the table of a robot file, with every value."""
+    """Return a robot as the parsed table of a robot file, with every value by its key."""
     return tomllib.loads("\n".join(format_robot(spec)))
 
 

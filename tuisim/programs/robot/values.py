@@ -76,7 +76,7 @@ class SourceCollection:
 
     @property
     def keys(self) -> list[ast.expr | None]:
-        """The keys of a dict; empty for other collections."""
+        """The expressions for the keys of a dict, None for a `**` in it; empty for other collections."""
         return list(self.node.keys) if isinstance(self.node, ast.Dict) else []
 
     @property

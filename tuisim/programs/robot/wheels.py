@@ -368,7 +368,7 @@ def _is_size(name: str) -> bool:
 
 
 def _read_number(value: object) -> float:
-    """Return a value as a number; 0 if it is not one."""
+    """Return a value as a number; 0 if the value is not a number."""
     return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else 0.0
 
 
