@@ -49,7 +49,7 @@ class Label:
 
     @property
     def x_px(self) -> float:
-        """The column of that edge of the text which is beside the ring."""
+        """The column, in pixels, of the text's edge that is next to the ring."""
         return self.right_px if self.is_at_end else self.left_px
 
 
@@ -111,9 +111,9 @@ def encode_data(kind: str, content: bytes) -> str:
 
 
 def clamp_to_picture(view: Viewport, x_mm: float, y_mm: float) -> tuple[float, float, str]:
-    """Return where to mark a place on a picture: column and row in pixels, and how far off the mat it is, as text.
+    """Return column and row in pixels at which to mark a place on a picture, and a text on how far it is off the mat.
 
-    A place outside the picture is marked at its edge. For a place inside, the text is empty.
+    A place outside the picture is marked at the picture's edge. For a place inside, the text is empty.
     """
     at_px = view.to_px(x_mm, y_mm)
     sizes_px = view.width_px, view.height_px

@@ -93,12 +93,12 @@ class LogTrace(Trace):
 
     @property
     def times_s(self) -> FloatArray:
-        """Positions on the x axis of the points to draw."""
+        """The positions on the x axis of the points to draw, shape (n,): times in s, unless aligned otherwise."""
         return self._shown[0]
 
     @property
     def values(self) -> FloatArray:
-        """Values of the points to draw."""
+        """The values of the points to draw, shape (n,)."""
         return self._shown[1]
 
     def find_value(self, time_s: float) -> float | None:

@@ -142,7 +142,11 @@ class Lab:
         return self._run.max_speed_dps
 
     def reset(self, seed: int | None = None) -> dict[str, float]:
-        """Move the robot to its start, and return the columns there; with a seed, noise and drift are of this seed."""
+        """Move the robot to its start, and return the values of the columns there, by name.
+
+        Args:
+            seed: The new seed of noise and drift; None keeps the present one.
+        """
         if seed is not None:
             self._spec = replace(self._spec, seed=plain(seed))
         self._run = SteppedRun(self._spec, self._field, is_recorded=bool(self._goals))

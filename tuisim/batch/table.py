@@ -258,7 +258,7 @@ def list_result_columns(frame: pd.DataFrame, expressions: Iterable[str]) -> list
 
 
 def build_metadata(frame: pd.DataFrame, batch: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the metadata to store with a table: its columns, their units, and what identifies the batch."""
+    """Return the metadata to store with a table, by key: its columns, their units, and what identifies the batch."""
     units = {
         name: unit.words
         for name in frame.columns

@@ -137,7 +137,7 @@ def _iterate_kernels(folders: Sequence[str]) -> Iterator[InstalledKernel]:
 
 
 def _read(file: Path) -> dict[str, Any] | None:
-    """Return the kernel spec in a file; None if it cannot be read, or does not belong to a tuisim kernel."""
+    """Return the kernel spec in a JSON file; None if the file cannot be read, or the kernel is not one of tuisim."""
     try:
         spec = json.loads(file.read_bytes())
         ours = EXTENSION in spec["argv"] and isinstance(spec["display_name"], str)

@@ -94,7 +94,7 @@ def list_changed_files(run: StoredRun) -> tuple[str, ...]:
 
 def _has_obeyed_stop(run: StoredRun) -> bool:
     """Return whether the user stopped the program, and a re-run can stop it at the same position."""
-    # A run that was killed, and did not stop by itself, has a longer summary.
+    # The summary of a run that ignored the stop and had to be killed is longer than `stopped`.
     return (
         run.end is not None
         and run.end.summary == "stopped"

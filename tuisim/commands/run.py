@@ -279,7 +279,10 @@ class BreakpointReporter:
 
 
 def _export(done: Sequence[StoredRun], arguments: Arguments) -> None:
-    """Write every export of the finished runs; report failures on stderr, and raise the first one at the end."""
+    """Write every export of the finished runs to its file.
+
+    A failure does not prevent the other exports. The first failure is raised at the end, others are printed on stderr.
+    """
     writers: list[tuple[str, Callable[[str], int]]] = [
         (target, lambda target: export_samples(done, target)) for target in arguments.export
     ]
@@ -324,7 +327,7 @@ def _run_all(
     """Run the programs one after another until all are done or interrupted.
 
     Returns:
-        The worst exit code, and label and run of each program.
+        The highest exit code, and for each program its label and its run; the run is None if it could not be run.
     """
     results: list[tuple[str, StoredRun | None]] = []
     code = 0

@@ -65,7 +65,7 @@ class AppView:
         self._visit: Visit = visit
 
     def create_address(self, origins: tuple[str, ...]) -> dict[str, Any]:
-        """Return the app's port and a new token; a page with an earlier token can no longer open the app.
+        """Return the app's port and a new token, by name; a page with an earlier token can no longer open the app.
 
         Args:
             origins: Further origins of pages that may show the app.

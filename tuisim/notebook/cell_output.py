@@ -86,7 +86,7 @@ class CellOutput:
 
 
 def fold_lines(lines: Sequence[str], count: int) -> dict[str, str]:
-    """Return lines as a display of the last lines, in which a click shows all others.
+    """Return MIME data for a display of the last lines, in which a click shows all others.
 
     Args:
         lines: The lines, at most `MAX_FOLDED_LINES`.

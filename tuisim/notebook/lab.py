@@ -169,7 +169,7 @@ class Lab:
     process_raw_image_data = staticmethod(old_formats.process_raw_image_data)
 
     def robot_state(self) -> dict[str, Any]:
-        """Return the old simulator's dictionary of the robot's state, see `old_formats.robot_state`."""
+        """Return the old simulator's dictionary of the robot's state, see `old_formats.build_robot_state`."""
         from tuisim.engine.runs.run_folder import field_files
         from tuisim.notebook.display import start_record
 
@@ -200,7 +200,10 @@ class Lab:
 
     @property
     def state(self) -> dict[str, Any]:
-        """The robot's pose in mm and degrees, and world and end of the last run."""
+        """A dictionary with the robot's pose in mm and degrees, and the world and the end of the last run.
+
+        Before the first run, the pose is the start, and `state` is `ready`.
+        """
         self._catch_up()
         # The user may have changed settings in the app, so that its run had others than the cells.
         spec = self._last.spec if self._last else self.spec

@@ -148,9 +148,9 @@ class LiveRobot:
         _find_kernel().session.send(stream, REPLY, content, message, identity)
 
     def open(self, offer: str) -> dict[str, Any]:
-        """Start the app if there is none yet; return its port and token.
+        """Start the app if there is none yet; return its port and token as a dict, see `AppView.create_address`.
 
-        Return an empty dict if the offer is not the newest, or if the app has ended.
+        The dict is empty if the offer is not the newest, or if the app has ended.
         """
         from tuisim.notebook.app_view import AppView
 

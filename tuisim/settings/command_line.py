@@ -105,7 +105,7 @@ class GroupedOption(click.Option):
         self.needs_value = not self.is_flag and "flag_value" not in how
 
     def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
-        """Return two columns of the help: the option's names with its value, and its help text."""
+        """Return two columns of the help: the option's names with its value, and its help; None if it is hidden."""
         names = ", ".join(self.opts[:2])
         return (
             None
@@ -400,10 +400,12 @@ class Group(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Return the named subcommand and the words after it.
+        """Return the name of the subcommand in `args[0]`, the subcommand, and the words after it.
+
+        While the shell completes a word, name and subcommand are None if there is no such subcommand.
 
         Raises:
-            ConfigError: there is no such subcommand.
+            ConfigError: there is no such subcommand, and the command is to be executed.
         """
         if args[0] in self.listing or ctx.resilient_parsing:
             return super().resolve_command(ctx, args)

@@ -265,7 +265,7 @@ def parse_log_line(line: str, magic: str) -> Arguments:
 
 
 def update_persistent(before: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings that a notebook keeps for later cells, after a cell has changed some.
+    """Return the settings, by path, that a notebook keeps for later cells, after a cell has changed some.
 
     A cell that chooses a mat removes the kept settings named in `RESET_BY_MAT`, such as the start pose.
 

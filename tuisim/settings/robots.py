@@ -413,7 +413,7 @@ def _parse_json_noise(
 def _parse_json_part(
     part: Mapping[str, object], keys: Mapping[str, str], location: Location
 ) -> dict[str, object] | bool:
-    """Return a sensor or the pen of the browser simulator's file with the keys of a TOML table.
+    """Return a sensor or the pen from the browser simulator's file, its values under the keys of a TOML table.
 
     The result is False for a sensor that is disabled.
 

@@ -308,7 +308,7 @@ def _resolve(folder: Path, referred: list[Path], word: str) -> str:
 def _parse_mat(
     world: Mapping[str, Any], location: Location, resolve: Resolver, mats: str | None
 ) -> dict[str, Any]:
-    """Return the settings `background` and `mats` of a world file: the mat, and the folder of the user's mats.
+    """Return by name those of the settings `background` and `mats` (a mat, and a folder of mats) that a file sets.
 
     Args:
         world: The keys of the file.
@@ -355,7 +355,7 @@ def _resolve_name(
 
 
 def _parse_infrared(world: Mapping[str, Any], location: Location) -> dict[str, Any]:
-    """Return the settings of the beacon and of the remote control."""
+    """Return the settings `beacon` and `remote` of a world file by name, those that the file sets."""
     settings: dict[str, Any] = {}
     if "beacon" in world:
         settings["beacon"] = files.read_part(

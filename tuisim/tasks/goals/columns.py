@@ -129,7 +129,7 @@ def _check_samples(named: ValueCondition, evidence: Evidence) -> tuple[Array, Ar
 
 
 def _measure_gaps_mm(records: Array, evidence: Evidence) -> Array:
-    """Return how far the robot's body is from the nearest obstacle or wall, at every tick."""
+    """Return the distance in mm from the robot's body to the nearest obstacle or wall at every tick, shape (n,)."""
     import numpy as np
 
     world = evidence.spec.world

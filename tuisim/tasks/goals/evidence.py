@@ -207,7 +207,7 @@ class Evidence:
         )
 
     def column(self, name: str) -> Array:
-        """Return a column of the run, one of `list_columns` or `BRICK_COLUMNS`, at every tick.
+        """Return the values of a column, one of `list_columns` or `BRICK_COLUMNS`, at every tick, shape (n,).
 
         Raises:
             LogError, ConfigError: the mat no longer exists, or its image has changed.

@@ -491,7 +491,7 @@ def _find_prompt(text: str, answer: str, typed: str | None) -> str | None:
     if not text.endswith(answer) or (typed is not None and typed != answer):
         return None
     prompt = text.removesuffix(answer)
-    # `15` is not a prompt 1 and an answer 5.
+    # A row such as `15` is one number, not the prompt `1` with the answer `5`.
     if typed is None and answer[:1].isdigit() and prompt[-1:].isdigit():
         return None
     return prompt

@@ -158,7 +158,8 @@ def compare(cells: Array, points: Array, within_mm: float) -> tuple[Array, Array
 
     side = compute_cell_mm(within_mm)
     reach = math.ceil(within_mm / side) + 1
-    # Points off the field go into the inner half of the margin, cells near these into the outer half.
+    # The grid has a margin around the field: points off the field are moved into its inner half, and the cells around
+    # such points lie in its outer half.
     margin = 2 * reach
     cols, rows = _count_cells(within_mm)
     wide = cols + 2 * margin

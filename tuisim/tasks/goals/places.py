@@ -271,7 +271,7 @@ def _find_inside(area: AreaCondition, x_mm: Array, y_mm: Array) -> Array:
 
 
 def _measure_circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec) -> Array:
-    """Return the distance in mm of the robot's body from the centre of a circle, at every tick."""
+    """Return the distance in mm of the robot's body from the centre of a circle at every tick, shape (n,)."""
     import numpy as np
 
     outline = build_outline(robot)

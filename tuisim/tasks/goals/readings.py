@@ -57,7 +57,7 @@ def describe_ranges(place: Mapping[str, Range]) -> str:
 
 
 def read_ticks(reading: Reading, evidence: Evidence) -> Array:
-    """Return the ticks in which the program read sensors or motors of a kind, in ascending order."""
+    """Return the ticks in which the program read sensors or motors of a kind, in ascending order, shape (n,)."""
     import numpy as np
 
     name = f"ticks with {reading}"
@@ -86,7 +86,7 @@ def _find_readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
 
 
 def filter_ticks(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
-    """Return those of the ticks at which the robot was in the ranges that `select_place` gave."""
+    """Return those of some ticks at which the robot was in a place, given by its ranges from `select_place`."""
     for key, (low, high) in place.items():
         values = evidence.records[key][ticks]
         ticks = ticks[(values >= low) & (values <= high)]
@@ -196,7 +196,7 @@ def find_off_line(condition: FollowCondition, evidence: Evidence, span: Evidence
 
 
 def _compute_light_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:
-    """Return the light in percent of the mat's pixel under a point of the robot, at every tick.
+    """Return the light in percent of the mat's pixel under a point of the robot at every tick, shape (n,).
 
     Off the mat, the result is the light of the floor.
     """
@@ -218,7 +218,7 @@ def _compute_light_percent(records: Array, x_mm: float, y_mm: float, evidence: E
 def _compute_reflected_percent(
     records: Array, sensor: ColorSensorSpec, evidence: Evidence
 ) -> Array:
-    """Return what a colour sensor's `reflected_light_intensity_pc` would be without noise, at every tick."""
+    """Return what a colour sensor's `reflected_light_intensity_pc` would be without noise at every tick, shape (n,)."""
     from tuisim.engine.runs.sensor_arrays import measure_quiet_color
 
     red, *_ = measure_quiet_color(records, sensor, evidence.spec, evidence.mat).values()

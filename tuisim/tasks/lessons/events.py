@@ -279,7 +279,7 @@ def describe_form(question: QuestionCheck, text: str) -> str:
 
 
 def _parse_number(text: str) -> float | None:
-    """Return the number in a text, which may have a decimal comma and a unit; None if it has another form."""
+    """Return the number in a text such as `12.5` or `12,5 mm`; None if the text has another form."""
     match = _NUMBER.match(text.replace(",", "."))
     return None if match is None else float(match[1])
 

@@ -374,7 +374,7 @@ def _parse_excludes(data: object, location: Location) -> dict[Way, str]:
 
 
 def _parse_wrong(table: Any, location: Location) -> dict[str, str]:
-    """Return the wrong answers of a step with their reasons, which are empty if the file only lists answers."""
+    """Return the reason for each wrong answer of a step, by answer; it is empty if the file only lists answers."""
     if not isinstance(table.get(_WRONG), dict):
         return dict.fromkeys(_parse_texts(table, _WRONG, location, MAX_WRONG), "")
     return {

@@ -328,8 +328,8 @@ class LessonStep:
         }
         match self.check:
             case QuestionCheck(choices=choices, at_x_mm=place, seen=seen, run=run):
-                # The check of a lesson tries only answers, not what a student must do before one, so the question's
-                # keys decide.
+                # `tuisim learn check` cannot try what a student must do before an answer, so a key of the question that
+                # demands this is enough to cover a way.
                 tried = {
                     Way.LITERAL: self.wrong or choices,
                     Way.PLACE: place,

@@ -85,7 +85,7 @@ def gather_files(hand_in: HandIn, place: Path) -> Path:
     if not hand_in.name:
         return next(iter(hand_in.paths.values()))
     if folder is not None and os.path.isdir(folder):
-        # Moodle's online text is left out: it is for the tutor.
+        # With a folder of files, a text that the student typed into Moodle is a message to the tutor: it is left out.
         return folder
     place.mkdir()
     for file, path in hand_in.paths.items():

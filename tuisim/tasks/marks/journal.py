@@ -48,7 +48,7 @@ class Journal:
             self.known = self._read() if self._resumes else {}
             self._file = open(self._path, "ab" if self._resumes else "wb", opener=private)
             if self._resumes and self._file.tell():
-                # The last line may be incomplete; an empty one is ignored.
+                # This ends a last line that an interrupted process may have left incomplete; empty lines are ignored.
                 self._file.write(b"\n")
         except OSError as error:
             raise self._build_error(error) from error

@@ -337,7 +337,7 @@ class Marking:
             yield target, partial(book, goals=request.goal_columns)
 
     def _write_page(self, sheet: Sheet, target: Path, tell: Tell) -> None:
-        # Its charts are slow to import, and a table needs none.
+        # Imported on demand: the charts of the page are slow to import, and a marking without a page needs none.
         from tuisim.tasks.marks.reports import write_class_page
 
         worlds = self._plan.worlds

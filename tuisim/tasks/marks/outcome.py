@@ -276,7 +276,7 @@ def _describe_failure(result: Result) -> str:
     if result.end == End.STOPPED:
         return "stopped, because it took too long"
     if result.end == End.STALLED:
-        # The summary is fixed here, since it depends on which process noticed it first, the program's or its host.
+        # The run's own summary is not used: it depends on whether the program's process or its parent noticed it first.
         return "stuck: no simulated time passed"
     lines = source_lines(result.error.rstrip("\n"))
     return (

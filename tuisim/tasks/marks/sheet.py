@@ -343,7 +343,7 @@ def _cut_middle(name: str, max_length: int) -> str:
 
 
 def build_metadata(sheet: Sheet) -> dict[str, Any]:
-    """Return the metadata of an exported sheet: the goals with their points, and the seeds."""
+    """Return the metadata of an exported sheet, by key, such as the goals with their points, and the seeds."""
     return {
         "format": MARKS_FORMAT,
         "table": "marks",

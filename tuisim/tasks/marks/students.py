@@ -184,7 +184,11 @@ def _resolve_links(path: Path) -> Path:
 
 
 def _list_entries(folder: Path, excluded: Collection[Path], search: _Search) -> Iterator[Path]:
-    """Return the entries of a folder that may belong to a student, sorted by name."""
+    """Return an iterator over the paths in a folder that may belong to a student, sorted by name.
+
+    Raises:
+        ConfigError: the folder cannot be read.
+    """
     try:
         names = search.list_names(folder)
     except OSError as error:

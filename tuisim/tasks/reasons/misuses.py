@@ -124,11 +124,11 @@ def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
 def _compare(use: LoopEnd, series: Series) -> Array:
     """Return for each value whether a comparison is true, shape (n,).
 
-    All results are False if it compares a value with a wrong type.
+    A comparison of a colour with a text of the wrong form is never true.
 
     Args:
-        use: The comparison.
-        series: The values.
+        use: The comparison, with its constant.
+        series: The values to compare with the constant.
     """
     if not isinstance(use.limit, str):
         return np.asarray(COMPARE[use.operator](series.values, use.limit))

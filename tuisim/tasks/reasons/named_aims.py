@@ -87,7 +87,10 @@ def _find_wrong_bands(data: RunData) -> Iterator[Unmet]:
 
 
 def _measure_light(data: RunData, loop: LoopEnd, records: Array) -> Array:
-    """Return the light in % that the sensor of a loop sees in those records in which the robot is on the mat."""
+    """Return the light in % that the sensor of a loop sees, one value for each record with the robot inside the mat.
+
+    Inside means at least `_RIM_MM` mm from its edges. The result is empty if the light is not known.
+    """
     is_on = (records["x_mm"] > _RIM_MM) & (records["x_mm"] < FIELD_WIDTH_MM - _RIM_MM)
     is_on &= (records["y_mm"] > _RIM_MM) & (records["y_mm"] < FIELD_HEIGHT_MM - _RIM_MM)
     percent = replace(loop, attribute="reflected_light_intensity_pc")
@@ -96,7 +99,7 @@ def _measure_light(data: RunData, loop: LoopEnd, records: Array) -> Array:
 
 
 def _extend_way(record: Array) -> Array:
-    """Return records of a robot that drives straight on from its pose in a record, one every `_STEP_MM` mm."""
+    """Return records of a robot that drives straight on from its pose in `record`, one every `_STEP_MM` mm."""
     way_mm = np.arange(_STEP_MM, _AHEAD_MM, _STEP_MM)
     records = np.repeat(record[None], len(way_mm))
     heading = np.deg2rad(record["heading_deg"])

@@ -101,7 +101,7 @@ class RunData:
 
     @cached_property
     def reading_ticks(self) -> Array:
-        """The tick of each of `readings`."""
+        """The tick of each row of `readings`, shape (n,)."""
         return find_ticks(self.readings, self.hz)
 
     @cached_property
@@ -111,13 +111,13 @@ class RunData:
 
     @cached_property
     def command_ticks(self) -> Array:
-        """The tick of each of `commands`."""
+        """The tick of each row of `commands`, shape (n,)."""
         ticks: Array = self.commands["time_ns"] * self.hz // NS_PER_S
         return ticks
 
     @cached_property
     def stop_ticks(self) -> Array:
-        """The ticks of those commands that stop a motor or a drive base."""
+        """The ticks of those commands that stop a motor or a drive base, in order."""
         import numpy as np
 
         calls = self.commands["call"]
@@ -249,9 +249,10 @@ class RunData:
     def _measure_sensor(
         self, loop: LoopEnd, sensor: SensorSpec, read: tuple[str, float, str], records: Array
     ) -> Array | None:
-        """Return what a loop would read of a sensor in some records.
+        """Return the value that a loop would read from a sensor in each of some records, shape (n,).
 
-        The result is None if the sensor has no such measurement, or if noise or the pen's marks would make this slow.
+        The result is None if the sensor has no such measurement, or if noise or the pen's marks make the computation
+        slow.
 
         Args:
             loop: The loop, or another comparison.

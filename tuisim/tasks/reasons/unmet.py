@@ -363,7 +363,7 @@ class _Search:
         if every is None:
             return None
         meets = COMPARE[loop.operator]
-        # At the first tick that meets the condition, the reading may have ended the loop.
+        # Only the first tick that meets the condition matters: after it, a reading may have ended the loop.
         first = int(meets(every.values, loop.limit).argmax())
         tick = int(every.ticks[first])
         after = int(np.searchsorted(reads.ticks, tick))

@@ -238,7 +238,7 @@ class _Search:
         return rows
 
     def _select(self, subject: Subject, port: str) -> Array:
-        """Return for each reading whether it is of a subject and a port."""
+        """Return for each reading whether it is one of a subject, such as a kind of sensor, on a port, shape (n,)."""
         import numpy as np
 
         modes = [READING_MODES.index(mode) for mode in MODES[subject]]

@@ -71,7 +71,7 @@ def find_waits(data: RunData) -> list[Wait]:
     unmet = find_unmet(data) if is_seen else None
     verb = "it waited" if run.end else "it waits"
     if unmet and unmet.is_endless:
-        # What the program reads makes no difference.
+        # No reading can end this loop, so what the program reads meanwhile is not mentioned.
         return [_describe_unmet(verb, unmet)]
     waits = []
     for awaited in all_awaited:
