@@ -191,29 +191,29 @@ class Message:
 
 @dataclass(frozen=True, slots=True)
 class Stop(Message):
-    """Stop the program."""
+    """The host's command to stop the program."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pause(Message):
-    """Pause at the next instant that is not inside a device call."""
+    """The host's command to pause at the next instant that is not inside a device call."""
 
 
 @dataclass(frozen=True, slots=True)
 class Resume(Message):
-    """Resume a paused run."""
+    """The host's command to resume a paused run."""
 
 
 @dataclass(frozen=True, slots=True)
 class StepTicks(Message):
-    """While paused: run this number of ticks, then pause again."""
+    """The host's command to a paused run to run this number of ticks, then pause again."""
 
     ticks: int = 1
 
 
 @dataclass(frozen=True, slots=True)
 class StepLine(Message):
-    """Run to the next line of the program, then pause; a running program pauses at its next line."""
+    """The host's command to run to the next line of the program, then pause; a running program pauses there, too."""
 
     how: LineStep = LineStep.OVER
 
@@ -224,14 +224,17 @@ class StepLine(Message):
 
 @dataclass(frozen=True, slots=True)
 class RunToLine(Message):
-    """Run until a line of the program is about to run, in any thread, then pause."""
+    """The host's command to run until a line of the program is about to run, in any thread, then pause."""
 
     line: int
 
 
 @dataclass(frozen=True, slots=True)
 class RunToInstant(Message):
-    """Run at full speed to a later instant and pause there; if the program ends before, pause at its end."""
+    """The host's command to run at full speed to a later instant, and pause there.
+
+    If the program ends before, the run pauses at the program's end.
+    """
 
     tick: int
     ordinal: int = BEFORE_NEXT_TICK
@@ -240,7 +243,7 @@ class RunToInstant(Message):
 
 @dataclass(frozen=True, slots=True)
 class SetBreaks(Message):
-    """Replace all breakpoints of the run."""
+    """The host's command to replace all breakpoints of the run."""
 
     breaks: tuple[str, ...]
     """Breakpoints in the syntax of `tuisim.engine.breakpoints`; disabled ones are ignored."""
@@ -252,7 +255,7 @@ class SetBreaks(Message):
 
 @dataclass(frozen=True, slots=True)
 class Inspect(Message):
-    """Request the state of a paused run; `Inspected` is the answer."""
+    """The host's request for the state of a paused run; `Inspected` is the answer."""
 
     watches: tuple[str, ...] = ()
     """Expressions, evaluated in the frame."""
@@ -267,21 +270,21 @@ class Inspect(Message):
 
 @dataclass(frozen=True, slots=True)
 class RequestHistory(Message):
-    """Request the last executed lines; `LineHistory` is the answer."""
+    """The host's request for the last executed lines, at most `count`; `LineHistory` is the answer."""
 
     count: int = 100
 
 
 @dataclass(frozen=True, slots=True)
 class SetSpeed(Message):
-    """Set the pace against the wall clock: 1.0 is real time, 0 is as fast as possible."""
+    """The host's command to set the pace of the run: 1.0 is real time, 0 is as fast as possible."""
 
     speed: float
 
 
 @dataclass(frozen=True, slots=True)
 class SetPose(Message):
-    """User action: set the robot's pose."""
+    """The user's action of moving the robot to a pose."""
 
     x_mm: float
     y_mm: float
@@ -290,7 +293,7 @@ class SetPose(Message):
 
 @dataclass(frozen=True, slots=True)
 class SetNoise(Message):
-    """User action: set the noise."""
+    """The user's action of setting the noise; the values are those of `NoiseSpec`."""
 
     light: int
     motor: int
@@ -298,14 +301,14 @@ class SetNoise(Message):
 
 @dataclass(frozen=True, slots=True)
 class SetPen(Message):
-    """User action: lift or lower the pen."""
+    """The user's action of lowering or lifting the pen."""
 
     down: bool
 
 
 @dataclass(frozen=True, slots=True)
 class SetButtons(Message):
-    """User action: hold these buttons and touch sensors from now on, and release all others."""
+    """The user's action of pressing buttons and touch sensors from now on, and releasing all others."""
 
     pressed: tuple[str, ...]
     """Names from `PRESSABLE`; others raise a ConfigError."""
@@ -320,7 +323,7 @@ class SetButtons(Message):
 
 @dataclass(frozen=True, slots=True)
 class Answer(Message):
-    """User action: the answer to an `input()`; None is end of file."""
+    """The user's answer to an `input()` of the program; the text None is end of file."""
 
     text: str | None
     at_once: bool = False
@@ -329,7 +332,7 @@ class Answer(Message):
 
 @dataclass(frozen=True, slots=True)
 class Reply(Message):
-    """User action: the answer of a notebook's responder to the program's call of `pyState()`.
+    """The answer of a notebook's responder to the program's call of `pyState()`, which counts as a user's action.
 
     No simulated time passes between the call and the answer.
     """
@@ -392,7 +395,7 @@ class UserAction:
 
 @dataclass(frozen=True, slots=True)
 class Started(Message):
-    """The program's first line is about to run."""
+    """The child's event that the program's first line is about to run."""
 
     protocol: int
     pid: int
@@ -400,7 +403,7 @@ class Started(Message):
 
 @dataclass(frozen=True, slots=True)
 class Paused(Message):
-    """The run has paused, the program and its world together."""
+    """The child's event that the run has paused, the program and its world together."""
 
     tick: int
     time_ns: int
@@ -422,12 +425,12 @@ class Paused(Message):
 
 @dataclass(frozen=True, slots=True)
 class Resumed(Message):
-    """The run has resumed."""
+    """The child's event that the run has resumed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Spoke(Message):
-    """The program said something, or played tones or a sound file."""
+    """The child's event that the program spoke, or played tones or a sound file."""
 
     text: str
     """The spoken text; in brackets for other sounds."""
@@ -443,7 +446,7 @@ class Spoke(Message):
 
 @dataclass(frozen=True, slots=True)
 class BusyLoop(Message):
-    """A loop has run for long without a wait; sent once, in a live run."""
+    """The child's event that a loop has run for long without a wait; sent once, in a live run."""
 
     line: int
     """A line in the loop, or in a function that the loop calls."""
@@ -453,19 +456,19 @@ class BusyLoop(Message):
 
 @dataclass(frozen=True, slots=True)
 class InputWanted(Message):
-    """The program waits in `input()`."""
+    """The child's event that the program waits in `input()`."""
 
     prompt: str
 
 
 @dataclass(frozen=True, slots=True)
 class ReplyWanted(Message):
-    """The program has called `pyState()`: simulated time stands still until a `Reply` arrives."""
+    """The child's event that the program has called `pyState()`: simulated time stands still until a `Reply` comes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plugged(Message):
-    """A part was plugged in because the program asked for it; values as in `engine.core.plugged.PluggedPart`."""
+    """The child's event that a part was plugged in because the program looked for it; values as in `PluggedPart`."""
 
     port: str
     part: str
@@ -492,7 +495,7 @@ class MotorRegisters:
 
 @dataclass(frozen=True, slots=True)
 class Wheels(Message):
-    """What programs have written to the two wheel motors, and their speeds; sent before `Ended`, and not stored."""
+    """The child's event with the registers of the two wheel motors; sent shortly before `Ended`, and not stored."""
 
     left: MotorRegisters = MotorRegisters()
     right: MotorRegisters = MotorRegisters()
@@ -500,7 +503,7 @@ class Wheels(Message):
 
 @dataclass(frozen=True, slots=True)
 class Ended(Message):
-    """The end of a run: its last event, most of which is stored with the run."""
+    """The child's last event, the end of the run; most of it is stored with the run."""
 
     end: End
     tick: int
@@ -517,7 +520,7 @@ class Ended(Message):
 
 @dataclass(frozen=True, slots=True)
 class Inspected(Message):
-    """The state of a paused run."""
+    """The child's answer to `Inspect`: the state of a paused run."""
 
     tick: int
     time_ns: int
@@ -543,7 +546,7 @@ class Inspected(Message):
 
 @dataclass(frozen=True, slots=True)
 class LineHistory(Message):
-    """The last executed lines, oldest first; the last one is about to run."""
+    """The child's answer to `RequestHistory`: the last executed lines, oldest first; the last one is about to run."""
 
     lines: tuple[ExecutedLine, ...]
 

@@ -36,7 +36,7 @@ class Operator(StrEnum):
 
     @property
     def short(self) -> str:
-        """The shortest spelling of the operator."""
+        """The shortest spelling of the operator, such as `>=`."""
         return next(
             (spelling for spelling, operator in _SPELLINGS.items() if operator is self), self.value
         )

@@ -89,7 +89,7 @@ def _fill(
 
 
 class Glide(NamedTuple):
-    """How one wheel's motor moves over several ticks."""
+    """How one wheel's motor moves over several ticks: its rotation in each, and its encoder's position after each."""
 
     rolls_deg: list[float]
     """Rotation of the motor in each tick, in degrees."""
@@ -98,7 +98,7 @@ class Glide(NamedTuple):
 
 
 class EvenGlide(NamedTuple):
-    """How one wheel's motor moves over several ticks at a steady speed."""
+    """How one wheel's motor moves over several ticks at a steady speed: its rotation and encoder positions."""
 
     roll_deg: float
     """Rotation of the motor in each tick, in degrees."""
@@ -107,7 +107,7 @@ class EvenGlide(NamedTuple):
 
 
 class Drive(Protocol):
-    """The robot's pose, and how its wheels change it."""
+    """The interface of `BrickDrive` and `BrowserDrive`: the robot's pose, and how its wheels change it."""
 
     x_mm: float
     y_mm: float

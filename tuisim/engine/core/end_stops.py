@@ -73,7 +73,7 @@ class Fence(EndStops):
 
 
 def build_stops(robot: RobotSpec, spec: MotorSpec, motor: Motor) -> EndStops:
-    """Return the end stops of a motor."""
+    """Return the end stops of a motor: a `Fence` for a motor with the kernel's driver, else an `EndStops`."""
     if isinstance(motor, SimulatedMotor):
         return Fence(robot, spec, motor)
     return EndStops(robot, spec)

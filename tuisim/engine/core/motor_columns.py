@@ -59,7 +59,7 @@ STATE_BITS: Mapping[str, int] = {
 
 
 class DrivenMotor(Protocol):
-    """A motor with a driver."""
+    """A motor with a driver that can write its `MOTOR_RECORD`."""
 
     def record(self, buffer: Buffer, at: int) -> None: ...
 

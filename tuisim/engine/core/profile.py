@@ -32,7 +32,7 @@ def compute_due_ns(tick: int, tick_hz: int) -> int:
 
 
 class Library(StrEnum):
-    """The library for the robot that a program imports."""
+    """The library with which a program controls the robot."""
 
     EV3DEV2 = "ev3dev2"
     PYBRICKS = "pybricks"

@@ -331,7 +331,7 @@ class GyroSpec(SensorSpec):
 
 @spec
 class PenSpec(Spec):
-    """The pen that draws the robot's trace."""
+    """The robot's pen: its place on the robot, its colour and width, and whether it is down at the start."""
 
     KEY = "pen"
 
@@ -685,7 +685,7 @@ START_VALUES = {
 
 @spec
 class WorldSpec(Spec):
-    """The robot's environment."""
+    """The robot's environment: mat, obstacles and walls, start pose, and the errors of wheels and sensors."""
 
     background: str = text(what="name of a mat", default=EMPTY_MAT)
     obstacles: tuple[Obstacle, ...] = parts(Obstacle, default=())

@@ -58,14 +58,14 @@ class TickSink(Protocol):
 
 
 class MemoryRecording:
-    """A recording of ticks in memory, without a file."""
+    """A receiver that keeps the tick records of a simulation in memory, without a file."""
 
     def __init__(self) -> None:
         self.count = 0
         self.buffer = bytearray(TICK_RECORD.size)
 
     def reserve(self, records: int) -> bytearray:
-        """Return the buffer, with space for `records` more records."""
+        """Return the buffer with all records so far, enlarged to have space for `records` more."""
         need = TICK_RECORD.size * (1 + self.count + records)
         if need > len(self.buffer):
             self.buffer += bytes(2 * need)

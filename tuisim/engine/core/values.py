@@ -144,7 +144,7 @@ class Value(ABC):
 
 
 class Flag(Value):
-    """True or false.
+    """A value that is true or false.
 
     Args:
         off_flag: The option that sets it to false; needed if its default depends on another value.
@@ -185,7 +185,7 @@ class Flag(Value):
 
 
 class Number(Value):
-    """A number from `low` to `high`, both included."""
+    """A value that is a number from `low` to `high`, both included."""
 
     __slots__ = ("high", "low")
     stored_as: ClassVar[Any] = int | float
@@ -228,7 +228,7 @@ class Number(Value):
 
 
 class Whole(Number):
-    """A whole number from `low` to `high`, both included."""
+    """A value that is a whole number from `low` to `high`, both included."""
 
     __slots__ = ()
     stored_as = int
@@ -267,7 +267,7 @@ class Seed(Whole):
 
 
 class NamedNumber(Number):
-    """A number, or the name of one.
+    """A value that is a number; some numbers have names, by which users can give them.
 
     Args:
         names: Numbers by name.
@@ -302,7 +302,7 @@ class NamedNumber(Number):
 
 
 class Numbers(Number):
-    """Up to `most` numbers, each from `low` to `high`."""
+    """A value that consists of up to `most` numbers, each from `low` to `high`."""
 
     __slots__ = ("most",)
     stored_as = (list, tuple)
@@ -342,7 +342,7 @@ class Numbers(Number):
 
 
 class Text(Value):
-    """One line of text.
+    """A value that is one line of text.
 
     Args:
         what: What the text is, in errors.
@@ -387,7 +387,7 @@ class Text(Value):
 
 
 class Choice(Value):
-    """One of a few texts or numbers.
+    """A value that is one of a few texts or numbers.
 
     Args:
         choices: All of them; an enumeration for its members.
@@ -436,7 +436,7 @@ class Choice(Value):
 
 
 class Choices(Choice):
-    """Any number of texts out of a few allowed ones."""
+    """A value that consists of any number of texts out of a few allowed ones."""
 
     __slots__ = ()
     stored_as = (list, tuple)
@@ -463,7 +463,7 @@ class Choices(Choice):
 
 
 class Color(Value):
-    """A colour by its CSS name or as `#rrggbb`."""
+    """A value that is a colour, given by its CSS name or as `#rrggbb`."""
 
     __slots__ = ()
 
@@ -493,7 +493,7 @@ class Color(Value):
 
 
 class Part(Value):
-    """A spec inside another one; it may be optional.
+    """A value that is itself a spec, a part of the spec that contains it; it may be optional.
 
     Args:
         of: The class of the spec.
@@ -622,7 +622,7 @@ def _parse_number_or_text(text: str) -> float | str:
 
 
 class Parts(Part):
-    """Several specs of one class inside another one."""
+    """A value that consists of several specs of one class, parts of the spec that contains them."""
 
     __slots__ = ()
 

@@ -341,15 +341,15 @@ class CommandIndex:
         return [number for number, code in enumerate(self._codes) if code in matching]
 
     def tick(self, number: int) -> int:
-        """Return the tick at which an event began."""
+        """Return the tick at which the event with an index began."""
         return self._find_tick(self._firsts[number])
 
     def time_s(self, number: int) -> float:
-        """Return the simulated time in seconds at which an event began."""
+        """Return the simulated time in seconds at which the event with an index began."""
         return self._firsts[number] / NS_PER_S
 
     def event(self, number: int) -> CommandEvent:
-        """Return the event with a number, with its command in words."""
+        """Return the event with an index, with its command in words."""
         code = self._codes[number]
         rows = read_command_rows(self._run.folder, self._starts[number], 1)
         # There is no such row if the program has changed the record meanwhile.

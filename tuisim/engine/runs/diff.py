@@ -94,7 +94,7 @@ class RunDiff:
         return not self.by_time and self.tick is None and self.output is None
 
     def to_plain(self) -> dict[str, Any]:
-        """Return the differences as JSON-compatible data."""
+        """Return the differences as a dictionary of JSON-compatible data; `same` says whether there are none."""
         return {"same": self.same, **asdict(self)}
 
     def describe_recording(self) -> Iterator[tuple[str, str]]:

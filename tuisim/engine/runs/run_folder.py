@@ -234,7 +234,7 @@ def build_run_data(
 
 
 def run_document(data: Mapping[str, Any]) -> bytes:
-    """Return the contents of a `run.json` as bytes."""
+    """Return the contents of a `run.json` as JSON bytes, ready to be written."""
     return json.dumps(data, indent=1, ensure_ascii=True).encode() + b"\n"
 
 

@@ -214,7 +214,7 @@ def read_stop_tick(folder: Path) -> int | None:
 
 @dataclass(frozen=True, slots=True)
 class OwnModule:
-    """One import by the program: the module that was found, or the name of a missing one."""
+    """One module that the program imported: its file and text, or only the name of a module that was not found."""
 
     name: str
     """Full name with packages, such as `tools.drive`."""

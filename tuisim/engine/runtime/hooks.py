@@ -104,7 +104,7 @@ class ErrorHooks:
         return report
 
     def show(self, error: BaseException | None) -> None:
-        """Show an error that does not end the program; a stop of the run is ignored, because it is not an error."""
+        """Write the report of an error that does not end the program; do nothing for None and for a stop of the run."""
         if error is not None and not isinstance(error, StopProgram):
             self.write(self.report(error).text)
 

@@ -118,7 +118,7 @@ class LegoPort:
         return find_connections(self._session.sim.spec.robot).get(self._port)
 
     def device(self) -> SimDevice:
-        """Return the port as a device of `/sys/class/lego-port`."""
+        """Return the port as a device of `/sys/class/lego-port`, with its attributes."""
         return SimDevice(
             self._session,
             {

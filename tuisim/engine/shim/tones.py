@@ -33,7 +33,7 @@ _TO_SPEAKER = " | /usr/bin/aplay -q"
 
 @dataclass(frozen=True, slots=True)
 class Tone:
-    """One tone, or silence."""
+    """One tone, or silence: its frequency in Hz, its length in ms and the pause after it."""
 
     frequency_hz: float
     """Frequency in Hz; 0 is silence."""

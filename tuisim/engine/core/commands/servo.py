@@ -174,7 +174,7 @@ def stop_base(base: DriveBase, time_ns: int, values: Values) -> None:
 def set_base(base: DriveBase, _time_ns: int, values: Values) -> None:
     """Set the default speed, acceleration, turn rate and turn acceleration of a drive base.
 
-    `values` are these four numbers, in mm or degrees per second (squared).
+    `values` are these four numbers, in mm/s, mm/s², °/s and °/s².
     """
     base.set_usual(*map(int, values))
 
@@ -182,7 +182,7 @@ def set_base(base: DriveBase, _time_ns: int, values: Values) -> None:
 def set_slowing(base: DriveBase, _time_ns: int, values: Values) -> None:
     """Set the decelerations of a drive base in straight moves and in turns; by default they equal its accelerations.
 
-    `values` are these two numbers, in mm and in degrees per second squared.
+    `values` are these two numbers, in mm/s² and °/s².
     """
     base.set_slowing(*map(int, values))
 

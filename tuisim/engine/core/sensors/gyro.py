@@ -22,5 +22,5 @@ def columns(spec: GyroSpec) -> tuple[Column, ...]:
 
 
 def measure(spec: GyroSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
-    """Return the angle and the rate of turn that a gyro shows at an instant, in degrees (per second), clockwise."""
+    """Return what a gyro shows at an instant: the angle in degrees and the rate in degrees per second, clockwise."""
     return float(instant.gyro_deg), float(instant.gyro_rate_dps)

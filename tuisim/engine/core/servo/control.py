@@ -32,7 +32,7 @@ from tuisim.engine.core.servo.trajectory import (
 
 
 class Ending(IntEnum):
-    """The action of a motor after a move; the values are those of `pybricks.parameters.Stop`."""
+    """What a motor does after a move; the values are those of `pybricks.parameters.Stop`."""
 
     COAST = 0
     BRAKE = 1
@@ -176,8 +176,9 @@ class Controller:
             now_us: The present time.
             measured: Returns where the motion is; the move begins there if this controller is passive.
             target: Where the move ends, in counts.
-            rate, acceleration: In counts per second (squared); the sign of the rate is ignored.
-            deceleration: How the move stops; None for the acceleration.
+            rate: The speed of the move in counts/s; its sign is ignored.
+            acceleration: Acceleration at the beginning, in counts/s².
+            deceleration: Deceleration at the end, in counts/s²; None for the same as `acceleration`.
             relative: Whether `target` is relative to where the motion begins.
 
         Raises:
@@ -234,7 +235,7 @@ class Controller:
         Args:
             now_us: The present time.
             measured: Returns where the motion is; the new one begins there if this controller is passive.
-            rate, acceleration: In counts per second (squared).
+            rate, acceleration: In counts/s and counts/s².
             time_us: How long the motion takes; None if it does not end.
 
         Raises:

@@ -72,7 +72,10 @@ def compute_usual_settings(
 
 
 def compute_new_pace(law: MotorLaw, wheel_diameter_mm: float, axle_track_mm: float) -> Pace:
-    """Return the default speeds and accelerations of a new drive base with large motors, in mm and degrees."""
+    """Return the default speeds and accelerations of a new drive base with large motors.
+
+    They are in mm/s, mm/s², °/s and °/s², in this order.
+    """
     motor = compute_motor_settings(law, "large")
     settings = compute_base_settings(motor, wheel_diameter_mm, axle_track_mm)
     return compute_usual_settings(law, *settings)[0]
@@ -234,7 +237,7 @@ class DriveBase:
     # Commands
 
     def set_usual(self, *usual: int) -> None:
-        """Set the default speed, acceleration, turn rate and turn acceleration, in mm and degrees per second (squared).
+        """Set the default speed, acceleration, turn rate and turn acceleration, in mm/s, mm/s², °/s and °/s².
 
         A value that equals the present one does not replace it: the present one may be more exact than a whole number.
         """
@@ -250,7 +253,7 @@ class DriveBase:
         self.usual = usual
 
     def set_slowing(self, straight: int, turn: int) -> None:
-        """Set the decelerations of straight moves and of turns, in mm and degrees per second squared."""
+        """Set the decelerations of straight moves, in mm/s², and of turns, in °/s²."""
         counts = self.distance.settings.counts, self.heading.settings.counts
         self._slowing = counts[0](straight), counts[1](turn)
 

@@ -103,7 +103,7 @@ class ControlSettings:
 
 
 def _multiply(number: int, factor: int) -> int:
-    """Return a number times `factor` / 65,536, rounded."""
+    """Return `number` times `factor` / 65,536, rounded to a whole number."""
     size = (abs(number) * factor + _ONE // 2) // _ONE
     return size if number >= 0 else -size
 
@@ -145,7 +145,7 @@ class ServoKind:
 
 @dataclass(frozen=True, slots=True)
 class Firmware:
-    """The settings of one version of the firmware."""
+    """The settings of one version of the Pybricks firmware: those of its motors, and of its drive bases."""
 
     motors: Mapping[str, ServoKind]
     stall_speed_dps: int

@@ -40,7 +40,7 @@ def rate_change(acceleration: int, time_us: int) -> int:
 class Segment(NamedTuple):
     """One part of a trajectory, with constant acceleration: its start time, and position and rate at that time.
 
-    Positions are in thousandths of a count, rates and accelerations in counts per second (squared).
+    Positions are in thousandths of a count, rates in counts/s, accelerations in counts/s².
     """
 
     start_us: int
@@ -100,7 +100,7 @@ class Trajectory(NamedTuple):
         return self.last if time_us <= self.end.start_us else self.end
 
     def find_segment_end_us(self, time_us: int) -> int | None:
-        """Return when the segment that contains a time ends, in µs like that time; None if the segment has no end."""
+        """Return the time in µs at which the segment that contains the time `time_us` ends; None if it has no end."""
         if time_us < self.even.start_us:
             return self.even.start_us
         if self.endless or time_us > self.end.start_us:

@@ -156,13 +156,15 @@ class Watcher:
                         self._after_tick[break_point.text] = check
 
     def match_tick(self) -> tuple[str, str] | None:
-        """Return a breakpoint that matches after this tick, as its text and matching value; None if there is none."""
+        """Return the text of a breakpoint that matches after this tick, and its value; None if none matches."""
         return _find_first((text, check()) for text, check in self._after_tick.items())
 
     def match_row(self, row: str, stream: Stream) -> tuple[str, str] | None:
-        """Return a breakpoint that matches a printed row, as its text and the matching value; None if none matches.
+        """Return the text of a breakpoint that a printed row matches, and the matching value; None if none matches.
 
-        `stream` is the stream of the row.
+        Args:
+            row: The text of the row.
+            stream: The stream of the row.
         """
         if stream not in SAMPLE_STREAMS:
             return None

@@ -248,7 +248,7 @@ class Connected:
 
 
 def invalid_argument() -> ValueError:
-    """Return the firmware's error about a bad value."""
+    """Return the ValueError that the firmware raises for a bad value."""
     return ValueError("Invalid argument")
 
 

@@ -61,7 +61,7 @@ class Font(Connected):
 
     @property
     def style(self) -> str:
-        """The weight of the font, such as `Bold`."""
+        """The weight of the font: `Bold` or `Regular`."""
         return "Bold" if self._bold else "Regular"
 
     @cached_property

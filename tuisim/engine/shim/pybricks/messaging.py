@@ -206,7 +206,7 @@ class BluetoothMailboxServer(MailboxHandlerMixIn):
                 session.spend(POLL_MS * MS)
 
     def server_close(self) -> None:
-        """Stop accepting clients."""
+        """Stop accepting clients; existing connections stay."""
         if BluetoothMailboxServer.newest is self:
             BluetoothMailboxServer.newest = None
 

@@ -382,7 +382,7 @@ class Control(Connected):
     ) -> tuple[int, ...] | None:
         """Set the highest speed, acceleration and power, and return None; without arguments, return them.
 
-        Speed and acceleration are in degrees (of a drive base's distance: mm) per second (squared), power in percent.
+        Speeds are in °/s and accelerations in °/s² (for a drive base's distance mm/s and mm/s²), powers in percent.
         """
         if any(
             value is not None and whole(value) < 1 for value in (speed, acceleration, actuation)

@@ -215,7 +215,7 @@ class DriveBase(Connected):
     ) -> tuple[int, ...] | None:
         """Set speed and acceleration of `straight` and of `turn`; without arguments, return these four.
 
-        They are in mm, and for turns in degrees, per second (squared).
+        They are in mm/s, mm/s², °/s and °/s².
         """
         base = self._base
         given: tuple[Any, ...] = (
@@ -239,7 +239,7 @@ class DriveBase(Connected):
         """Return a speed or an acceleration, reduced to the highest that the motors allow.
 
         Args:
-            value: In mm or, for turns, in degrees per second (squared).
+            value: In mm/s, mm/s², °/s or °/s².
             at: 0 for the speed and 1 for the acceleration of straight moves, 2 and 3 for those of turns.
         """
         settings = (self._base.distance if at < 2 else self._base.heading).settings

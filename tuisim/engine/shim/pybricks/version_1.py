@@ -50,7 +50,12 @@ class Speaker(_OfBrick):
             self.beep(frequency, duration, volume)
 
     def file(self, file_name: str, volume: float = START_VOLUMES["Beep"]) -> None:
-        """Play a sound file, and wait for its end."""
+        """Play a sound file, and wait for its end.
+
+        Args:
+            file_name: The path of the file, or a constant of `SoundFile`.
+            volume: The volume in percent.
+        """
         _brick.speaker.set_volume(volume, "PCM")
         _brick.speaker.play_file(file_name)
 
@@ -106,5 +111,5 @@ def light(color: Color | None) -> None:
 
 
 def buttons() -> list[Button]:
-    """Return the brick's pressed buttons."""
+    """Return the brick's pressed buttons; an empty list if none is pressed."""
     return [*_brick.buttons.pressed()]

@@ -156,7 +156,7 @@ class Control(motor.Control):
         """Return a speed or an acceleration that the program gives, without its fraction.
 
         Args:
-            value: In degrees or mm per second (squared).
+            value: In °/s or °/s²; for a drive base's distance, in mm/s or mm/s².
             kind: 0 for a speed, 1 for an acceleration.
 
         Raises:
@@ -172,7 +172,7 @@ class Control(motor.Control):
     ) -> tuple[int, ...] | None:
         """Set the highest speed, acceleration and torque, and return None; without arguments, return them.
 
-        Speed and acceleration are in degrees (of a drive base's distance: mm) per second (squared), torque in mNm. Of a
+        Speeds are in °/s and accelerations in °/s² (for a drive base's distance mm/s and mm/s²), torques in mNm. Of a
         pair of accelerations, only the first is used.
         """
         if isinstance(acceleration, tuple):
@@ -323,8 +323,7 @@ class DriveBase(robotics.DriveBase):
     ) -> tuple[Any, ...] | None:
         """Set speed and acceleration of straight moves and of turns; without arguments, return these four.
 
-        They are in mm, and for turns in degrees, per second (squared). An acceleration may be a pair: for the start and
-        for the stop.
+        They are in mm/s, mm/s², °/s and °/s². An acceleration may be a pair: for the start and for the stop.
         """
         values = straight_speed, straight_acceleration, turn_rate, turn_acceleration
         pairs = [value if isinstance(value, tuple) else (value, value) for value in values]

@@ -22,7 +22,7 @@ class Motor(motor.Motor):
         return self.control.stalled()
 
     def set_run_settings(self, max_speed: float, acceleration: float) -> None:
-        """Set the highest speed of the motor's moves, and their acceleration, in degrees per second (squared)."""
+        """Set the highest speed of the motor's moves in °/s, and their acceleration in °/s²."""
         self.control.limits(max_speed, acceleration)
 
     def set_dc_settings(self, duty_limit: float, duty_offset: float) -> None:

@@ -147,7 +147,7 @@ class Process:
         return types.GenericAlias(cls, item)
 
     def __repr__(self) -> str:
-        """Return the same text as the real class."""
+        """Return the same text as the `repr` of a real `subprocess.Popen`."""
         return f"<Popen: returncode: {self.returncode} args: {self.args!r}>"
 
     def __enter__(self) -> Process:
@@ -211,7 +211,7 @@ class Process:
 
 
 class System:
-    """State shared by all processes of a run."""
+    """The state that all simulated processes of a run share, and the functions of `os` for processes."""
 
     def __init__(self, session: DeviceSession, shell: Shell) -> None:
         self.session = session

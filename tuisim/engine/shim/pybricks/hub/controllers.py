@@ -52,7 +52,7 @@ class Controller(Connected):
             )
 
     def connect(self) -> None:
-        """Connect the controller again."""
+        """Connect the controller to the hub."""
         return self._set_connected(True)
 
     def disconnect(self) -> None:
@@ -143,16 +143,16 @@ class XboxController(Controller):
         return [f"{self.PORT}.{name}" in self.brick.session.pressed for name in names]
 
     def _find_direction(self, part: str) -> tuple[int, int]:
-        """Return how far a part of the controller, such as a stick, is pressed to the right, and up, in percent."""
+        """Return how far a stick or the pad is pressed to the right, and up: -100, 0 or 100 percent each."""
         up, down, left, right = self._read(*(f"{part}_{way}" for way in WAYS))
         return FULL * (right - left), FULL * (up - down)
 
     def joystick_left(self) -> tuple[int, int]:
-        """Return how far the left stick is to the right, and up, in percent."""
+        """Return how far the left stick is to the right, and up, each from -100 to 100 percent."""
         return self._find_direction("joystick_left")
 
     def joystick_right(self) -> tuple[int, int]:
-        """Return how far the right stick is to the right, and up, in percent."""
+        """Return how far the right stick is to the right, and up, each from -100 to 100 percent."""
         return self._find_direction("joystick_right")
 
     def triggers(self) -> tuple[int, int]:
@@ -161,7 +161,7 @@ class XboxController(Controller):
         return FULL * left, FULL * right
 
     def dpad(self) -> int:
-        """Return the direction of the pad: 0 for none, then 1 to 8 clockwise from the top."""
+        """Return the direction in which the pad is pressed: 0 for none, then 1 to 8 clockwise from the top."""
         right, up = self._find_direction("dpad")
         return round(degrees(atan2(right, up)) / 45) % 8 + 1 if right or up else 0
 

@@ -54,7 +54,7 @@ class Accelerometer(Connected):
         self.brick.read(mode, INSIDE)
 
     def up(self, calibrated: bool = True) -> Side:
-        """Return which side of the hub is up."""
+        """Return which side of the hub is up, as a member of `Side`."""
         self._read("TILT-ANG")
         return max(self._sides, key=lambda side: self._sides[side][2])
 

@@ -147,7 +147,7 @@ class UltrasonicSensor(Sensor):
     lights = Lights()
 
     def distance(self) -> int:
-        """Return the distance to the next object in mm; 2000 if there is none."""
+        """Return the distance to the next object in mm, at most 2000; 2000 if there is none."""
         return self._read_as("US-DIST-CM", lambda distance_mm: min(FARTHEST_MM, distance_mm))
 
     def presence(self) -> bool:
