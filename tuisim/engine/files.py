@@ -104,7 +104,7 @@ def read_named(
 
 
 def name_of(path: Path) -> str:
-    """Return the default name of the object in a file, from the file name."""
+    """Return the default name of the object in a file: the file's name without suffix, shortened and made printable."""
     return (
         "".join(letter if letter.isprintable() else "_" for letter in path.stem)[:MAX_NAME]
         or "unnamed"
@@ -332,7 +332,12 @@ def one_of(data: object, at: Location, allowed: Iterable[str]) -> str:
 
 
 def read_value(data: object, value: Value, at: Location) -> Any:
-    """Return a value of a run from the data of a file.
+    """Return a value of a spec, checked and converted from the data of a file.
+
+    Args:
+        data: The data.
+        value: The description of the value.
+        at: The location of the data, for errors.
 
     Raises:
         ConfigError: the data is not allowed for this value.

@@ -18,7 +18,7 @@ from tuisim.engine.core.state import Present
 
 @dataclass(frozen=True, slots=True)
 class ThreadState:
-    """One thread of a paused program."""
+    """The state of one thread of a paused program: its line, and what it waits for."""
 
     name: str
     line: int
@@ -31,7 +31,7 @@ class ThreadState:
 
 @dataclass(frozen=True, slots=True)
 class FrameState:
-    """One call of the program's own code."""
+    """A frame of a paused program's stack: one call of the program's own code."""
 
     function: str
     line: int
@@ -83,7 +83,7 @@ COMMAND_SIGNAL, STACK_SIGNAL = signal.SIGRTMIN + 11, signal.SIGRTMIN + 12
 
 
 class End(StrEnum):
-    """How a run ended."""
+    """The way in which a run ended."""
 
     FINISHED = "finished"
     RAISED = "raised"
@@ -102,7 +102,7 @@ class End(StrEnum):
 
 
 class Unended(StrEnum):
-    """State of a stored run that has no end."""
+    """The state of a stored run that has no end."""
 
     RUNNING = "running"
     INTERRUPTED = "interrupted"
@@ -127,7 +127,7 @@ RUN_STATES: Mapping[str, RunState] = {state.value: state for state in (*End, *Un
 
 
 class PauseReason(StrEnum):
-    """Why a run pauses."""
+    """The reason why a run pauses."""
 
     ASKED = "asked"
     TICKS = "ticks"

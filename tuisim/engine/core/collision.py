@@ -223,7 +223,7 @@ class Solids:
         return tuple(self._measure_gaps(self._place_body(*pose), self._boxes))
 
     def _measure_gaps(self, body: Body, boxes: list[Box]) -> Iterator[float]:
-        """Yield the gap between the body and each wall and box, negative if they overlap."""
+        """Yield the gap in mm between the body and each wall and box, negative if they overlap."""
         if self._walls:
             yield from _measure_wall_gaps(body)
         for box in boxes:
@@ -305,13 +305,13 @@ _AWAY_FROM_WALLS = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
 
 
 def _measure_wall_gaps(body: Body) -> tuple[float, float, float, float]:
-    """Return the gap to the left, right, lower and upper wall, negative if the body is in the wall."""
+    """Return the gaps in mm to the left, right, lower and upper wall, negative if the body is in the wall."""
     cx, cy, _, _, _, _, wide, high = body
     return cx - wide, FIELD_WIDTH_MM - wide - cx, cy - high, FIELD_HEIGHT_MM - high - cy
 
 
 def _measure_way_to_wall(body: Body, direction: int) -> float:
-    """Return how far the body can move along its heading (direction 1) or against it (-1) before it meets a wall."""
+    """Return how many mm the body can move along its heading (direction 1) or against it (-1) up to a wall."""
     cx, cy, fx, fy, _, _, wide, high = body
     way = math.inf
     for centre, half, end, step in (
@@ -325,7 +325,7 @@ def _measure_way_to_wall(body: Body, direction: int) -> float:
 
 
 def _measure_box_gap(body: Body, box: Box) -> float:
-    """Return the largest gap between body and box along any separating axis, negative if they overlap."""
+    """Return the largest gap in mm between body and box along any separating axis, negative if they overlap."""
     cx, cy, _, _, _, _, wide, high = body
     left, lower, right, upper = box
     upright = max(left - cx, cx - right) - wide
@@ -351,7 +351,7 @@ def _find_way_out_of_box(body: Body, box: Box) -> tuple[float, float]:
 
 
 def _locate_box(body: Body, box: Box) -> tuple[float, float, bool]:
-    """Return the gap to a box along the heading and across it, and whether the box is in front."""
+    """Return the gaps in mm to a box along the heading and across it, and whether the box is in front."""
     cx, cy, fx, fy, length, width, _, _ = body
     left, lower, right, upper = box
     dx, dy = (left + right) / 2 - cx, (lower + upper) / 2 - cy

@@ -61,7 +61,7 @@ MOTION: tuple[Column, ...] = (
 
 
 def measure_motion(instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
-    """Return the values of the columns of `MOTION` at an instant, in their order."""
+    """Return the values at an instant of the robot's own columns, in the order of `MOTION`."""
     pose = instant.pose
     left, right = instant.get_scale(0), instant.get_scale(1)
     return (

@@ -29,7 +29,7 @@ def round_to_float32(value: float) -> float:
 
 
 def compute_mm_per_degree(robot: RobotSpec) -> tuple[float, float]:
-    """Return how far the left and the right wheel roll forwards per degree of their motors; negative if reversed."""
+    """Return how many mm the left and right wheel roll forwards per degree of their motors; negative if reversed."""
     return _sign_wheels(math.pi * robot.wheel_diameter_mm / 360.0 / robot.gear_ratio, robot)
 
 

@@ -153,7 +153,12 @@ def find_floor_rgb(width_px: int, height_px: int, pixels: memoryview) -> Rgb:
 
 
 def in_disc(box: bytes, diameter: int) -> bytes:
-    """Return the pixels of the disc in a box, row by row, three bytes per pixel."""
+    """Return those pixels of a square box that are in its disc, row by row, three bytes per pixel.
+
+    Args:
+        box: The pixels of the box, in the same form.
+        diameter: The diameter of the disc, and the width of the box, in pixels.
+    """
     return b"".join(
         box[3 * (down * diameter + first) : 3 * (down * diameter + end)]
         for down, first, end in list_disc_spans(diameter)
@@ -166,12 +171,12 @@ CENTRE_WEIGHT = 3
 
 @lru_cache(maxsize=32)
 def disc_weights(diameter: int, strategy: str) -> tuple[int, ...]:
-    """Return the weight of each pixel of a box, row-major, 0 outside the disc.
+    """Return the relative weight of each pixel of a box, row by row, 0 outside the disc.
 
     Args:
         diameter: Diameter of the disc in pixels.
         strategy: One of `spec.STRATEGIES`: `mean`, equal weights; `gaussian`, a bell curve whose standard deviation
-            is half the radius; `centre`, threefold weight within half the radius.
+        is half the radius; `centre`, threefold weight within half the radius.
     """
     radius = diameter / 2
     weights = []

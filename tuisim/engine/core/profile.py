@@ -97,7 +97,10 @@ def _build_cost(*, default: int, source: str, later: bool = False) -> Any:
 
 @spec
 class ProfileSpec(Spec):
-    """The rules of one kind of brick. Costs are simulated nanoseconds per call."""
+    """A profile: the rules by which motors, sensors and calls of one kind of brick are simulated.
+
+    Costs are the simulated nanoseconds that a call takes.
+    """
 
     ERROR = ProfileError
 

@@ -193,7 +193,7 @@ class SensorSpec(Spec):
 
 @spec
 class TouchSpec(SensorSpec):
-    """A touch sensor: pressed while its bumper touches an obstacle or a wall, or by a motor at its end stop."""
+    """A touch sensor: it is pressed while its bumper touches an obstacle or a wall, or a motor is at its end stop."""
 
     name: str = _build_sensor_name("touch")
     port: str = _build_input_port("in1")
@@ -223,7 +223,7 @@ class TouchSpec(SensorSpec):
 
 @spec
 class InfraredSpec(SensorSpec):
-    """The infrared sensor: proximity, direction and distance of a beacon, buttons of a remote control."""
+    """An infrared sensor: it measures distances and the direction to a beacon, and receives a remote control."""
 
     name: str = _build_sensor_name("infrared")
     port: str = _build_input_port("in4")
@@ -235,7 +235,7 @@ class InfraredSpec(SensorSpec):
 
 @spec
 class ColorSensorSpec(SensorSpec):
-    """A downward colour sensor: the mean of a disc of mat pixels."""
+    """A colour sensor that looks down at the mat: it measures the mean colour of the pixels in a disc."""
 
     name: str = text(what="sensor name", pattern=SENSOR_NAME)
     port: str = choice((*INPUT_PORTS, *HUB_PORTS), what="port", label="Port", help=_INPUT_HELP)
@@ -277,7 +277,7 @@ class ColorSensorSpec(SensorSpec):
 
 @spec
 class UltrasonicSpec(SensorSpec):
-    """The forward distance sensor: the nearest echo of a fan of rays."""
+    """An ultrasonic sensor: it measures the distance to the nearest surface that echoes one of a fan of rays."""
 
     name: str = _build_sensor_name("ultrasonic")
     port: str = _build_input_port("in1")
@@ -310,7 +310,7 @@ class UltrasonicSpec(SensorSpec):
 
 @spec
 class GyroSpec(SensorSpec):
-    """The gyro: clockwise angle since the last reset, and rate of turn."""
+    """A gyro: it measures the angle since its last reset and the rate of turn, both clockwise."""
 
     name: str = _build_sensor_name("gyro")
     port: str = choice(

@@ -51,7 +51,10 @@ class TickSink(Protocol):
     count: int
 
     def reserve(self, records: int) -> Buffer:
-        """Return a writable buffer in which record k of 64 bytes starts at 64 + 64·k; valid until the next call."""
+        """Return a writable buffer with space for `records` more records; it is valid until the next call.
+
+        Record k, of 64 bytes, begins at byte 64 + 64·k.
+        """
 
     def publish(self, count: int) -> None:
         """Make the first `count` tick records visible to readers."""

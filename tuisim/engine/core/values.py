@@ -253,7 +253,7 @@ class Whole(Number):
 
 
 class Seed(Whole):
-    """A whole number for random draws. Users choose one from its range; a stored run may have any."""
+    """A value that is a whole number for random draws. Users choose one from its range; a stored run may have any."""
 
     __slots__ = ()
 
@@ -533,7 +533,7 @@ class Part(Value):
 
 
 class NamedPart(Part):
-    """A spec of numbers inside another one, which users give by a name, number by number, or both.
+    """A value that is a spec of numbers, which users give by a name, number by number, or both.
 
     A name, such as `typical`, stands for those values of the numbers that have this name; `none` stands for their
     defaults. As text the spec is a name, followed by the numbers that differ, such as `typical gyro_dps=0`.

@@ -47,7 +47,7 @@ _MAX_NUMBER = 1e12
 
 @dataclass(frozen=True, slots=True)
 class TextScreen:
-    """The text that the brick's screen shows."""
+    """The contents of the brick's text screen: its rows of characters, and which of them are in reverse video."""
 
     columns: int
     rows: int

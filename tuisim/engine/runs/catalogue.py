@@ -152,7 +152,7 @@ class Catalogue:
         self._write(change)
 
     def remove(self, run_ids: Iterable[str]) -> None:
-        """Remove runs from the catalogue."""
+        """Remove the rows of the runs with these ids from the catalogue; an id that is not listed is ignored."""
         ids = [(run_id,) for run_id in run_ids]
         self._write(lambda connection: connection.executemany("DELETE FROM runs WHERE id = ?", ids))
 

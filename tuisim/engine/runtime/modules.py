@@ -54,7 +54,7 @@ class OwnLoader(SourceFileLoader):
         return self._data if path == self.path else super().get_data(path)
 
     def source_to_code(self, data: Any, path: Any, *, _optimize: int = -1) -> types.CodeType:  # type: ignore[override]
-        """Return the code of the module, with loop hooks as in the program."""
+        """Return the code of the module, with a call of `LOOP_HOOK` in each loop body, as in the program."""
         return compile_with_hooks(data, path, self._drops_annotations)
 
     def path_stats(self, path: str) -> NoReturn:

@@ -106,7 +106,7 @@ class RawOutput:
         self._first_out, self._first_err, *_ = *firsts, _NOTHING, _NOTHING
 
     def drain(self) -> None:
-        """Pass on all bytes that were written to descriptors 1 and 2.
+        """Pass the bytes that were written to descriptors 1 and 2 to their receivers.
 
         Only the first byte is checked, because that is fast: output that begins with a null byte is passed on later.
         """
@@ -115,7 +115,7 @@ class RawOutput:
             self.drain_all()
 
     def drain_all(self) -> int:
-        """Pass on everything that was written to descriptors 1 and 2, and return its length in bytes."""
+        """Pass all bytes that were written to descriptors 1 and 2 to their receivers, and return their number."""
         if self._busy:
             return 0
         self._busy = True
@@ -125,12 +125,12 @@ class RawOutput:
             self._busy = False
 
     def finish(self) -> None:
-        """Pass on everything that was written, including what C code has buffered."""
+        """Pass all bytes for descriptors 1 and 2 to their receivers, including those that C code has buffered."""
         self._flush_c()
         self.drain_all()
 
     def write(self, fd: int, data: Any) -> int:
-        """Write to a descriptor, pass on the output immediately, and return the number of bytes.
+        """Write to a descriptor, pass the bytes to the receiver immediately if it is 1 or 2, and return their number.
 
         It replaces `os.write`.
         """

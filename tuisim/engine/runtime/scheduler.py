@@ -375,7 +375,7 @@ class Scheduler:
         return task
 
     def spawn_daemon(self, work: Callable[[], None]) -> None:
-        """Run `work` in a daemon thread."""
+        """Start a daemon thread of the program that calls `work`; do not wait for it."""
         self.spawn(work, daemon=True)
 
     def _finish(self, task: ScheduledThread) -> None:

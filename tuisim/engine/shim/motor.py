@@ -494,7 +494,7 @@ class ServoTacho(Tacho):
         return self._device(readers, {}, {})
 
     def registers(self) -> MotorRegisters:
-        """Return the motor's state in the form of its attributes."""
+        """Return the motor's state as values of the kernel's attributes: its speeds, its goal, and whether it runs."""
         motor = self._motor
         command = "run-direct" if motor.mode else ""
         return MotorRegisters(

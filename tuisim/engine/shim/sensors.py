@@ -244,7 +244,7 @@ class ColorDevice(LegoSensor):
         )
 
     def read(self, mode: str) -> tuple[int, int, int]:
-        """Switch to a mode, return red, green and blue as integers, and let the time of a reading pass."""
+        """Switch to a mode, return red, green and blue, each 0 to 255, and let the time of a reading pass."""
         self.set_mode(mode)
         session = self._session
         if not session.free:

@@ -96,4 +96,4 @@ class DeviceSession(Protocol):
         """Return whether the program would catch an error raised now, so that it only tests which devices there are."""
 
     def spawn_daemon(self, work: Callable[[], None]) -> None:
-        """Run `work` in a background thread of the program."""
+        """Start a background thread of the program that calls `work`; do not wait for it."""

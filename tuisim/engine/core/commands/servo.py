@@ -26,7 +26,7 @@ def _find_ending(values: Values, place: int) -> Ending:
 
 
 def _read_optional(number: float) -> int | None:
-    """Return a value as a whole number; None for NaN."""
+    """Return a value of a command as an int; None for NaN, with which a program leaves the value out."""
     return int(number) if number == number else None
 
 

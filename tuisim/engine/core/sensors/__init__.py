@@ -145,7 +145,7 @@ def _measure_value(
 def measure_sensors(
     sensors: Iterable[SensorSpec], instant: Instant, spec: RunSpec, field: Field
 ) -> dict[str, float]:
-    """Return the values of the sensors' measured columns at an instant, by name."""
+    """Return the values of the sensors' measured columns at an instant, by the name of the column."""
     return {
         name: value
         for mount in map(build_mounted_sensor, sensors)

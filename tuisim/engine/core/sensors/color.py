@@ -233,7 +233,10 @@ def find_response(spec: ColorSensorSpec, profile: ProfileSpec) -> Response:
 
 
 def compute_light(x_mm: Any, y_mm: Any, spec: ColorSensorSpec, drift: DriftSpec, seed: int) -> Any:
-    """Return the brightness that a sensor sees at positions in mm, given as numbers or arrays; 1 without drift."""
+    """Return the brightness that a sensor sees at a position, as a factor that is 1 without drift.
+
+    The position may be given as arrays; if the brightness depends on it, the result is then an array, too.
+    """
     share = compute_light_share(x_mm, y_mm, drift, seed) if drift.light_pc else 1.0
     return share * draw_light_gain(spec.port, drift, seed) if drift.light_gain_pc else share
 

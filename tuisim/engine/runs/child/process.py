@@ -351,9 +351,9 @@ def end_descendants(pid: int, marked: int) -> None:
 
 
 def _list_younger(pid: int) -> set[int]:
-    """Return process ids among which are those of all processes that started after the process `pid`.
+    """Return the ids of all processes that started after the process `pid`, and possibly other ids.
 
-    Other ids in the result belong to no process, or to one that started earlier.
+    The other ids belong to no process, or to one that started earlier.
     """
     last = int(Path("/proc/loadavg").read_text("ascii").split()[-1])
     # Process ids increase, and wrap around when they are used up.

@@ -23,7 +23,7 @@ from tuisim.engine.shim.waits import Wait, waits_for
 
 
 class Patience:
-    """Knows whether the library calls `poll` only to wait until a motor has stopped.
+    """A record of whether the library calls `poll` only to wait until a motor has stopped.
 
     The call of `poll` itself does not say so.
     """
@@ -219,7 +219,12 @@ def _charge_memory(device_class: Any, session: DeviceSession) -> None:
 
 
 def _set_directly(motor_class: Any, brick: DeviceFiles) -> None:
-    """Replace the setters of speed and command by faster ones, because control loops call these most."""
+    """Replace the setters of a motor's `speed_sp` and `command` by faster ones, because control loops call these most.
+
+    Args:
+        motor_class: The library's class of motors.
+        brick: The devices.
+    """
     devices = brick.by_path
 
     def set_speed(self: Any, value: Any) -> None:
@@ -297,7 +302,7 @@ def refuse_values(sensor: Any, plugs: Plugs) -> None:
 def patch_sensor_module(
     session: DeviceSession, module: types.ModuleType, brick: DeviceFiles, plugs: Plugs
 ) -> None:
-    """Patch `ev3dev2.sensor` after its import: the library's own checks of the mode take no time."""
+    """Patch `ev3dev2.sensor` after its import: the library's own checks of the mode take no simulated time."""
     devices = brick.by_path
     sensor: Any = module
 

@@ -61,7 +61,7 @@ class _Unsimulated:
 
 
 def virtual_module(session: DeviceSession) -> types.ModuleType:
-    """Return the module of the simulator Gears that has a pen and the true place of the robot."""
+    """Return the module of the simulator Gears, with its classes for a pen and for the robot's true position."""
     module = types.ModuleType(
         NAME, "Parts of the simulator Gears: a pen, and the true place of the robot."
     )
@@ -69,7 +69,7 @@ def virtual_module(session: DeviceSession) -> types.ModuleType:
     cost_ns = session.sim.spec.profile.attribute_read_ns
 
     class GPSSensor:
-        """The true place of the robot, in cm from the lower left corner of the mat."""
+        """A sensor of the robot's true position, in cm from the lower left corner of the mat."""
 
         def __init__(self, address: object = None) -> None:
             self.address = address

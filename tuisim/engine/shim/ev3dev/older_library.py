@@ -39,7 +39,7 @@ class MissingLibrary:
 
 @contextmanager
 def surroundings() -> Iterator[None]:
-    """Provide `pkg_resources`, and hide syntax warnings, while modules of the library are imported.
+    """Return a context for the library's import, which provides `pkg_resources` and hides syntax warnings.
 
     Later versions of Python and setuptools would fail or warn at the import.
     """

@@ -296,7 +296,7 @@ class UInput:
 
 
 class _Looked:
-    """Whether the program has listed the input devices."""
+    """A flag that says whether the program has listed the input devices."""
 
     def __init__(self) -> None:
         self.for_devices = False

@@ -57,5 +57,5 @@ EARLIER_MEMBERS: Mapping[str, str] = {
 
 
 def name_replacement(_owner: str, name: str) -> str:
-    """Return a hint on what version 4 has in place of an earlier attribute, after a colon; empty if unknown."""
+    """Return a colon and what version 4 has in place of an earlier attribute; empty if that is unknown."""
     return f": {EARLIER_MEMBERS[name]}" if name in EARLIER_MEMBERS else ""

@@ -199,5 +199,5 @@ class GyroSensor(Sensor):
         return self._read("GYRO-RATE")[0] * self._sign
 
     def reset_angle(self, angle: float) -> None:
-        """Set the angle that the gyro shows at the robot's present heading, in degrees."""
+        """Make the gyro show the angle `angle`, in degrees, at the robot's present heading."""
         self._zero = self._angle() - whole(angle)

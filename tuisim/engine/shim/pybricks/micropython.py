@@ -178,12 +178,15 @@ def clock_names(session: DeviceSession) -> dict[str, Callable[..., Any]]:
 
 
 def ticks_add(ticks: int, delta: int) -> int:
-    """Return the value of a counter of ticks when `delta` more ticks have passed."""
+    """Return what a counter of ticks shows `delta` ticks after it shows `ticks`; it wraps to 0 after its period."""
     return (operator.index(ticks) + operator.index(delta)) % TICKS_PERIOD
 
 
 def ticks_diff(end: int, start: int) -> int:
-    """Return how many ticks `end` is after `start`, from minus half a period to half a period."""
+    """Return how many ticks of a counter `end` is after `start`; negative if it is before.
+
+    The counter wraps, so the result is from minus half a period to half a period.
+    """
     half = TICKS_PERIOD // 2
     return (operator.index(end) - operator.index(start) + half) % TICKS_PERIOD - half
 

@@ -91,7 +91,7 @@ def read_version_4(hub: str = "") -> Names:
 
 
 def _name_later(owner: str, name: str) -> str:
-    """Return a hint, after a colon, that a class of Pybricks 4 has this attribute; empty if it does not have it."""
+    """Return a colon and a hint that a class of Pybricks 4 has this attribute; empty if it does not have it."""
     later = next((names[owner] for names in read_version_4().values() if owner in names), None)
     return ": Pybricks 4 has it, which --profile pybricks4 chooses" if hasattr(later, name) else ""
 

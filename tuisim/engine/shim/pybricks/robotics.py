@@ -124,7 +124,7 @@ class DriveBase(Connected):
         *,
         drive_speed: float | None = None,
     ) -> None:
-        """Drive at a speed in mm/s and a rate of turn in degrees per second, until the next command.
+        """Drive at a speed in mm/s and a clockwise rate of turn in degrees per second, until the next command.
 
         Args:
             speed, turn_rate: Both are needed.

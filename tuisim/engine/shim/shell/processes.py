@@ -183,7 +183,7 @@ class Process:
         return status
 
     def communicate(self, input: Any = None, timeout: float | None = None) -> tuple[Any, Any]:  # noqa: A002
-        """Block until the process ends, and return its output.
+        """Block until the process ends, and return its output and its error output; None for one that is not a pipe.
 
         Raises:
             subprocess.TimeoutExpired: it takes longer than `timeout` seconds.

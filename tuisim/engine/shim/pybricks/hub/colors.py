@@ -13,7 +13,11 @@ MAX_DARK_VALUE = 1
 
 
 def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
-    """Return the hue, saturation and value that the firmware computes of red, green and blue, each 0 to 1024."""
+    """Return hue in degrees, saturation and value in percent, as the firmware computes them.
+
+    Args:
+        red, green, blue: Each from 0 to 1024.
+    """
     turn, purity, brightest = rgb_to_hsv(red, green, blue)
     # Rounded first, so that 120 degrees do not become 119.
     hue, saturation = int(round(360 * turn, 6)), int(round(100 * purity, 6))
@@ -28,7 +32,7 @@ def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
 
 
 def find_nearest(measured: tuple[int, int, int], colors: Sequence[Any]) -> Any:
-    """Return the colour in `colors` that is nearest to a measured hue, saturation and value."""
+    """Return the colour in `colors` that is nearest to a measured hue (degrees), saturation and value (percent)."""
     hue, saturation, value = measured
     if any((color.s, color.v) != (100, 100) and (color.h, color.s) != (0, 0) for color in colors):
         place = _find_place(measured)
