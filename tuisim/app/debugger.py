@@ -381,7 +381,7 @@ class DebugController:
         self.position = None
         self._steps.clear()
         if self.replay.busy:
-            # Nobody needs the result any more that is still being computed.
+            # The result that is still being computed is not needed any more.
             self.replay.close()
             self._wanted = None
             self.show()

@@ -275,7 +275,7 @@ class LessonController:
             change = session.look(self._look())
         except TuisimError as error:
             self._app.complain(error)
-        # The words about a run that started elsewhere depend on whether it is over.
+        # The words about a run that started elsewhere depend on whether it is over: show the lesson again.
         self._follow(Change.SHOW if change is Change.NONE and session.attempt.elsewhere else change)
 
     def _look(self) -> Sight:

@@ -311,8 +311,9 @@ class RunController:
         self._show_run(start_run(program, self.next_run.spec, options))
 
     def prepare_next(self) -> None:
-        """Start a process for the next run in advance, so that the run begins sooner; it can only run in the same
-        world.
+        """Prepare a process for later runs of the same robot in the same world, so that they start sooner.
+
+        Do nothing before the first run.
         """
         if self.run:
             self.run.prepare_next()

@@ -229,7 +229,7 @@ class PauseView:
         key = record.tick, record.actions
         if present is None or (self.inspected.tick, present.actions) != key:
             return None
-        # The program could have written the message.
+        # The program could have forged the message, so its numbers must fit the robot.
         counts = {len(present.turns), len(present.scales), len(present.motors) or len(robot.motors)}
         return present if counts == {len(robot.motors)} else None
 

@@ -100,7 +100,7 @@ def run_in_foreground(command: Sequence[str]) -> None:
         OSError: the program cannot start.
     """
     program = subprocess.Popen(command)
-    # The keys that interrupt the program also send a signal to this process.
+    # The keys that interrupt the program also send a signal to this process, which ignores it meanwhile.
     handlers = {
         number: signal.signal(number, signal.SIG_IGN) for number in (signal.SIGINT, signal.SIGQUIT)
     }
@@ -136,7 +136,7 @@ class TerminalDriver(HookedLinuxDriver):
                 self.process_message(message)
             super().run_input_thread()
         except (EOFError, OSError):
-            # Not every shell sends a signal to its jobs when the terminal is gone.
+            # Not every shell sends a signal to its jobs when the terminal is gone, so the app is ended here.
             find_app(self).call_later(find_app(self).exit, return_code=_LOST)
 
     def start_application_mode(self) -> None:

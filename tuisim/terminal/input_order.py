@@ -136,7 +136,7 @@ def _turn() -> Turn | None:
 
 
 def post_message(pump: MessagePump, message: Message) -> bool:
-    """Post a message, and add it to the turn in which this is called; return whether it was posted.
+    """Post a message, and add it to the `Turn` in which this is called; return whether it was posted.
 
     A message that Textual may replace by a later one, such as one about drawing, is not added.
     """
@@ -152,7 +152,7 @@ def post_message(pump: MessagePump, message: Message) -> bool:
 
 
 def dispatch_message(pump: MessagePump, message: Message) -> Awaitable[None]:
-    """Handle a message; what follows from it belongs to the same turn as the message itself."""
+    """Handle a message; what follows from it belongs to the same `Turn` as the message itself."""
     turn: Turn | None = getattr(message, _TURN, None)
     # Nobody posts the events of a new widget: they belong to the turn in which it was made.
     if turn is None and (
@@ -175,7 +175,7 @@ async def _dispatch_message(turn: Turn | None, pump: MessagePump, message: Messa
 
 
 async def end_messages(widget: Widget) -> None:
-    """Clean up after the last message of a removed widget, and remove its unhandled messages from their turns."""
+    """Clean up after the last message of a removed widget, and remove its unhandled messages from their `Turn`."""
     try:
         await END(widget)
     finally:
@@ -186,7 +186,7 @@ async def end_messages(widget: Widget) -> None:
 def call_next(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> None:
     """Call a function after the message pump's current message.
 
-    The call belongs to the turn in which this is called.
+    The call belongs to the `Turn` in which this is called.
     """
     if turn := _turn():
         CALL_NEXT(pump, turn.delay(pump, partial(callback, *args, **kwargs)))
@@ -199,7 +199,7 @@ def call_after_refresh(
 ) -> bool:
     """Call a function after the message pump's next refresh; return whether it will be called.
 
-    The call belongs to the turn in which this is called. Only Textual's own callbacks, which scroll, belong to no turn.
+    The call belongs to the `Turn` in which this is called. Only Textual's own callbacks, which scroll, belong to none.
     """
     turn = _turn()
     if turn is None or _find_module(callback).startswith("textual."):

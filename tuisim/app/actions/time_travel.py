@@ -77,7 +77,7 @@ def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -
     tick = None if time_s is None else round(time_s * timeline.tick_hz)
     recording = timeline.recording
     if sample and time_s is not None and recording is not None:
-        # The program printed it within a tick.
+        # The program printed the sample within a tick: that is the last tick before the time.
         tick = timeline.find_tick(time_s)
         if line := recording.rows.find_line(sample, tick):
             context.debugger.choose_line(tick, line)

@@ -422,7 +422,7 @@ def _choose_columns(
             return columns, widths, gap
     for spare in range(1, len(pane.spare) + 1):
         columns = [index for index in rest if pane.heads[index] not in pane.spare[:spare]]
-        # The ellipsis behind the headings needs its place.
+        # Leave a column for the ellipsis behind the headings.
         if sum(widths[index] + 1 for index in columns) < width:
             return columns, widths, 1
     fitting = fit_columns(filled, widths, width)

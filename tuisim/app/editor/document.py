@@ -332,7 +332,7 @@ class Document:
         """
         self.show_program()
         if self._name == NEW_NAME and not self._path:
-            # A new program that has run counts as unsaved.
+            # A new program is in no file, so it counts as unsaved once it has run.
             self._saved = ""
         is_applied = self._is_applied
         if is_applied and not self._lacks_mat:

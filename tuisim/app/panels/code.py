@@ -445,7 +445,7 @@ class Code(Vertical):
         if at_end:
             self._area.action_go_to_end(True)
         self._type(True)
-        # A panel that was opened for this has got no size yet.
+        # A panel that was only opened now has no size yet, and cannot scroll.
         self.call_after_refresh(self.show_cursor)
 
     def stop_typing(self) -> None:

@@ -136,7 +136,9 @@ class TimeBar(LinesView):
 
     @dataclass
     class Scrubbed(Message):
-        """Posted when the user goes to a tick of the run; None is the newest instant."""
+        """Posted when the user goes to another instant with the bar: to the tick `tick`, or None for the newest
+        instant.
+        """
 
         tick: int | None
 

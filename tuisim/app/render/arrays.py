@@ -139,7 +139,7 @@ def build_face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool)
     lines = [_build_value_line(face, width), _scale_line(face, width)]
     lines += [[(cut(face.limit_words(width), width), _LIMIT)]] if has_limits else []
     rings = _ring_lines(face, width)
-    # The label is of no use without its numbers.
+    # The rings are shown completely or not at all, since their label is of no use without the numbers.
     lines += rings if len(lines) + len(rings) <= rows else []
     return [[(cut(face.name, width), _LABEL)], *lines] if rows > len(lines) else lines[:rows]
 

@@ -120,7 +120,7 @@ def draw_goals(
     ]
     room = height - len(lines) - 1
     max_rows = max(1, room - max(_DETAIL_ROWS, room // 2))
-    # If the list is cut, the line below it tells the number of goals.
+    # If the list is cut, the line below it shows which goal of how many is chosen.
     number = f" {chosen + 1} of {len(view.goals)} ─" if len(listed) > max_rows else ""
     listed = _select_rows(listed, chosen, max_rows)
     rows = (*(None for _ in lines), *(at for _, at in listed))

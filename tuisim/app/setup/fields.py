@@ -359,7 +359,7 @@ def _build_world_fields() -> tuple[FormField, ...]:
     def profile(plan: NextRun) -> str:
         return Path(plan.words.get("profile", plan.spec.profile.name)).name
 
-    # Pose, noise and seed have panels of their own.
+    # Pose, noise and seed have panels of their own, so they are not in this form.
     fields = [
         path
         for path, one in RUN_VALUES.items()

@@ -192,7 +192,7 @@ PICTURE_FORMATS: Mapping[str, Callable[[FramePainter, ClipRun, float], bytes]] =
 
 def _check_size(clip: Clip) -> None:
     width, height = FramePainter(clip.recorded, clip.panels, clip.span_s, clip.size).size
-    # A frame takes a byte a pixel.
+    # A frame takes one byte for each pixel.
     max_frames = min(MAX_BYTES // (width * height), MAX_FRAMES)
     count = count_shots(*clip.span_s, clip.speed, clip.fps)
     if count > max_frames:

@@ -194,7 +194,7 @@ def _clamp_center(centre_mm: float, shown_mm: float, field_mm: float) -> float:
 def _is_well_inside(view: Viewport, pose: Pose) -> bool:
     col, row = view.to_px(pose.x_mm, pose.y_mm)
     margin_col, margin_row = view.width_px * _KEEP_INSIDE, view.height_px * _KEEP_INSIDE
-    # At the edge of the field there is nothing more to show.
+    # At the edge of the field there is nothing more to show, so the view need not move further.
     left = view.left_mm <= 0 or col >= margin_col
     right = (
         view.left_mm + view.width_px * view.mm_per_px >= FIELD_WIDTH_MM
