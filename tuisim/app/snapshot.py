@@ -150,7 +150,7 @@ class Snapshot:
 
     @cached_property
     def rays(self) -> tuple[tuple[float, float], ...]:
-        """The rays of the ultrasonic sensor as (world angle in degrees, length in mm)."""
+        """The rays of the ultrasonic sensor as (world angle in degrees, length in mm); empty without such a sensor."""
         sensor = self.spec.robot.ultrasonic
         return (
             tuple(ultrasonic.measure_rays_mm(self.instant.pose, sensor, self.spec.world))

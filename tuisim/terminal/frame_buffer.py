@@ -395,7 +395,7 @@ class _Pen:
         self._runs = []
 
     def write(self, x: int, y: int, text: str, look: CellLook, row: Sequence[Cell | None]) -> None:
-        """Append the codes that write a cell, in a row that changes no more.
+        """Append the codes that write a cell, in a row whose cells do not change any more.
 
         Args:
             x, y: Column and row of the cell.

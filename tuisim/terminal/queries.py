@@ -84,7 +84,7 @@ class TerminalFacts:
         return _SIXEL in self.attributes
 
     def add_answer(self, match: re.Match[str]) -> TerminalFacts:
-        """Return the facts with a further answer of the terminal, given as a match of its pattern."""
+        """Return the facts with a further answer of the terminal, given as a match of the pattern of all answers."""
         groups = match.groupdict()
         if groups["name"] is not None:
             # A name means that all questions are asked again, perhaps by another page: if the question for kitty's

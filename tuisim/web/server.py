@@ -97,7 +97,7 @@ class Downloads(DownloadManager):
             yield piece.encode(download.encoding or "utf-8") if isinstance(piece, str) else piece
 
     async def chunk_received(self, delivery_key: str, chunk: bytes | str) -> None:
-        """Receive a requested piece of a file from an app."""
+        """Receive a piece of a file from an app, and pass it on to `read_pieces`, which has requested it."""
         answer = self._asked.get(delivery_key)
         if answer is not None and not answer.done() and len(chunk) <= _MAX_PIECE_BYTES:
             answer.set_result(chunk)

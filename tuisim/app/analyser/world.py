@@ -51,7 +51,7 @@ class RunWorld:
     Args:
         spec: The specification of the run.
         mat: The mat of the run.
-        run: The run, if it is in the store.
+        run: The stored run; None if it is not in the store.
         log: The log that has the poses if the run is not in the store.
     """
 

@@ -115,7 +115,7 @@ FOLDER = "drafts"
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """A stored text of a program with its unsaved changes."""
+    """A text of a program with unsaved changes, which is stored in case of a crash."""
 
     path: str
     """Absolute path of the program; empty for a new one without a file."""

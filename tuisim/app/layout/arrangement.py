@@ -150,7 +150,7 @@ def choose_panels(
     """Return the panels to show, the most important first, and panels that fill the rest of the area.
 
     Args:
-        preset: The arrangement.
+        preset: The preset of the screen.
         switched: Panels that the user has shown (True) or hidden, the latest last.
         width: Columns of the area.
         height: Rows of the area.

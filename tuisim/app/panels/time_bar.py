@@ -136,9 +136,7 @@ class TimeBar(LinesView):
 
     @dataclass
     class Scrubbed(Message):
-        """Posted when the user goes to another instant with the bar: to the tick `tick`, or None for the newest
-        instant.
-        """
+        """Posted when the user goes to another tick of the run with the bar; a tick of None is the newest instant."""
 
         tick: int | None
 

@@ -87,7 +87,7 @@ class LessonView:
 
     @property
     def last_page(self) -> int:
-        """The number of the last page; each step has a page, and so has the end of the lesson."""
+        """The number of the last page, from 0: each step has a page, and the last page is the end of the lesson."""
         return 0 if self.lesson is None else len(self.lesson.steps)
 
     @property

@@ -188,7 +188,12 @@ def draw_disc(
 
 
 def _means(samples: npt.NDArray[np.generic], fine: int) -> npt.NDArray[np.float64]:
-    """Return the mean of each block of `fine` × `fine` samples, shape (rows, columns, channels)."""
+    """Return the mean of each block of `fine` × `fine` samples, shape (rows, columns, channels).
+
+    Args:
+        samples: Shape (rows · fine, columns · fine, channels).
+        fine: Samples along a side of a block.
+    """
     rows, cols, channels = samples.shape
     means: npt.NDArray[np.float64] = samples.reshape(
         rows // fine, fine, cols // fine, fine, channels
