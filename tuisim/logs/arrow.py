@@ -165,7 +165,7 @@ _CUT_OFF = "the file is truncated: only the readable part was read"
 
 
 def read_metadata(schema: pa.Schema) -> Mapping[str, Any]:
-    """Return the metadata of an export of tuisim; empty for other files."""
+    """Return the metadata of an export of tuisim, by key; empty for other files."""
     try:
         metadata = json.loads((schema.metadata or {}).get(METADATA_KEY, b"{}"))
     except (ValueError, RecursionError):
@@ -246,7 +246,7 @@ FORMATS: Mapping[bytes, Callable[[Path, Notes], Iterator[tuple[float, pa.Table]]
 
 
 def _validate_batch(batch: pa.RecordBatch) -> pa.Table:
-    """Return a batch as a table, after a check of its data, which may be damaged."""
+    """Return a batch as a table after a check of its data; a pyarrow error is raised if they are damaged."""
     part = pa.Table.from_batches([batch])
     part.validate(full=True)
     return part

@@ -336,9 +336,9 @@ def _find_pairs(last: IntArray, first: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def _measure_reach(levels: Levels) -> FloatArray:
-    """Return how far a sample may be from the middle between a level and the next without being of a third level.
+    """Return for each two neighbouring levels how far a sample on the edge between them may be from their middle.
 
-    The result has the shape (n - 1,).
+    A sample that is farther away belongs to a third level. The shape is (n - 1,).
     """
     spread = np.maximum(levels.spread[:-1], levels.spread[1:])
     return _FAR_OF_STEP * np.abs(np.diff(levels.true_level)) + _FAR_OF_SPREAD * spread

@@ -323,7 +323,7 @@ def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataTy
 
 
 def _set_time_unit(layout: Layout, table: pa.Table, unit_s: float | None = None) -> Layout:
-    """Return a layout with the unit of its time column.
+    """Return a copy of a layout in which the unit of its time column is set.
 
     Args:
         layout: The layout.

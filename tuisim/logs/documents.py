@@ -57,12 +57,12 @@ class DocumentReader:
             )
 
     def finish(self) -> pa.Table | None:
-        """Return the rows of the document; None if it has none.
+        """Return the rows of the document as a table; None if it has no rows.
 
         Of a damaged document, only the rows in a line of their own are returned.
 
         Raises:
-            LogError: it is no table.
+            LogError: the document is not a table.
         """
         try:
             value = json.loads(self._text)
@@ -93,7 +93,7 @@ class DocumentReader:
     def _build_from_lists(self, rows: Sequence[Any]) -> pa.Table | None:
         """Return a table of rows that are lists or single values; the first list may be the column names.
 
-        The result is None without rows.
+        The result is None if there are no rows.
         """
         text = io.StringIO()
         csv.writer(text, lineterminator="\n").writerows(

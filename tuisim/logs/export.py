@@ -61,7 +61,7 @@ def check_targets(targets: Iterable[str | Path]) -> None:
 
     Raises:
         ConfigError: two of them are the same file.
-        ExportError: one cannot be written.
+        ExportError: a file cannot be written.
     """
     seen: set[str] = set()
     for target in targets:
@@ -106,7 +106,7 @@ def export_frame(frame: pd.DataFrame, path: str | Path, metadata: Metadata) -> N
         metadata: Stored with the frame, ready for JSON. It must be the same for identical runs.
 
     Raises:
-        ExportError: it cannot be written; an existing file is unchanged.
+        ExportError: the file cannot be written; an existing file is unchanged.
     """
     target = check_target(path)
     exporter = EXPORTERS[target.suffix.lower()]
@@ -125,7 +125,7 @@ def export_samples(runs: Sequence[StoredRun], path: str | Path) -> int:
     """Write the samples of one or more runs, see `frames.build_samples_frame`; return the number of rows.
 
     Raises:
-        ExportError: it cannot be written.
+        ExportError: the file cannot be written.
         LogError: a recording is damaged.
     """
     check_target(path)
@@ -140,7 +140,7 @@ def export_telemetry(run: StoredRun, path: str | Path) -> int:
     """Write every tick of a run, see `frames.build_telemetry_frame`; return the number of rows.
 
     Raises:
-        ExportError: it cannot be written.
+        ExportError: the file cannot be written.
         LogError: a recording is damaged, or the mat cannot be found any more.
     """
     check_target(path)
@@ -160,7 +160,7 @@ def export_log(log: Log, table: LogTable, path: str | Path) -> None:
         path: The file.
 
     Raises:
-        ExportError: it cannot be written; an existing file is unchanged.
+        ExportError: the file cannot be written; an existing file is unchanged.
     """
     frame = build_typed_frame(table)
     of_frame = build_table_metadata("log", frame)
@@ -202,7 +202,7 @@ def build_typed_frame(table: LogTable) -> pd.DataFrame:
 
 
 def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) -> dict[str, Any]:
-    """Return the metadata of a log: units, and program, seed, robot, world and profile of each run.
+    """Return the metadata of a log, by key: units, and program, seed, robot, world and profile of each run.
 
     The metadata of identical runs are equal: they have no id, no time of day and no path.
 
@@ -234,7 +234,7 @@ def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) 
 
 
 def build_table_metadata(table: str, columns: Iterable[str]) -> dict[str, Any]:
-    """Return the metadata that every table has: its format, the kind of the table, and the names of its columns."""
+    """Return the metadata that every table has, by key: its format, its kind, and the names of its columns."""
     return {"format": LOG_FORMAT, "table": table, "columns": list(columns)}
 
 

@@ -114,7 +114,7 @@ def find_names(text: str) -> list[str]:
     """Return the names of the columns in an expression, in order of first appearance.
 
     Raises:
-        LogError: it cannot be parsed.
+        LogError: the expression cannot be parsed.
     """
     parsed, names = _read(text)
     called = {id(node.func) for node in ast.walk(parsed) if isinstance(node, ast.Call)}
@@ -158,7 +158,14 @@ def _parse(source: str, text: str) -> ast.Expression:
 
 
 class _Evaluation:
-    """The evaluation of one expression; `names` has the expression's names in backticks, by their placeholders."""
+    """The evaluation of one expression.
+
+    Args:
+        columns: The values of each column, by name.
+        names: The names that the expression has in backticks, by the placeholders that replace them.
+        text: The expression, for errors.
+        functions: The functions that it may call, by name.
+    """
 
     def __init__(
         self,

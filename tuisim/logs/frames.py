@@ -66,7 +66,7 @@ def read_log(
         decimal: `.` or `,`; empty to find it.
 
     Raises:
-        LogError: it cannot be read, has no row, there is no such column, or a choice is not allowed.
+        LogError: the file cannot be read or has no row, there is no such column, or a choice is not allowed.
     """
     values = (value,) if isinstance(value, str) else tuple(value)
     choices = ReadChoices(time, unit, values, header, table, encoding, separator, decimal)

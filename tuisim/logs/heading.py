@@ -202,9 +202,9 @@ def _split_comments(
 
 
 def _read_comment(comment: tuple[int, str], below: _Line, separator: str) -> _Line | None:
-    """Return a comment as the line of the column names; None if it cannot be one.
+    """Return a comment as the line with the names of the columns.
 
-    It cannot if it has numbers, or another number of cells than the line below it.
+    The result is None if the comment has numbers, or not the same number of cells as the line below it.
 
     Args:
         comment: Line number and text.

@@ -23,7 +23,7 @@ Row = Mapping[str, Any]
 
 
 class ObjectReader:
-    """Reads a file block by block whose lines contain objects, such as JSON.
+    """Reads, block by block, a file whose lines contain objects, such as JSON.
 
     The first block fixes the columns and their types.
 

@@ -50,7 +50,7 @@ def list_greys() -> Mapping[int, Grey]:
 
 
 def find_nearest_greys(percents: FloatArray) -> list[Grey | None]:
-    """Return the named grey nearest to each level of 0 to 100 %; None if none is within `NEAR_PERCENT`."""
+    """Return for each level of 0 to 100 % the nearest named grey; None where none is within `NEAR_PERCENT`."""
     named = list(list_greys().values())
     apart = np.abs(np.array([grey.percent for grey in named]) - percents[:, None])
     nearest = np.where((apart <= NEAR_PERCENT).any(axis=1), apart.argmin(axis=1), -1)

@@ -88,7 +88,7 @@ def export_mcap(
 
     Raises:
         ConfigError: the library is not installed.
-        ExportError: it cannot be written, or a time is before 0; an existing file is unchanged.
+        ExportError: the file cannot be written, or a time is before 0; an existing file is unchanged.
     """
     library = load_writer()
     check_place(path)

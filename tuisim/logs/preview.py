@@ -69,7 +69,10 @@ class Preview:
                 return [(_EXAMPLES.get(word, word), word) for word in WORDS[name]]
 
     def find_word(self, name: str) -> str:
-        """Return the label of the value that the file suggests for a choice; empty if none was found."""
+        """Return the label of the value that was found in the file for a choice in `ReadChoices`, given by its name.
+
+        The label is empty if no value was found.
+        """
         layout = self.log.layout
         form = self.log.form
         match name:

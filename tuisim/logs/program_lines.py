@@ -117,7 +117,7 @@ def _is_row(line: str) -> bool:
 def choose_reader(
     lines: Sequence[str], is_table: bool, notes: Notes, choices: ReadChoices
 ) -> CsvReader | ObjectReader | None:
-    """Return a reader for a file of lines that a program printed; None if its first lines are not like that.
+    """Return a reader for a file of lines that a program printed; None if its first lines are of another kind.
 
     Args:
         lines: The first lines.

@@ -91,7 +91,7 @@ def open_log(source: str | Path, choices: ReadChoices = NO_CHOICES) -> Log:
         choices: The user's choices for reading the file.
 
     Raises:
-        LogError: it cannot be read, has no row, or there is no such column.
+        LogError: the file cannot be read, has no row, or lacks a chosen column.
     """
     last = None
     for loaded in read_pieces(source, choices):
@@ -104,7 +104,7 @@ def read_beginning(path: str, choices: ReadChoices) -> Log:
     """Return the log in the first rows of a file.
 
     Raises:
-        LogError: it cannot be read, or has no row.
+        LogError: the file cannot be read, or has no row.
     """
     return next(loaded.log for loaded in read_pieces(path, choices) if loaded.log is not None)
 
@@ -211,7 +211,7 @@ def _tell_odd_columns(table: pa.Table, layout: Layout, unread: str, notes: Notes
 
 
 def read_companion(path: Path) -> Mapping[str, Any]:
-    """Return the metadata in the companion file of an export; empty if there is none."""
+    """Return the metadata in the companion file of an export, by key; empty if there is no such file."""
     try:
         metadata = json.loads(
             read_regular(find_companion(path), _MAX_COMPANION_BYTES, follow_links=True)
@@ -246,7 +246,7 @@ def read_parts(
         choices: The user's choices for reading the file.
 
     Raises:
-        LogError: it cannot be read.
+        LogError: the file cannot be read.
     """
     with _name_in_errors(_name_source(source)):
         if str(source) != STDIN:
@@ -341,7 +341,7 @@ def _refuse_binary(data: bytes) -> None:
     """Check that the first bytes of a stream do not belong to a binary format.
 
     Raises:
-        LogError: they do.
+        LogError: the bytes are the beginning of a binary format.
     """
     if data.startswith((*arrow.FORMATS, *MAGICS)):
         raise LogError(

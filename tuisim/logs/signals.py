@@ -26,7 +26,7 @@ MAX_RESAMPLED = 50_000_000
 
 
 def sort_known(time_s: FloatArray, values: FloatArray) -> IntArray | slice:
-    """Return the indices of the finite values, sorted by time (stable).
+    """Return the indices of the finite values, sorted by time (stable); a slice if these are all, in order.
 
     Args:
         time_s: Shape (n,), in any order.

@@ -55,7 +55,7 @@ def parse_conditions(text: str, columns: list[str]) -> list[ValueCondition]:
         columns: The columns that it may name.
 
     Raises:
-        LogError: one is not a condition, or there is no such column.
+        LogError: a part of the text is not a condition, or names a column that is not in `columns`.
     """
     conditions = []
     for part in re.split(r"\s+and\s+|\s*,\s*", text.strip()):

@@ -105,7 +105,7 @@ def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
 def order_times(
     table: pa.Table, layout: Layout, notes: Notes
 ) -> tuple[pa.Table, Layout, FloatArray | None]:
-    """Return a table, its layout, and its times in seconds, None without times.
+    """Return a table, its layout, and its times in seconds; these are None if the table has no times.
 
     Where the time begins again, another run begins; the table then gets a further column with the runs.
 
@@ -162,7 +162,7 @@ def keep_timed_rows(
     rows = counted(count, "row has no time and is", "rows have no time and are")
     notes.say(f"{rows} left out: {layout.time!r} is empty there, or cannot be read")
     table = table.filter(pa.array(has_time))
-    # They are read again, as a clock may begin again at 0 after a row that is left out.
+    # The times are read again, as a clock may begin again at 0 after a row that is left out.
     return table, layout, _read_layout_times(table, layout)
 
 

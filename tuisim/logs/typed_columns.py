@@ -49,7 +49,7 @@ class TypedColumns:
         """By name; missing while all cells of a column were empty."""
 
     def list_plain(self) -> dict[str, pa.DataType]:
-        """Return the columns that pyarrow can parse itself, with their types; the others are read as texts."""
+        """Return the types of the columns that pyarrow can parse itself, by column; the others are read as texts."""
         forms = (PLAIN, DECIMAL_COMMA) if self.has_decimal_commas else (PLAIN,)
         return {name: column.kind for name, column in self._columns.items() if column.form in forms}
 

@@ -83,8 +83,8 @@ def begins_at_zero(name: str, low: float, high: float) -> bool:
     """Return whether the scale of a variable begins at 0, as for readings of light and percentages.
 
     Args:
-        name: Name of the variable, which must say what it is.
-        low, high: Minimum and maximum of its values, which must be within 0 to 255.
+        name: Name of the variable; the result is only True if the name says that it is light or a percentage.
+        low, high: Minimum and maximum of its values; the result is only True if they are within 0 to 255.
     """
     name = name.partition(" #")[0]
     return 0 <= low and high <= MAX_LEVEL and bool(_LIGHT.search(name) or _PERCENT.search(name))

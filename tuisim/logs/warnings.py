@@ -41,7 +41,7 @@ class Notes:
         self._general[text] = None
 
     def add(self, singular: str, plural: str, rows: Sequence[int]) -> None:
-        """Add a warning about some rows that could not be read; nothing is added without rows.
+        """Add a warning about some rows that could not be read; if `rows` is empty, nothing is added.
 
         Args:
             singular: The problem, such as `cell is not a number`.
@@ -56,7 +56,7 @@ class Notes:
             named += rows[: ROWS_NAMED + 1 - len(named)]
 
     def say_rows(self, text: str, rows: Sequence[int]) -> None:
-        """Add a warning about rows that were read nevertheless; nothing is added without rows."""
+        """Add a warning about rows that were read nevertheless; if `rows` is empty, nothing is added."""
         if rows:
             self.say(f"{text} ({list_rows(rows, self.noun)})")
 
