@@ -57,7 +57,7 @@ class Lab:
             `pybricks4` for a robot with a hub.
         columns: What `step` returns: names of columns as in `Run.telemetry`, except `line`; of a colour sensor also its
             light in percent, such as `left_red_pc` for `left_red`.
-        goals: A goals file for `judge`; its world is used without a `world`.
+        goals: A goals file for `judge`; its world is used if no `world` is given.
 
     Raises:
         ConfigError: a description, a column or a goal is wrong, or a goal is about a program.

@@ -168,7 +168,7 @@ def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -
         }
         for row in usual_frame.to_dict("records")
     ]
-    # Rows are numbered again, as in a table of Python's `experiment` these are numbers of the store.
+    # Rows are numbered again, as a table of Python's `experiment` has the numbers of the run store instead.
     rows = [{**row, RUN: number} for number, row in enumerate(rows, start=1)]
     return _select_started(rows)
 

@@ -11,7 +11,7 @@ from itertools import pairwise
 
 
 def find_fault(text: str) -> tuple[str, int] | None:
-    """Return why a program does not compile, with the line's number or 0 without one; None if it compiles."""
+    """Return why a program does not compile, and the line's number, 0 if unknown; None if the program compiles."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

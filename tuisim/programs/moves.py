@@ -80,7 +80,7 @@ def _find_option(statement: ast.stmt) -> str:
 
 
 def _find_next_move(move: ast.Call, rest: list[ast.stmt]) -> int:
-    """Return the line of the next move or stop after a move, preferably one of the same object; 0 without one.
+    """Return the line of the next move or stop after a move, preferably one of the same object; 0 if there is none.
 
     Only calls directly after the move are considered, up to the first other statement or call that waits.
 
@@ -138,7 +138,7 @@ _PAIRS = re.compile("Move[A-Z]|DriveBase|tank_|steering_")
 
 
 def list_parted_moves(tree: ast.Module) -> Iterator[PartedMove]:
-    """Yield each pair of equal moves of two motors, the first of which the program waits for without saying so.
+    """Yield each pair of equal moves of two motors in which the first call blocks by default, without an argument.
 
     Programs that also move both wheels by one call, and loops with no other statements, are left out: they probably
     move one wheel alone on purpose.

@@ -312,7 +312,10 @@ def replace_mat(text: str, name: str, mat: str) -> str:
 
 
 def _find_docstring_end(lines: list[str]) -> int:
-    """Return the index of the line after the docstring; without one, after lines such as `#!` that must come first."""
+    """Return the index of the line after the docstring of a program.
+
+    If it has no docstring, it is the index after lines such as `#!` that must come first.
+    """
     try:
         first = parse_module("\n".join(lines)).body[:1]
     # The program cannot be parsed while it is being edited.
@@ -465,8 +468,8 @@ def build_program(text: str, path: Path | None, name: str, *, alone: bool = Fals
 
     Args:
         text: The source, with `\\n` as line endings.
-        path: Its file, which may not exist; names of files in its magic line are relative to its folder. None without
-            one.
+        path: Its file, which may not exist; names of files in its magic line are relative to its folder. None if the
+            program has no file.
         name: Its name, for errors and tables.
         alone: As in `read_program`.
 

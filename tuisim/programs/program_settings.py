@@ -225,7 +225,7 @@ def _collect_facts(program: Program, modules: dict[str, Module], facts: SourceFa
 
 
 def _find_library(program: Program, modules: dict[str, Module]) -> Library | None:
-    """Return the library for a brick that a program uses; None for none.
+    """Return the library for a brick that a program uses; None if it uses none.
 
     Its imports decide, else its first line, else the device files that it opens, which mean ev3dev2.
     """

@@ -103,13 +103,13 @@ class Question:
     def remote_buttons(self) -> tuple[str, ...]:
         """The remote control's buttons that the program tests, by the names of `REMOTE_BY_HAND`.
 
-        The result is empty for any button.
+        The result is empty if the program accepts any button.
         """
         return self._find_words(REMOTE_WORDS)
 
     @property
     def colors(self) -> tuple[str, ...]:
-        """The colours that the program tests, in lower case; empty for any colour."""
+        """The colours that the program tests, in lower case; empty if it accepts any colour."""
         return self._find_words(COLOR_WORDS)
 
     def _find_words(self, names: Mapping[Word, str]) -> tuple[str, ...]:

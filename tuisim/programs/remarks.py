@@ -88,7 +88,7 @@ class Remarks:
     def names_band(self, first_line: int, last_line: int) -> bool:
         """Return whether some lines name a band of the mat.
 
-        The result is False if these lines, or those around them, also say that the robot drives on beyond it.
+        The result is False if these lines, or those around them, also say that the robot drives on beyond the band.
         """
         around = self._list_lines(first_line - _AROUND_LINES, last_line + 1)
         is_beyond = _BEYOND.search(" ".join(around))

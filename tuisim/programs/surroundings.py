@@ -130,7 +130,10 @@ class Surroundings:
         return None
 
     def find_import(self, name: str) -> str:
-        """Return a statement that imports a name from a library for a brick or from Python's own; empty for none."""
+        """Return a statement that imports a name as these surroundings do; empty if it is not from a library.
+
+        Libraries are those for a brick, and Python's own.
+        """
         module, original = self._find_module(name)
         return f"from {module} import {original} as {name}" if is_library(module) else ""
 
@@ -142,7 +145,7 @@ class Surroundings:
         return Surroundings.read_module(sys.modules[module]).find_origin(original)
 
     def _find_module(self, name: str) -> tuple[str, str]:
-        """Return the module from which a name is imported, and the name in that module; both empty if it is not."""
+        """Return the module from which a name is imported, and the name in that module; both empty for other names."""
         statement, _ = self.find(name)
         if isinstance(statement, ast.ImportFrom):
             names = {alias.asname or alias.name: alias.name for alias in statement.names}
@@ -226,7 +229,7 @@ def _is_pure(value: object) -> bool:
 def _parse(text: str) -> list[ast.stmt]:
     """Return the statements of a text outside functions and classes, those in blocks included.
 
-    The result is empty if it is not Python.
+    The result is empty if the text is not Python.
     """
     try:
         return [*_list_statements(parse_module(text).body)]

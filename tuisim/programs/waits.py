@@ -97,7 +97,7 @@ def list_counts(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[tup
 
 
 def _find_counted(node: ast.stmt) -> str:
-    """Return the variable to which a statement adds 1; empty for none."""
+    """Return the variable to which a statement adds 1; empty for any other statement."""
     match node:
         case ast.AugAssign(target=ast.Name(id=name), op=ast.Add(), value=ast.Constant(value=1)):
             return name
@@ -123,7 +123,9 @@ def _is_only_counted(name: str, tree: ast.Module) -> bool:
 def find_turns(
     tree: ast.Module, constants: Mapping[str, Word], line: int
 ) -> tuple[float, str] | None:
-    """Return by how much a call on a line turns a motor or both wheels, and `rotations` or `degrees`; None without one.
+    """Return by how much a call on a line turns a motor or both wheels, and the unit: `rotations` or `degrees`.
+
+    The result is None if the line has no such call.
 
     Args:
         tree: The program.

@@ -35,7 +35,7 @@ _NEEDS_MEASURED = {"weight": False, "mass_kg": True, "battery_v": True}
 
 
 def place_robot(choice: RobotChoice, mat: Background) -> RobotSpec:
-    """Return a robot with its colour sensors at the positions of the mat, unless the robot's file sets them.
+    """Return a robot with its colour sensors at the positions that the mat sets, unless the robot's file sets them.
 
     Args:
         choice: The robot, with the settings in its file.

@@ -40,7 +40,8 @@ def resolve_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dic
     """Return the settings, by path, for some keys of a world file.
 
     Args:
-        values: By key, with dots for tables. `arguments` is a text, split into words as a shell does.
+        values: The values by key, with dots for tables, such as `noise.light`. That of `arguments` is a text, which is
+            split into words as in a shell.
         chosen: The settings to be changed: a key of a robot or profile leaves its other keys unchanged.
         path: The file for errors; paths are relative to its folder.
 

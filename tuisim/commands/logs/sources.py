@@ -62,7 +62,7 @@ def open_sources(arguments: Arguments) -> Iterator[Log]:
 
     Raises:
         ConfigError: no log is named.
-        LogError: there is no such run or file, or it cannot be read.
+        LogError: a run or file does not exist, or cannot be read.
     """
     words: Sequence[str] = arguments.words
     if not words:

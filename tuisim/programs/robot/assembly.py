@@ -246,10 +246,10 @@ class _Builder:
         return {"gear_ratio": ratio}
 
     def add_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
-        """Return values of `RobotSpec` in which motors press touch sensors at their end stops, as the program shows.
+        """Return a robot's values with the touch sensors that, as the program shows, motors press at their end stops.
 
         Args:
-            changes: The values, by field name, among them the motors and touch sensors.
+            changes: The values by field name of `RobotSpec`, among them `extra_motors` and `touch_sensors`.
         """
         motors = {motor.port: motor for motor in changes["extra_motors"]}
         touches = list(changes["touch_sensors"])

@@ -262,7 +262,7 @@ class _MechanicsReader:
     def _find_ways(
         self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope
     ) -> Iterator[bool]:
-        """Yield for each endless move of some motors in some nodes whether it is forwards.
+        """Yield whether a motor turns forwards, for each speed that endless moves of some motors can have.
 
         Args:
             nodes: The nodes of the syntax tree.

@@ -236,7 +236,7 @@ def find_hub(modules: dict[str, Module]) -> str:
 
 
 def find_library(modules: dict[str, Module]) -> Library | None:
-    """Return the library for a brick that a program or one of its own modules imports; None for none."""
+    """Return the library for a brick that a program or one of its own modules imports; None if they import none."""
     names = {name.split(".")[0] for name in _list_all_imported(modules)} & {*LIBRARIES}
     if PYBRICKS in names:
         return Library.PYBRICKS

@@ -290,7 +290,7 @@ class Size:
 def find_sizes(mentions: Mentions) -> dict[str, Size | None]:
     """Return the diameter of the wheels and their distance, in mm, by field of `RobotSpec`.
 
-    They are numbers in the program whose names say this. A size is None if it is missing or unclear.
+    They are the numbers in the program whose names mean these sizes. A size is None if it is missing or unclear.
     """
     named = [*_find_named(mentions)]
     wheels = [pair for pair in named if not is_spacing(pair[0])]

@@ -116,7 +116,10 @@ def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan)
 
 
 def _check_samples(named: ValueCondition, evidence: Evidence) -> tuple[Array, Array]:
-    """Return for each tick whether a comparison is true of all its samples, and whether it has any samples."""
+    """Return two masks over the ticks, each of shape (n,).
+
+    They are True for ticks without a sample that fails a comparison, and for ticks with a sample of its variable.
+    """
     import numpy as np
 
     seen = evidence.find_true_rows(replace(named, sign=Operator.SEEN, value=""))

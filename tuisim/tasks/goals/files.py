@@ -113,7 +113,7 @@ def load_goals(path: Path | str) -> GoalsFile:
 
 
 def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, GoalsFile | None]:
-    """Read a world file; return its world and its goals, which are None if it has none.
+    """Read a world file; return its world, and its goals or, if it has no goals, None.
 
     Args:
         path: The file, or one of `list_example_names`.
@@ -190,7 +190,7 @@ def _find_file(path: Path) -> Path:
 
 
 def _build_goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
-    """Return the task in a goals file; its goals include those of the world file that it names.
+    """Return the task in a goals file, with its goals and those of the world file that it is based on.
 
     The result is None if neither file has goals.
 

@@ -437,10 +437,10 @@ def _invert(name: str, outcome: _Outcome) -> _Outcome:
 
 
 def _pick_deciding(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
-    """Return the one of several outcomes that decides their combination.
+    """Return that outcome, of several ones, which decides their combination.
 
-    It is the earliest outcome in the state `deciding`; without one, the first open outcome, else the first unknown one.
-    If there is none of these, it is the latest outcome.
+    It is the earliest outcome in the state `deciding`, else the first open outcome, else the first unknown one, else
+    the latest outcome.
     """
     decided = [part for part in parts if part.state is deciding]
     if decided:

@@ -247,7 +247,7 @@ def _explain_missing_line(
 
 
 def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the samples of a variable had reached all levels of a condition, or which level is missing."""
+    """Return a finding on when the samples of a variable had reached all levels, or else on the missing level."""
     samples = [
         (number, sample)
         for number, sample in evidence.samples
@@ -406,7 +406,7 @@ def _explain_missing_level(
     Args:
         condition: The condition with the levels.
         count: Index of the missing level.
-        nearest: The sample that came nearest to it; None without samples.
+        nearest: The sample that came nearest to the level; None if there are no samples.
         evidence: The recording.
     """
     name = condition.name
@@ -448,7 +448,7 @@ def _explain_form_fault(name: str, evidence: Evidence) -> str:
 
 
 def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the last turn of a dialogue was complete, or which question or reply is missing."""
+    """Return a finding on when the last turn of a dialogue was complete, or else on the missing question or reply."""
     rows = evidence.rows[: span.end_row]
     questions = [index for index, row in enumerate(rows) if row.stream == Stream.INPUT]
     known = dict(zip(questions, evidence.answers, strict=False))
@@ -541,7 +541,7 @@ def _explain_missing_question(number: int, turn: DialogueTurn, question_count: i
 
 
 def find_finish(condition: FinishCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the program finished without an error, or why it did not."""
+    """Return a finding on when the program finished without an error, or else on why it did not."""
     if not span.over:
         return Finding(
             None, "The program was still running.", evidence.line(span.stop or evidence.last)

@@ -37,7 +37,7 @@ _WALLS = ("the left wall", "the right wall", "the lower wall", "the upper wall")
 
 
 def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the robot was at a condition's place and heading, or how near it came."""
+    """Return a finding on when the robot was at a condition's place and heading, or else on how near it came."""
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -140,7 +140,7 @@ def _place_words(condition: ReachCondition) -> str:
 
 
 def find_pass(condition: PassCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the robot had passed all places of a condition, or which it missed."""
+    """Return a finding on when the robot had passed all places of a condition, or else on the place that it missed."""
     records = evidence.records[span.ticks]
     first = span.first_tick
     if not len(records):
@@ -185,7 +185,7 @@ def _measure_way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
 
 
 def find_left(condition: InsideCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the robot left an area in which it must stay; `Finding()` if it did not."""
+    """Return a finding on when the robot left an area in which it must stay; `Finding()` if it never left the area."""
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -198,7 +198,7 @@ def find_left(condition: InsideCondition, evidence: Evidence, span: EvidenceSpan
 
 
 def find_entered(condition: OutsideCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the robot entered an area that it must stay out of; `Finding()` if it did not."""
+    """Return a finding on when the robot entered an area that it must avoid; `Finding()` if it never entered it."""
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -286,7 +286,7 @@ def _measure_circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec
 
 
 def find_touch(condition: TouchNothingCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return when the robot touched an obstacle or a wall, or came too near to one; `Finding()` if it did not."""
+    """Return a finding on when the robot touched an obstacle or wall, or came too near; `Finding()` if it never did."""
     world = evidence.spec.world
     robot = evidence.spec.robot
     walls = world.walls and condition.walls

@@ -171,7 +171,7 @@ def is_met(check: Check, events: Sequence[Event]) -> bool:
 def count_good_runs(check: RunCheck, events: Sequence[Event]) -> int:
     """Return how many runs have met the goals of a check, in the lesson's world and in the other worlds of the check.
 
-    If the check demands different seeds, return with how many different seeds.
+    If the check demands different seeds, several such runs with the same seed count as one.
     """
     passed = {
         (event.run_id, other.where)

@@ -85,8 +85,8 @@ def _resolve_settings(
 ) -> ProgramSettings:
     """Return the settings with which a student's program runs.
 
-    The magic line counts only if the task's world has no values. Without a profile, the program's library decides on
-    it.
+    The magic line counts only if the task's world has no values. If no profile is set, it is one for the program's
+    library.
 
     Raises:
         ConfigError: the magic line, or a file that it names, is wrong.

@@ -120,7 +120,7 @@ def run_entries(
 
 
 def count_runs(outcomes: Sequence[Outcome], plan: MarkPlan) -> int:
-    """Return the total number of runs of a student's program, which is smaller if it has given up.
+    """Return how many runs of a student's program are needed in total; fewer if the program has given up.
 
     Args:
         outcomes: The student's outcomes so far.

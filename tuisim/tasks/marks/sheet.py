@@ -321,7 +321,10 @@ def _has_missed(outcome: Outcome, columns: Sequence[Goal]) -> bool:
 
 
 def _find_reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
-    """Return why a run failed, and the program's line: the program's error, else the first goal that the run missed."""
+    """Return why a run failed, and the number of the program's line to which that refers, 0 for none.
+
+    The reason is the program's error, or else that of the first goal that the run missed; empty for a good run.
+    """
     names = {column.name: column.say for column in columns}
     missed = [goal for goal in outcome.goals if not goal.is_good and goal.name in names]
     if outcome.failure:

@@ -108,7 +108,7 @@ def _name_loss(
 ) -> LostLine:
     """Return a loss of the line, with the sensor that saw the line last.
 
-    Of several, one that the program reads is preferred.
+    If several sensors saw it last, one that the program reads is preferred.
 
     Args:
         dark: For each sensor, by name, whether it saw the line at each tick.

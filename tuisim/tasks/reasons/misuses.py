@@ -241,7 +241,7 @@ def _find_lost_values(data: RunData) -> Iterator[Unmet]:
 def _find_tick(data: RunData, first_line: int, last_line: int) -> int | None:
     """Return the first tick at which the program ran one of the lines, or read a sensor or motor there.
 
-    The result is None if it did not.
+    The result is None if the program did neither.
     """
     ticks = []
     for lines, when in (
