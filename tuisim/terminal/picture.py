@@ -44,7 +44,7 @@ class Graphics:
         """How many points of a picture are in a cell: across, and from top to bottom."""
         width_px, height_px = self.cell_px
         if self.protocol is Protocol.SIXEL and (width_px % self.scale or height_px % self.scale):
-            # The terminal cannot scale such a picture.
+            # Terminals do not scale sixel pictures, so a point must be one of the terminal's pixels here.
             return width_px, height_px
         return max(width_px // self.scale, 1), max(height_px // self.scale, 1)
 

@@ -109,7 +109,7 @@ def choose_picture_mode(argument: str | None, stored: str) -> PictureMode:
     else:
         best = choose_cells(ask=chosen == AUTO, has_colors=has_colors)
     if argument is None and (best is CellSet.ASCII or (not has_colors and chosen in BLOCKS)):
-        # The stored set was chosen on another terminal.
+        # The stored set was chosen on another terminal, and this one cannot show it.
         chosen = AUTO
     return PictureMode(best if chosen == AUTO else CellSet(chosen), chosen, best)
 

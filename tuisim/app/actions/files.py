@@ -107,7 +107,7 @@ def show_welcome(context: ActionContext, *, is_greeting: bool = False) -> None:
     from tuisim.app.setup.recent import list_recent
 
     def show_entries(entries: list[Recent]) -> None:
-        # The dialog opens with all entries in its list, so that Enter takes the entry that looks selected.
+        # The dialog opens only when all entries are known, so that Enter always chooses the entry that looks selected.
         if entries or not is_greeting:
             _push_welcome(context, entries)
         context.app.has_greeted = True

@@ -368,7 +368,8 @@ class Differences(Dialog[bool]):
         samples: Whether the user may also go to the first sample that differs, if no tick differs.
     """
 
-    # The footer takes the word for Enter from the hint: there may be no difference to go to.
+    # The binding has no word of its own: the footer takes the word for Enter from the hint, which has none if there is
+    # no difference to go to.
     BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", show=False)]
 
     def __init__(self, first: str, second: str, diff: RunDiff, *, samples: bool = False) -> None:

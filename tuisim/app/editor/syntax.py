@@ -33,8 +33,8 @@ _CLOSING = {quote: re.compile(rf"(?:[^\\]|\\.)*?{quote}") for quote in ('"""', "
 def find_spans(line: str, before: str = "") -> tuple[list[Span], str]:
     """Return the coloured parts of a line of Python, and the quotes of a string that goes on in the next line.
 
-    Each part is its first column, the column after its last one, and its kind, such as `string`. Without such a string,
-    the second result is empty.
+    Each part is its first column, the column after its last one, and its kind, such as `string`. The quotes are empty
+    if no string goes on.
 
     Args:
         line: Without its line end.

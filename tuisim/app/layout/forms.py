@@ -238,7 +238,8 @@ _MAX_EMPTY_ROWS = 3
 def build_board(panels: Sequence[str], width: int, height: int) -> Node:
     """Return a node with the world and the readings side by side, above a strip with the chart.
 
-    If the area is not of medium size, lacks one of these panels or has a lesson, return the node of `build_wide`.
+    If the area is too narrow or not of medium size, one of these panels is hidden, or a lesson is shown, return the
+    node of `build_wide`.
     """
     side = select_panels(panels, PanelPlace.SIDE)
     main = select_panels(panels, PanelPlace.MAIN)

@@ -37,7 +37,7 @@ class Settings(VerticalScroll, can_focus=False):
 
     @dataclass
     class Edited(Message):
-        """Posted when the user has entered a value, or asks for another choice of a field."""
+        """Posted when the user has entered a value into a field, or wants the next or the previous of its choices."""
 
         row: Row
         edit: FormField

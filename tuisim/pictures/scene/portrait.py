@@ -42,7 +42,7 @@ def draw_portrait(
     picture[:] = (255, 255, 255) if mono else _PAPER_RGB
     outline = build_outline(robot)
     if (sonar := robot.ultrasonic) is not None:
-        # The outline lacks this sensor, as the world draws its rays.
+        # The outline lacks this sensor, which the world shows by its rays: add it here.
         outline = replace(
             outline, other_sensors_mm=(*outline.other_sensors_mm, (sonar.x_mm, sonar.y_mm))
         )
