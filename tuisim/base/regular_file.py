@@ -33,7 +33,12 @@ def open_regular(path: Path, follow_links: bool = False) -> BinaryIO:
 
 
 def read_regular(path: Path, most_bytes: int, follow_links: bool = False) -> bytes:
-    """Return the contents of a regular file; `follow_links` is as for `open_regular`.
+    """Return the contents of a regular file.
+
+    Args:
+        path: The file.
+        most_bytes: The largest size that the file may have.
+        follow_links: Whether the path may end in a link; False where a program could have put a link.
 
     Raises:
         OSError: it cannot be opened or read; EFBIG if it is longer than `most_bytes`.

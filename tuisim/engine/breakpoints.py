@@ -140,7 +140,11 @@ def parse_break(text: str, run: RunSpec | None = None) -> Breakpoint:
 
 
 def parse_breakpoints(texts: Iterable[str], run: RunSpec | None = None) -> tuple[Breakpoint, ...]:
-    """Return the breakpoints of several texts; see `parse_break`."""
+    """Return the breakpoints that several texts describe, in their order; each as `parse_break` returns it.
+
+    Raises:
+        ConfigError: a text is not a valid breakpoint.
+    """
     return tuple(parse_break(text, run) for text in texts)
 
 

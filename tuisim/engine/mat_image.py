@@ -113,7 +113,11 @@ def size_of(content: bytes) -> tuple[int, int]:
 
 
 def read_pixels(path: Path, fit: str) -> NDArray[np.uint8]:
-    """Return the pixels of the field with the image of a file placed on it; see `decode`.
+    """Return the pixels of the field with the image of a file on it: shape (height, width, 3), rows from the top.
+
+    Args:
+        path: The image file.
+        fit: One of BACKGROUND_FITS.
 
     Raises:
         BackgroundError: the file cannot be read, or `decode` raises it.

@@ -218,7 +218,7 @@ class StepLine(Message):
     how: LineStep = LineStep.OVER
 
     def __post_init__(self) -> None:
-        # A command from JSON has a text here.
+        # A command that was read from JSON has the text of a `LineStep` here.
         object.__setattr__(self, "how", LineStep(self.how))
 
 
@@ -249,7 +249,7 @@ class SetBreaks(Message):
     """Breakpoints in the syntax of `tuisim.engine.breakpoints`; disabled ones are ignored."""
 
     def __post_init__(self) -> None:
-        # A command from JSON has a list here.
+        # A command that was read from JSON has a list here, which would not be immutable.
         object.__setattr__(self, "breaks", tuple(self.breaks))
 
 
@@ -314,7 +314,7 @@ class SetButtons(Message):
     """Names from `PRESSABLE`; others raise a ConfigError."""
 
     def __post_init__(self) -> None:
-        # A command from JSON has a list here.
+        # A command that was read from JSON has a list here, which would not be immutable.
         object.__setattr__(self, "pressed", tuple(self.pressed))
         for name in self.pressed:
             if name not in PRESSABLE:

@@ -131,7 +131,13 @@ class BrickMotor:
         return self.mode, self.sign, self.target_dps, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which an obstacle stopped the wheel; arguments as for `Motor.hold_back`."""
+        """Undo the rest of a tick in which an obstacle stopped the wheel.
+
+        Args:
+            before: The motor's `state` before the tick.
+            turned_deg: How far the wheel would have turned in the tick.
+            part: The part of the tick that was possible, below 1.
+        """
         mode, sign, target_dps, position_deg = before
         if mode == STOPPED or turned_deg == 0.0:
             return
@@ -190,7 +196,7 @@ class BrickMotor:
         return math.ceil(abs(self.target_dps - self.speed_dps) / step) if step else 1
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Return the rotation of the wheel in several ticks of constant speed; see `Motor.glide_evenly`."""
+        """Return how the motor moves in several ticks of constant speed; the caller sets `position_deg` afterwards."""
         if self.mode == STOPPED:
             return EvenGlide(0.0, repeat(self.position_deg, ticks))
         turned = self.speed_dps * self.sign * self._tick_s
@@ -275,7 +281,7 @@ class BrickMotor:
         return ENDLESS
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Advance the motor by one tick; return the rotation of the wheel in degrees. Arguments as for `Motor.step`."""
+        """Run the tick `tick` with noise added to the motor's speed; return the rotation of the wheel in degrees."""
         mode = self.mode
         if mode == FOREVER and not noise_dps:
             # The common case: only the ramp matters.

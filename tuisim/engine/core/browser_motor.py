@@ -81,7 +81,13 @@ class BrowserMotor:
         self.end_tick = end_tick
 
     def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
-        """Run the motor to an encoder position; arguments as for `BrickMotor.run_to`."""
+        """Run the motor to an encoder position.
+
+        Args:
+            goal_deg: The encoder position.
+            speed_dps: Its sign is ignored.
+            backwards: Whether to turn backwards, wherever the goal is.
+        """
         self._begin(POSITION, speed_dps)
         self.goal_deg = goal_deg
         self.backwards = backwards
@@ -101,7 +107,7 @@ class BrowserMotor:
     # Ticks
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Advance the motor by one tick; return the rotation of the wheel in degrees. Arguments as for `Motor.step`."""
+        """Run the tick `tick` with noise added to the motor's speed; return the rotation of the wheel in degrees."""
         speed = self.speed_dps
         if speed != self.speed_sp or noise_dps:
             self.speed_dps = speed = self._step_register(speed, noise_dps)
@@ -199,7 +205,7 @@ class BrowserMotor:
         return 0 if self._is_beyond_goal() else max(0, int(left / (2 * fastest)) - 1)
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Return the rotation of the wheel in several ticks of constant speed; see `Motor.glide_evenly`."""
+        """Return how the motor moves in several ticks of constant speed; the caller sets `position_deg` afterwards."""
         turned = self.speed_dps * (
             -self._tick_s if self._command == POSITION and self.backwards else self._tick_s
         )
@@ -295,7 +301,13 @@ class BrowserMotor:
         return self.mode, self._direction, self._aim, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which an obstacle stopped the wheel; arguments as for `Motor.hold_back`."""
+        """Undo the rest of a tick in which an obstacle stopped the wheel.
+
+        Args:
+            before: The motor's `state` before the tick.
+            turned_deg: How far the wheel would have turned in the tick.
+            part: The part of the tick that was possible, below 1.
+        """
         mode, *_, position_deg = before
         if mode == STOPPED or turned_deg == 0.0:
             return

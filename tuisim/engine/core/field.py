@@ -88,11 +88,21 @@ class Field:
         return left_sums[0] + count * red, left_sums[1] + count * green, left_sums[2] + count * blue
 
     def has_box(self, diameter: int, col: int, row: int) -> bool:
-        """Return whether the whole square box around a disc is on the mat; arguments as for `sum_disc`."""
+        """Return whether the whole square box around a disc is on the mat.
+
+        Args:
+            diameter: The disc's diameter in pixels.
+            col, row: The upper left corner of the box.
+        """
         return 0 <= col <= self.width_px - diameter and 0 <= row <= self.height_px - diameter
 
     def _count_on_floor(self, diameter: int, col: int, row: int) -> int:
-        """Return how many pixels of a disc are beside the mat; arguments as for `sum_disc`."""
+        """Return how many pixels of a disc are beside the mat.
+
+        Args:
+            diameter: The disc's diameter in pixels.
+            col, row: The upper left corner of the disc's box.
+        """
         count = 0
         for down, first, end in list_disc_spans(diameter):
             count += end - first
@@ -110,7 +120,9 @@ class Field:
     def read_box(self, diameter: int, col: int, row: int) -> bytes:
         """Return the pixels of the square box around a disc, row by row, three bytes per pixel.
 
-        The arguments are as for `sum_disc`.
+        Args:
+            diameter: The disc's diameter in pixels.
+            col, row: The upper left corner of the box, which may be off the mat.
         """
         off = bytes(self.floor_rgb or (0, 0, 0))
         left, right = max(col, 0), min(col + diameter, self.width_px)
@@ -126,7 +138,12 @@ class Field:
         return b"".join(rows)
 
     def read_disc(self, diameter: int, col: int, row: int) -> bytes:
-        """Return the pixels of a disc, row by row, three bytes per pixel; arguments as for `sum_disc`."""
+        """Return the pixels of a disc, row by row, three bytes per pixel.
+
+        Args:
+            diameter: The disc's diameter in pixels.
+            col, row: The upper left corner of the disc's box, which may be off the mat.
+        """
         if not self.has_box(diameter, col, row):
             return in_disc(Field.read_box(self, diameter, col, row), diameter)
         pixels = self.pixels

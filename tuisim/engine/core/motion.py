@@ -405,7 +405,7 @@ class Motion:
             return most
         pose = self._pose()
         free = self._solids.find_free_way_mm(pose, way * min(most, CHECK_TICKS), straight)
-        # `free` is infinite without any obstacle.
+        # Without any obstacle, `free` is infinite, which `int` refuses.
         return most if free >= way * most else int(free / way)
 
     def _list_wheel_speeds(

@@ -84,7 +84,13 @@ class MotorRecorder:
     def change_motors(
         self, motors: tuple[DrivenMotor, ...], sources: Sequence[int | None], ticks: int
     ) -> None:
-        """Write the records of another set of motors from now on; `sources` and `ticks` as for `MotorSink.arrange`."""
+        """Write the records of another set of motors from now on, and rewrite those of past ticks for it.
+
+        Args:
+            motors: The motors.
+            sources: For each of them the number that it had before; None for one that has been at rest.
+            ticks: How many ticks are recorded.
+        """
         self._motors, self._size = motors, MOTOR_RECORD.size * len(motors)
         if self._sink is not None:
             self._sink.arrange(sources, ticks)

@@ -46,7 +46,12 @@ class MarkedField(Field):
         )
 
     def sum_disc(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
-        """Return the sums of red, green and blue over a disc, including marks; see `Field.sum_disc`."""
+        """Return the sums of red, green and blue over a disc of the mat, including pen marks.
+
+        Args:
+            diameter: The disc's diameter in pixels, a key of `sums`.
+            col, row: The upper left corner of the disc's box, which may be off the mat.
+        """
         # Not `super()`: `slots=True` makes a new class, which `super()` without arguments does not find.
         red, green, blue = Field.sum_disc(self, diameter, col, row)
         if not self._has_marks(diameter, col, row):
@@ -62,13 +67,23 @@ class MarkedField(Field):
         return red, green, blue
 
     def read_disc(self, diameter: int, col: int, row: int) -> bytes:
-        """Return the pixels of a disc, including marks; see `Field.read_disc`."""
+        """Return the pixels of a disc, including pen marks, row by row, three bytes per pixel.
+
+        Args:
+            diameter: The disc's diameter in pixels.
+            col, row: The upper left corner of the disc's box, which may be off the mat.
+        """
         if self._has_marks(diameter, col, row):
             return in_disc(self.read_box(diameter, col, row), diameter)
         return Field.read_disc(self, diameter, col, row)
 
     def read_box(self, diameter: int, col: int, row: int) -> bytes:
-        """Return the pixels of a box, including marks; see `Field.read_box`."""
+        """Return the pixels of the square box around a disc, including pen marks, row by row, three bytes per pixel.
+
+        Args:
+            diameter: The disc's diameter in pixels.
+            col, row: The upper left corner of the box, which may be off the mat.
+        """
         pixels = Field.read_box(self, diameter, col, row)
         if not self._has_marks(diameter, col, row):
             return pixels

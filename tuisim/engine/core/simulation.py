@@ -288,9 +288,13 @@ class FurtherMotors(Simulation):
     __slots__ = ()
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
-        """Advance the simulation, and return how many ticks have been run; arguments as for `Motion.advance`.
+        """Advance the simulation, and return how many ticks have been run.
 
         While a motor that drives no wheel runs, the ticks are run one by one.
+
+        Args:
+            ticks: Number of ticks.
+            until_change: Whether to return earlier, as soon as a motor has ended a move.
         """
         done = 0
         self._report_turns()

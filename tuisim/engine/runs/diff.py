@@ -243,7 +243,11 @@ def find_first_difference_s(
     """Return the time in s at which the robots were first more than 1 mm or 1 degree apart; None if they never were.
 
     None does not mean that the runs are equal: one may have ended earlier, and only the time of both is compared.
-    Arguments as for `measure_divergence`.
+
+    Args:
+        left: Records of the first run, at least one.
+        right: Records of the second, at least one; if the tick rates differ, its poses are interpolated.
+        tick_hz: Ticks per second of each.
     """
     times, distance, turned = _measure_apart(left, right, tick_hz)
     is_apart = (distance > PARTED_MM) | (abs(turned) > PARTED_DEG)
@@ -255,7 +259,10 @@ def _measure_apart(
 ) -> tuple[_Series, ...]:
     """Return how far two robots are apart: times in s, distances in mm, differences of heading in degrees.
 
-    Arguments as for `measure_divergence`.
+    Args:
+        left: Records of the first run, at least one.
+        right: Records of the second, at least one; if the tick rates differ, its poses are interpolated.
+        tick_hz: Ticks per second of each.
     """
     import numpy as np
 

@@ -603,7 +603,7 @@ class RunHandle:
 def describe_falsified(what: str) -> str:
     """Return the summary of a run whose program has falsified its recording.
 
-    `what` says in words what in it cannot come from the simulation.
+    `what` names in words the part of the recording that cannot come from the simulation.
     """
     return f"the program has falsified its recording: {what}"
 

@@ -57,7 +57,12 @@ class MotorsWriter(MappedWriter):
         return self._map
 
     def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
-        """Rewrite the records of the first `ticks` ticks for another set of motors; see `MotorSink.arrange`."""
+        """Rewrite the records of the first `ticks` ticks for another set of motors.
+
+        Args:
+            sources: For each new motor the number that it had before; None for one that has been at rest.
+            ticks: How many ticks are recorded.
+        """
         before, after = self._size // MOTOR_RECORD.size, len(sources)
         recorded = self._map[HEADER_BYTES : HEADER_BYTES + ticks * self._size]
         arranged = arrange_records(recorded, before, sources, ticks)

@@ -311,7 +311,16 @@ def read_published_length(data: bytes, magic: bytes, file: str) -> int:
 
 
 def read_header(data: bytes, magic: bytes, file: str) -> tuple[int, int]:
-    """Return the size of a record and the length in a recording's header; errors as for `read_published_length`."""
+    """Return the size of a record and the length in a recording's header.
+
+    Args:
+        data: The contents of the file, or only its header.
+        magic: The bytes with which files of this kind begin.
+        file: The path of the file, for errors.
+
+    Raises:
+        LogError: the file is not such a recording, or of another version.
+    """
     if len(data) < HEADER_BYTES:
         raise LogError("too short to be a recording", file=file)
     file_magic, version, record_bytes, length = _HEADER.unpack_from(data)

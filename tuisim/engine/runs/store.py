@@ -455,7 +455,7 @@ def count_bytes(folder: Path) -> int:
 
 
 def _match(text: str, rows: Sequence[RunInfo]) -> RunInfo:
-    """Return the catalogue row that a text names; see `RunStore.find`.
+    """Return the one row that a text names: by its id or the start of it, by its number, or as `last`.
 
     Raises:
         LogError: no row matches, or more than one.

@@ -191,7 +191,7 @@ class TemporaryRun:
         """Do nothing: the folder is deleted at the end of the `with` block."""
 
     def load_run(self, folder: Path) -> StoredRun:
-        """Return the run in the folder, without its end; see `RunStore.load_run`.
+        """Return the run in the folder, without its end.
 
         Raises:
             LogError: the program has deleted it, or it is damaged.

@@ -617,5 +617,10 @@ class OutputView(_View):
 
 
 def open_views(folder: Path, is_checked: bool = False) -> tuple[TelemetryView, OutputView]:
-    """Return the telemetry and the output of a run folder; `is_checked` as for `_View`."""
+    """Return the telemetry and the output of a run folder.
+
+    Args:
+        folder: The run folder.
+        is_checked: Whether the program may have changed the files, as in a run that is running or falsified.
+    """
     return TelemetryView(folder, is_checked), OutputView(folder, is_checked)

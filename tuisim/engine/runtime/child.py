@@ -87,7 +87,9 @@ class KnownPrograms:
     def code(self, program: Program, drops_annotations: bool) -> types.CodeType | None:
         """Return the code of a program that is about to be run; None if the process of the run has to compile it.
 
-        `drops_annotations` is as for `compile_program`.
+        Args:
+            program: The program.
+            drops_annotations: Whether annotations are left out, not evaluated.
         """
         key = program.text, program.file, drops_annotations
         if len(program.text) > MAX_CHARACTERS:
@@ -321,7 +323,12 @@ class Child:
         self._known_programs = KnownPrograms()
 
     def expect(self, folder: Path, changes: Mapping[str, Any]) -> None:
-        """Set the run that comes next, without executing anything of its program; arguments as for `derive_config`."""
+        """Set the run that comes next, without executing anything of its program.
+
+        Args:
+            folder: The run folder.
+            changes: What is different from the run before, as the host sends it; see `derive_config`.
+        """
         self._config = config = derive_config(self._config, folder, changes)
         drops_annotations = config.spec.profile.motor_law.library.drops_annotations
         self._runner.code = self._known_programs.code(config.program, drops_annotations)

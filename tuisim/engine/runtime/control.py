@@ -122,10 +122,18 @@ class ControlledRun(Protocol):
         """Return the debugger; it is created on first use."""
 
     def check_stop(self, before_tick: bool = False) -> None:
-        """Raise `StopProgram` if the program has to stop; `before_tick` as for `Session.check_stop`."""
+        """Raise `StopProgram` if the program has to stop.
+
+        `before_tick` says whether a tick is about to run, and no code of the program comes before it.
+        """
 
     def ask_stop(self, end: End, summary: str) -> None:
-        """Record that the run has to end at the next call that checks for a stop; arguments as for `StopProgram`."""
+        """Record that the run has to end at the next call that checks for a stop.
+
+        Args:
+            end: How the run ends.
+            summary: One line for the user.
+        """
 
 
 class RunControl:

@@ -67,7 +67,12 @@ class ErrorHooks:
         self._own = sys.excepthook
 
     def report(self, error: BaseException, alone: bool = False) -> ErrorReport:
-        """Return the report of an error, with notes that may help; `alone` as for `report_error`."""
+        """Return the report of an error, with notes that may help.
+
+        Args:
+            error: The error.
+            alone: Whether to leave out notes, suggestions, and the errors that led to it.
+        """
         if not alone:
             add_prelude_note(error, self._source())
             add_namesake_note(error, self._session.program_file)

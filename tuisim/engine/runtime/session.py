@@ -181,7 +181,12 @@ class Session:
         return self._pen.field
 
     def spend(self, duration_ns: int, code: int = -1) -> None:
-        """Let simulated time pass, even while calls are free of charge; arguments as in `DeviceSession`."""
+        """Let simulated time pass, even while calls are free of charge.
+
+        Args:
+            duration_ns: How long.
+            code: What the program reads in this time, see `DeviceSession.note_reading`; -1 for nothing.
+        """
         until = self.now + duration_ns
         line = 0
         if self.flags or until > self._quick_ns:
@@ -267,7 +272,13 @@ class Session:
         self._pass(self.now + timeout_ns, True)
 
     def describe_part(self, port: str, part: str, role: str = "") -> PluggedPart:
-        """Return a description of a part that is plugged in now; arguments as for `PluggedPart`."""
+        """Return a description of a part that is plugged in now, with the present tick and line of the program.
+
+        Args:
+            port: The port, such as `in1`.
+            part: The name of the part's class, such as `ColorSensor`.
+            role: Which wheel a motor drives, as in `PluggedPart`; empty for none.
+        """
         from tuisim.engine.core.plugged import PluggedPart
 
         return PluggedPart(port, part, self.sim.tick, self.program_line(), role)
@@ -278,7 +289,7 @@ class Session:
             self.channel.send(Plugged(part.port, part.part, part.tick, part.line, part.role))
 
     def is_tried(self, error: type[Exception]) -> bool:
-        """Return whether the program would catch an error raised now; see `DeviceSession`."""
+        """Return whether the program would catch an error raised now, so that it only tests which devices there are."""
         # Imported on demand: few programs look for a device that is missing.
         from tuisim.engine.runtime.handlers import is_caught
 
@@ -286,13 +297,25 @@ class Session:
 
     @waits_for(Wait.SOUND)
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
-        """Record a sound, and block for `wait_ns`; the other arguments are as in `engine.protocol.Spoke`."""
+        """Record a sound, and block for `wait_ns` of simulated time.
+
+        Args:
+            text: The spoken text; in brackets for other sounds.
+            wait_ns: How long the call blocks.
+            tones: Successive tones as JSON, as in `engine.protocol.Spoke`; empty for speech.
+            file: Absolute path of the sound file; empty for other sounds.
+        """
         self.output.row(text, Stream.SPEECH)
         self.channel.send(Spoke(text, self.now, tones, file))
         self.spend(wait_ns)
 
     def show(self, row: str, stream: Stream) -> None:
-        """Record a row of output that describes what the brick shows; arguments as for `DeviceSession.show`."""
+        """Record what the brick shows, as a row of output in the format of `engine.runs.brick_state`.
+
+        Args:
+            row: The text of the row.
+            stream: The stream of the row, which says what part of the brick it is about.
+        """
         self.output.row(row, stream)
 
     def messages(self) -> list[Any]:
@@ -444,7 +467,13 @@ class Session:
         return self.stop_reason
 
     def ask_stop(self, end: End, summary: str, line: int = 0) -> None:
-        """Record that the run has to end at the next call that checks for a stop; arguments as for `StopProgram`."""
+        """Record that the run has to end at the next call that checks for a stop.
+
+        Args:
+            end: How the run ends.
+            summary: One line for the user.
+            line: The program's line that the summary is about; 0 for none.
+        """
         if self.stop_reason is None:
             self.stop_reason = StopProgram(end, summary, line)
             self.steering.begin_grace()

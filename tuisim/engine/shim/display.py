@@ -50,7 +50,12 @@ class Screen:
         self._shown: tuple[str, Stream] | None = None
 
     def show(self, row: str, stream: Stream) -> None:
-        """Record an image or a text if it differs from the last one; arguments as for `DeviceSession.show`."""
+        """Record an image or a text of the screen, as a row of output, if it differs from the last one.
+
+        Args:
+            row: The text of the row, in the format of `engine.runs.brick_state`.
+            stream: The stream of the row, which says whether it is an image or a text.
+        """
         if (row, stream) != self._shown:
             self._shown = (row, stream)
             self._session.show(row, stream)

@@ -102,7 +102,7 @@ def plain_font() -> ImageFont:
 
 
 def quiet_pillow(_module: types.ModuleType) -> None:
-    """Hide Pillow's deprecation warnings: the brick keeps its version of Pillow."""
+    """Hide Pillow's deprecation warnings, which do not matter to a program: on the brick, Pillow stays the same."""
     warnings.filterwarnings("ignore", r".* will be removed in Pillow ", DeprecationWarning)
 
 

@@ -160,7 +160,7 @@ class Plugs:
             return
         robot = session.sim.spec.robot
         wheels = (robot.left_port, robot.right_port)
-        # The program's text shows two pairs of motors, and one of them has been chosen as the wheels already.
+        # If the program's text names two pairs of motors, one of them has been chosen as the wheels already: keep it.
         if ports == wheels or {*ports, *wheels} <= {*session.shown_ports}:
             return
         if not all(self._is_there(part, port) or self._can_give_way(port) for port in ports):

@@ -73,7 +73,14 @@ class DeviceSession(Protocol):
         """
 
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
-        """Record a sound, and block for `wait_ns`; the other arguments are as in `engine.protocol.Spoke`."""
+        """Record a sound, and block for `wait_ns` of simulated time.
+
+        Args:
+            text: The spoken text; in brackets for other sounds.
+            wait_ns: How long the call blocks.
+            tones: Successive tones as JSON, as in `engine.protocol.Spoke`; empty for speech.
+            file: Absolute path of the sound file; empty for other sounds.
+        """
 
     def messages(self) -> list[Any]:
         """Return all answers of the notebook's responder, oldest first; wait for pending ones in no simulated time."""
@@ -90,7 +97,13 @@ class DeviceSession(Protocol):
         """Report to the process that started the run which parts have been plugged in."""
 
     def describe_part(self, port: str, part: str, role: str = "") -> PluggedPart:
-        """Return a description of a part that is plugged in now; arguments as for `PluggedPart`."""
+        """Return a description of a part that is plugged in now, with the present tick and line of the program.
+
+        Args:
+            port: The port, such as `in1`.
+            part: The name of the part's class, such as `ColorSensor`.
+            role: Which wheel a motor drives, as in `PluggedPart`; empty for none.
+        """
 
     def is_tried(self, error: type[Exception]) -> bool:
         """Return whether the program would catch an error raised now, so that it only tests which devices there are."""

@@ -129,7 +129,7 @@ def limit_duty(motor: ServoMotor, _time_ns: int, values: Values) -> None:
 
 
 def set_control(motor: ServoMotor, _time_ns: int, values: Values) -> None:
-    """Change a setting of a motor's controller; values as for `_change_setting`."""
+    """Change one setting of a motor's controller; `values` are the setting's index in `SETTINGS` and its new value."""
     _change_setting(motor.control, values)
 
 

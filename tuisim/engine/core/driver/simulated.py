@@ -75,18 +75,37 @@ def _find_hub_plant(kind: str) -> PlantSpec:
 
 
 def build_motor(spec: RunSpec, kind: str, *, free: bool) -> SimulatedMotor:
-    """Return a motor with a driver, in its initial state; arguments as for `choose_plant`."""
+    """Return a motor with a driver, in its initial state.
+
+    Args:
+        spec: The run.
+        kind: One of `MOTOR_KINDS`.
+        free: Whether the motor drives no wheel; otherwise it carries a wheel with its share of the robot.
+    """
     plant = choose_plant(spec, kind, free=free)
     return SimulatedMotor(spec.profile.tick_hz, kind, plant, spec.robot.battery_v)
 
 
 def build_axle(spec: RunSpec, kind: str, *, free: bool) -> Axle:
-    """Return the axle of a motor that is not controlled by the EV3 driver; arguments as for `choose_plant`."""
+    """Return the axle of a motor that is not controlled by the EV3 driver.
+
+    Args:
+        spec: The run.
+        kind: One of `MOTOR_KINDS`.
+        free: Whether the motor drives no wheel; otherwise it carries a wheel with its share of the robot.
+    """
     return Axle(choose_plant(spec, kind, free=free), spec.robot.battery_v)
 
 
 def change_load(axle: Axle, spec: RunSpec, kind: str, *, free: bool) -> None:
-    """Change the load of an axle to that of a motor with or without a wheel; arguments as for `choose_plant`."""
+    """Change the load of an axle to that of a motor with or without a wheel.
+
+    Args:
+        axle: The axle.
+        spec: The run.
+        kind: The kind of motor, one of `MOTOR_KINDS`.
+        free: Whether the motor drives no wheel now; otherwise it carries a wheel with its share of the robot.
+    """
     axle.change_load(choose_plant(spec, kind, free=free), spec.robot.battery_v)
 
 
@@ -212,7 +231,7 @@ class SimulatedMotor(DriverMotor):
         return -(-tick * NS_PER_S // self._hz)
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Advance the motor by one tick; return the rotation of the wheel in degrees. Arguments as for `Motor.step`."""
+        """Run the tick `tick` with noise added to the motor's speed; return the rotation of the wheel in degrees."""
         end_ns = self._end_ns(tick)
         if self._cruise_dps:
             if end_ns < self._cruise_end_ns and not noise_dps:
@@ -332,7 +351,7 @@ class SimulatedMotor(DriverMotor):
         return Glide([even.roll_deg] * ticks, counts_deg)
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Return the rotation of the wheel in several ticks of constant speed; see `Motor.glide_evenly`."""
+        """Return how the motor moves in several ticks of constant speed; the caller sets `position_deg` afterwards."""
         self._tick += ticks
         turned_deg = self._cruise_dps / self._hz
         if not turned_deg:
@@ -351,7 +370,10 @@ class SimulatedMotor(DriverMotor):
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
         """Set the axle to the angle at which an obstacle stopped it in the last tick.
 
-        The arguments are as for `Motor.hold_back`.
+        Args:
+            before: The motor's `state` before the tick.
+            turned_deg: How far the wheel would have turned in the tick.
+            part: The part of the tick that was possible, below 1.
         """
         if turned_deg == 0.0:
             return

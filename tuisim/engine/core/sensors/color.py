@@ -82,7 +82,7 @@ class ColorReading:
 
     @property
     def code(self) -> int:
-        """Colour code of the reading, see `find_color_code` and `find_brick_color_code`."""
+        """Colour code of the reading, from 0 to 7; by the rules of the brick if `is_bricks` is set."""
         return find_brick_color_code(*self.rgb) if self.is_bricks else find_color_code(*self.rgb)
 
     @property

@@ -121,7 +121,10 @@ def remote(
 def compute_remote_bits(time_s: float, world: WorldSpec, by_hand: Collection[str] = ()) -> int:
     """Return the remote control's buttons that are pressed on channel 1, as bits of the sensor's mode `IR-REM-A`.
 
-    The arguments are as for `remote`.
+    Args:
+        time_s: Simulated time, which selects the presses that are part of the world.
+        world: The world.
+        by_hand: Names of buttons that a user presses; if there are any, the presses of the world are ignored.
     """
     pressed = _find_pressed(1, time_s, world, by_hand)
     return _REM_A_NONE + sum(_REM_A_BUTTONS.get(button, 0) for button in pressed)

@@ -395,6 +395,8 @@ class Controller:
     def lets_go(self, now_us: int, rate: int) -> bool:
         """Return whether a motor whose motion has ended stops following this controller.
 
-        The arguments are as for `motor.Guide.lets_go`.
+        Args:
+            now_us: The present time.
+            rate: The rate of the motor as the firmware measures it, in counts per second.
         """
         return self.done(now_us, self.milli(now_us), rate if self.settings.speed_window_ms else 0)

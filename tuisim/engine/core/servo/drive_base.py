@@ -207,10 +207,7 @@ class DriveBase:
         return windowed and self._ending in (Ending.COAST, Ending.BRAKE)
 
     def lets_go(self, now_us: int, _rate: int) -> bool:
-        """Return whether a motor whose motion has ended stops following this drive base.
-
-        The arguments are as for `motor.Guide.lets_go`.
-        """
+        """Return whether a motor whose motion has ended stops following this drive base at a time in µs."""
         return self.done(now_us)
 
     @property
@@ -325,7 +322,12 @@ class DriveBase:
         self._take(Ending.HOLD)
 
     def stop(self, now_us: int, duty: int | None) -> None:
-        """Stop controlling the motors, and run them with a constant power; `duty` is as for `ServoMotor.run_freely`."""
+        """Stop controlling the motors, and run them with a constant power.
+
+        Args:
+            now_us: The present time.
+            duty: The power in hundredths of a percent; 0 brakes the motors, None lets them coast.
+        """
         for motor in self.motors:
             motor.run_freely(now_us, duty)
         self.distance.release()

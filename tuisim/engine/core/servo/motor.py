@@ -326,7 +326,13 @@ class ServoMotor:
         return self.mode, self.sign, 0.0, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which an obstacle stopped the wheel; arguments as for `Motor.hold_back`."""
+        """Undo the rest of a tick in which an obstacle stopped the wheel.
+
+        Args:
+            before: The motor's `state` before the tick.
+            turned_deg: How far the wheel would have turned in the tick.
+            part: The part of the tick that was possible, below 1.
+        """
         if turned_deg == 0.0:
             return
         position_deg = before[-1]
@@ -397,7 +403,7 @@ class ServoMotor:
         return next_deg <= self._fastest_deg and fastest_dps * self._tick_s <= self._fastest_deg
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Return how the motor moves in several ticks in which it is at rest; see `Motor.glide_evenly`."""
+        """Return how the motor moves in several ticks at rest; the caller sets `position_deg` afterwards."""
         return EvenGlide(0.0, repeat(self.position_deg, ticks))
 
     def glide(self, ticks: int) -> Glide:
@@ -420,7 +426,7 @@ class ServoMotor:
         return Glide(turns, positions[1:])
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Advance the motor by one tick; return the rotation of the wheel in degrees. Arguments as for `Motor.step`."""
+        """Run the tick `tick` with noise added to the motor's speed; return the rotation of the wheel in degrees."""
         self._tick = tick
         if self.mode == STOPPED:
             return 0.0

@@ -104,7 +104,7 @@ class System(Connected):
         return self._name
 
     def info(self) -> dict[str, Any]:
-        """Return the hub's name, reset reason, connections and start of the program, by the firmware's keys."""
+        """Return a dictionary of the hub's name, reset reason, connections and start, by the firmware's keys."""
         return {
             "name": self._name,
             "reset_reason": 0,

@@ -71,7 +71,7 @@ class Canvas(Connected):
         return pillow.new(MODE, (self.width, self.height), WHITE)
 
     def changed(self) -> None:
-        """Display the canvas if it is the screen. Count this as a command; see `Brick.command`."""
+        """Display the canvas if it is the screen; count this as a command, which takes no simulated time."""
         session = self.brick.session
         session.command()
         if not self._shown:

@@ -93,7 +93,7 @@ class DCMotor(Connected):
         self.brick.tell(self.brick.session.sim.find_number(self.simulated), call, *values)
 
     def _command(self) -> None:
-        """Count a command to the motor, see `Brick.command`, and check that no drive base uses the motor.
+        """Count a command to the motor, which takes no simulated time, and check that no drive base uses the motor.
 
         Raises:
             OSError: a drive base moves or holds the motor.

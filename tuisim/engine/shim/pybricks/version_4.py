@@ -75,7 +75,7 @@ class Motor(motor.Motor):
             self.control.pid(*kind.compute_gains(tolerance)[:2])
 
     def _command(self) -> None:
-        """Count a command to the motor, see `Brick.command`.
+        """Count a command to the motor, which takes no simulated time.
 
         If a drive base moves or holds the motor, stop the drive base, so that both its motors coast.
         """

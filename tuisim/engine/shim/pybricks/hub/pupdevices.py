@@ -128,7 +128,10 @@ class ColorSensor(Sensor):
         return self._read_hsv(surface, lambda measured: Color(*measured))
 
     def color(self, surface: bool = True) -> Any:
-        """Return the detectable colour that is nearest to what the sensor sees; `surface` is as for `hsv`."""
+        """Return the detectable colour that is nearest to what the sensor sees.
+
+        `surface` says whether the sensor's own light is on; without it, the ambient light is measured, as a grey.
+        """
         return self._read_hsv(surface, lambda measured: find_nearest(measured, self._colors))
 
     def detectable_colors(self, colors: Any = None) -> Sequence[Any] | None:
