@@ -92,7 +92,7 @@ def check(goals_path: str, words: Sequence[str], as_json: bool) -> int:
 
 
 def _iterate_names(word: str, store: RunStore) -> Iterator[str]:
-    """Yield the names of the runs that a word means: the word itself or, for a range such as `3..7`, existing numbers.
+    """Yield the names of the runs that a word means: the word or, for a range such as `3..7`, the existing runs in it.
 
     Raises:
         ConfigError: no run is in the range.

@@ -33,7 +33,7 @@ _VALID_NAME = re.compile(r"[a-z0-9_-][a-z0-9._-]*")
 
 @dataclass(frozen=True, slots=True)
 class InstalledKernel:
-    """An installed tuisim kernel."""
+    """A tuisim kernel that is installed in Jupyter: its names, its Python, and its folder."""
 
     name: str
     display_name: str

@@ -45,7 +45,7 @@ class RelayInterrupts:
         """Handle a signal: stop the run.
 
         Raises:
-            KeyboardInterrupt: it is the second signal.
+            KeyboardInterrupt: this is the second signal.
         """
         if self.exit_code:
             if self._handle is not None and self._handle.ended is None:

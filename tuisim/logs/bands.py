@@ -74,7 +74,7 @@ Column = NDArray[Any] | Sequence[str]
 
 @dataclass(frozen=True, eq=False)
 class BandReport:
-    """The bands of one variable."""
+    """The bands that were found in one variable of a log, as columns."""
 
     variable: str
     columns: Mapping[str, Column]

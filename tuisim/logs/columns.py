@@ -283,10 +283,9 @@ def _list_moments(table: pa.Table) -> list[str]:
 def guess_columns(table: pa.Table) -> Layout:
     """Return the roles of the columns as guessed from their names and types.
 
-    The time is the column with the most certain name for it. Without such a name, it is a column with a type for times;
-    if no column has a name, it is the first column if its numbers rise; else it is the number of the row. A text column
-    with a known name next to a column `value` has the names of variables; otherwise every other numeric column is a
-    variable.
+    The time is the first that exists of these: the column whose name most certainly means a time; a column with a type
+    for times; in a table without headings, the first column, if its numbers rise; the number of the row. A text column
+    with a known name beside a column `value` has the names of variables; else each other numeric column is a variable.
     """
     names = table.column_names
     named = _find_named_time(table)

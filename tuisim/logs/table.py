@@ -82,7 +82,7 @@ class TableView:
 
 
 class Rows:
-    """The rows and columns of a log that the table shows."""
+    """The rows and columns of a log that the table shows, with the selected column, the order and the filters."""
 
     def __init__(self, log: Log) -> None:
         self._log = log

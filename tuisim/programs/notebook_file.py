@@ -27,7 +27,7 @@ _HEADING = re.compile(r"#+\s+(.*\S)")
 
 @dataclass(frozen=True, slots=True)
 class NotebookProgram:
-    """A cell of a notebook that is a program."""
+    """A program in a cell of a notebook, with the world that the cells before it have set."""
 
     number: int
     """From 1, among the program cells."""

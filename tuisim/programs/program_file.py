@@ -151,7 +151,7 @@ _DOCSTRING = re.compile(r"[rRuU]?(\"\"\"|'''|\"|')")
 
 @dataclass(frozen=True, slots=True)
 class Magic:
-    """A program's magic line."""
+    """A program's magic line, parsed: the number of the line, the prelude that it selects, and its options."""
 
     line: int
     """From 1."""
@@ -164,7 +164,7 @@ class Magic:
 
 @dataclass(frozen=True, slots=True)
 class ProgramSource:
-    """A program as read from its file."""
+    """A program as read from its file, with the options of its magic line."""
 
     program: Program
     options: Mapping[str, Any] = field(default_factory=dict)
@@ -176,7 +176,7 @@ class ProgramSource:
 
 
 class ProgramFile(NamedTuple):
-    """The file of an example program."""
+    """The file of an example program, with its name and its title."""
 
     name: str
     """File name, such as `log_greys.py`."""

@@ -458,9 +458,8 @@ def choose_robot(source: ProgramSource, name: str) -> ProgramRobot:
 def _read_run_facts(source: ProgramSource) -> SourceFacts:
     """Return the facts in the source of a program that apply to its run.
 
-    A program for the course that uses the default robot's parts on the same ports has no robot of its own: other sizes,
-    sides and mountings in its text are ignored. They apply only for Pybricks, and for programs with the rules of a
-    brick.
+    A program of the course that uses the default robot's parts on the same ports runs on the default robot: other
+    sizes, sides and mountings in its text apply only if it uses Pybricks, or has the rules of a real brick.
     """
     facts = read_source_facts(source.program)
     brings_rules = facts.library is Library.PYBRICKS or _has_brick_rules(source, facts)

@@ -114,9 +114,9 @@ class Surroundings:
         return _UNKNOWN, ""
 
     def name_file(self, text: str) -> str:
-        """Return the file of these surroundings if a text that `find` returned is its text.
+        """Return the name of these surroundings' file if `text`, from `find`, is the text of that file.
 
-        The result is empty for another cell's text.
+        The result is empty if `text` is that of another notebook cell.
         """
         return self.file if text.rstrip() == self._text.rstrip() else ""
 
@@ -198,9 +198,9 @@ class Surroundings:
 
 
 def compute(expression: ast.expr, values: Mapping[str, Any]) -> str | None:
-    """Return the value of an expression as text of `ValueWriter`; None if the expression uses other names.
+    """Evaluate an expression; return its value as the text of an expression, as `ValueWriter` writes it.
 
-    The expression may use constants, `math`, and classes that only store their values.
+    The result is None if the expression uses anything but constants, `math` and classes that only store their values.
     """
     for node in ast.walk(expression):
         match node:

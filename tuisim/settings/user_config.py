@@ -41,7 +41,7 @@ MAX_KEYS = 10
 
 
 class Section(StrEnum):
-    """The tables of `config.toml`."""
+    """A table of `config.toml`: defaults of runs, defaults of the app, or keys."""
 
     SIMULATION = "simulation"
     APP = "app"
@@ -59,7 +59,7 @@ ABOUT: Mapping[Section, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """A setting of `config.toml`."""
+    """A setting that `config.toml` can contain: its table and name, the values that are allowed, and its default."""
 
     section: Section
     name: str
@@ -108,7 +108,7 @@ SETTINGS: Mapping[str, Setting] = {
 
 @dataclass(frozen=True, slots=True)
 class UserConfig:
-    """The contents of `config.toml`."""
+    """The contents of `config.toml`: the settings in it, and its faults."""
 
     path: Path
     written: Mapping[str, Scalar] = field(default_factory=dict)

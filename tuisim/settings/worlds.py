@@ -92,7 +92,7 @@ Resolver = Callable[[str], str]
 
 @dataclass(frozen=True, slots=True)
 class WorldFile:
-    """The contents of a world file."""
+    """The contents of a world file: the settings of a run, and perhaps the program to run in the world."""
 
     path: Path
     settings: Mapping[str, Any]

@@ -58,7 +58,7 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class VariableStatistics:
-    """Statistics of the samples of one variable."""
+    """Statistics of the samples that a run printed of one variable, in the variable's unit."""
 
     last: float
     count: int

@@ -65,7 +65,7 @@ def describe_robot(built: BuiltRobot) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ProgramRobot:
-    """The robot that a program needs, for a robot file."""
+    """The robot that a program needs, which can be written as a robot file with the reason for each value."""
 
     program: str
     """The name of the program."""

@@ -82,7 +82,7 @@ class Scope:
         return self.outer.owner if self.outer is not None else None
 
     def find_bindings(self, name: str) -> list[Binding]:
-        """Return the bindings of a name that this scope uses; empty if the program does not bind it."""
+        """Return the bindings of a name, as this scope sees it; empty if the program does not bind the name."""
         scope: Scope | None = self
         while scope is not None:
             # Methods do not see the names in the body of their class, so that scope is skipped.

@@ -56,7 +56,7 @@ MAX_NAME_CHARACTERS = 500
 
 @dataclass(frozen=True, slots=True)
 class Module:
-    """One file of a program."""
+    """One file of a program, the main program or a module that it imports, with its syntax tree."""
 
     name: str
     """As it is imported, with dots; empty for the program itself."""

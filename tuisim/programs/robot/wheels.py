@@ -281,7 +281,7 @@ _SPACINGS_MM = (50.0, 350.0)
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """A length in a program, with its line."""
+    """A length of a wheel or axle in a program, in mm, with the line of the program."""
 
     mm: float
     where: Where | None = None

@@ -17,7 +17,7 @@ GOAL = "goal_"
 
 
 class GoalState(StrEnum):
-    """The state of a goal at an instant of a run."""
+    """The state of a goal at an instant of a run: open, met or missed; unknown if it cannot be judged."""
 
     OPEN = "open"
     MET = "met"

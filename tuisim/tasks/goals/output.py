@@ -191,7 +191,7 @@ def _explain_fault(
 def _speed_mm_s(tick: int, evidence: Evidence) -> float:
     """Return the lowest speed of the robot in mm/s in the `_STOP_TICKS` ticks that begin with `tick`.
 
-    A robot that brakes when a line is printed may take so long to stop.
+    A robot that brakes when a line is printed may need so many ticks to stop.
     """
     ticks = range(max(0, tick), min(tick + _STOP_TICKS, len(evidence.records)))
     return min(
@@ -433,9 +433,9 @@ def _explain_missing_level(
 
 
 def _explain_form_fault(name: str, evidence: Evidence) -> str:
-    """Return, to follow a sentence, why a printed line is not a sample though it has the variable's name and a number.
+    """Return a sentence on a printed line that has a variable's name and a number, and yet is not a sample.
 
-    The result is empty if no such line was printed.
+    The sentence begins with a blank. It is empty if no such line was printed.
     """
     like = re.compile(rf"(?:.*\W)?{re.escape(name)}\s*(?:[:=]\s*)?[+-]?\.?\d").match
     row = next(

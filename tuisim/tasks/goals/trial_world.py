@@ -75,7 +75,7 @@ class TrialWorld:
         return (*(own.pop(goal.name, goal) for goal in goals), *own.values())
 
     def beside(self, first: TrialWorld) -> TrialWorld:
-        """Return a copy of this world that also has the settings, goals and inputs of the first world that it lacks."""
+        """Return a copy of this world in which missing settings, goals and inputs are those of the first world."""
         return replace(
             self,
             settings={**first.settings, **self.settings},
@@ -141,7 +141,7 @@ def parse_other_worlds(
 
 
 def check_names(names: Sequence[str], known: Collection[str], location: Location) -> None:
-    """Check the names of goals in the key `goals` of a world's table.
+    """Check that the names in the key `goals` of a world's table are names of goals.
 
     Raises:
         ConfigError: a name is not among the known ones.

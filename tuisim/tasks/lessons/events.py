@@ -214,9 +214,9 @@ def _is_answer(question: QuestionCheck, text: str, answer: float | str) -> bool:
 
 
 def explain_unready(question: QuestionCheck, event: Typed) -> str:
-    """Return in a sentence what a student must do before a typed answer is checked; empty if nothing.
+    """Return in a sentence what a student must do before a typed answer is checked; empty if the answer can be checked.
 
-    An id of an action in braces stands for its key.
+    An action id in braces stands for the action's key.
     """
     if question.run and not event.has_run:
         return "Run the program first: the question is about that run."

@@ -33,7 +33,7 @@ class StepState(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class StepProgress:
-    """A student's progress on one step of a lesson."""
+    """A student's progress on one step of a lesson: its state and date, the wrong tries, and the hints shown."""
 
     state: StepState = StepState.OPEN
     at: str = ""
@@ -46,7 +46,7 @@ class StepProgress:
 
 @dataclass(frozen=True, slots=True)
 class LessonProgress:
-    """A student's progress on one lesson."""
+    """A student's progress on one lesson: that of each step, by the step's name, and when the lesson was opened."""
 
     steps: Mapping[str, StepProgress] = field(default_factory=dict)
     """By the name of the step."""

@@ -296,7 +296,7 @@ class WrongProgram:
 
 @dataclass(frozen=True, slots=True)
 class LessonStep:
-    """One step of a lesson."""
+    """One step of a lesson: its text, the check that the student must pass, hints, and model and wrong answers."""
 
     name: str
     """Identifies it in the progress of a student."""
@@ -345,7 +345,7 @@ class LessonStep:
 
 @dataclass(frozen=True, slots=True)
 class Lesson:
-    """A lesson, as read from its file."""
+    """A lesson, as read from its file: texts, steps, goals, the program to complete, and the settings of the world."""
 
     name: str
     """From the file name, such as `first-run` from `01-first-run.md`."""

@@ -39,7 +39,7 @@ _BLANK = frozenset({tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT})
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A token of a program, for the comparison of programs."""
+    """A token of a program with its line; programs are compared by the kinds of their tokens."""
 
     kind: str
     """The same for all names, all numbers and all texts."""

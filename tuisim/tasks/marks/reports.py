@@ -134,7 +134,7 @@ def _write(path: Path, content: str) -> None:
 
 
 def _load_stored(store: RunStore, run_id: str) -> StoredRun | None:
-    """Return a run; None if it no longer exists, or is too large for a report."""
+    """Return the stored run with an id; None if it no longer exists, or is too large for a report."""
     try:
         run = store.load_run(run_id)
         return run if run.output.length <= MAX_OUTPUT_BYTES else None

@@ -64,7 +64,7 @@ class RunEntry:
 
 @dataclass(frozen=True, slots=True)
 class _Turn:
-    """One planned run of one student's program."""
+    """One planned run of one student's program: the seed, the world and the options."""
 
     entry: RunEntry
     seed: int

@@ -51,7 +51,7 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class SheetRow:
-    """The marks of one student."""
+    """The marks of one student: points in total and for each goal, and why runs failed."""
 
     name: str
     program: str
@@ -92,7 +92,7 @@ class SheetRow:
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """The marks of a class."""
+    """The marks of a class for one task: the goals that are shown, the seeds, and a row for each student."""
 
     title: str
     columns: tuple[Goal, ...]

@@ -276,7 +276,10 @@ def _describe_earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
 
 
 def _write_fakes(task: GoalsFile, folder: Path) -> Iterator[tuple[TrialRole, Student]]:
-    """Yield programs that do not do the task: an empty one, one that waits, and one that prints the goals' lines."""
+    """Write programs that do not do the task into a folder, and yield each as a student, with its kind.
+
+    They are an empty program, one that waits, and one that prints the lines that the goals require.
+    """
     still = f"import time\n\ntime.sleep({STILL_S:g})\n"
     texts = {TrialRole.EMPTY: "", TrialRole.STILL: still}
     if lines := answer_lines(task.goals):
@@ -293,7 +296,7 @@ def _write_fakes(task: GoalsFile, folder: Path) -> Iterator[tuple[TrialRole, Stu
 def _list_author_programs(
     task: GoalsFile, wrong: Sequence[str]
 ) -> Iterator[tuple[TrialRole, Student]]:
-    """Yield the model and the wrong examples of a task's author, as students.
+    """Yield the model and the wrong examples of a task's author as students, each with its kind.
 
     Raises:
         ConfigError: a program is missing, or is not valid Python.

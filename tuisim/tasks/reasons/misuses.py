@@ -139,9 +139,9 @@ def _compare(use: LoopEnd, series: Series) -> Array:
 
 
 def _find_next_reading(data: RunData, line: int, tick: int) -> int:
-    """Return the tick of the next reading after `tick` of a port that the line reads.
+    """Return the tick, after `tick`, of the next reading of a port that a line of the program reads.
 
-    Without one, return the number of ticks.
+    If there is no further reading, the result is the number of ticks in the recording.
     """
     ports = np.unique(data.readings["port"][data.readings["line"] == line])
     ticks = data.reading_ticks[np.isin(data.readings["port"], ports)]

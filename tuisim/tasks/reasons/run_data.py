@@ -228,9 +228,9 @@ class RunData:
     def _measure_wheel(
         self, loop: LoopEnd, wheel: str, port: str, records: Array, ticks: Array
     ) -> Series | None:
-        """Return what a loop would read of a wheel's motor in some records.
+        """Return the values that a loop would read from a wheel's motor in some records.
 
-        The result is None if it reads neither its position nor its speed.
+        The result is None if the loop reads neither the position nor the speed of the motor.
 
         Args:
             loop: The loop, or another comparison.
@@ -282,9 +282,9 @@ class RunData:
         return values
 
     def _find_wheel(self, ports: list[str]) -> str:
-        """Return `left` or `right` if there is one port, and it is that of the left or the right wheel's motor.
+        """Return `left` or `right` if `ports` is only the port of the left or of the right wheel's motor.
 
-        The result is empty for other ports, or if the wheels have gears.
+        The result is empty for other ports, and if the wheels have gears.
         """
         robot = self.run.spec.robot
         wheels = {robot.left_port: "left", robot.right_port: "right"}

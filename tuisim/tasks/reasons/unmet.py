@@ -277,7 +277,7 @@ class _Search:
     def _describe(self, loop: LoopEnd, stay: tuple[int, int]) -> str:
         """Return as text what a loop waited for and what it read.
 
-        The result is empty if its condition was met, or if that is not known.
+        The result is empty if the loop's condition was met, or if that is not known.
 
         Args:
             loop: The loop.
