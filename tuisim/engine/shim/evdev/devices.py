@@ -129,15 +129,15 @@ class SynEvent:
 
 
 class RelEvent(SynEvent):
-    """A relative movement, such as that of a mouse."""
+    """An event with a relative movement, such as that of a mouse."""
 
 
 class AbsEvent(SynEvent):
-    """An absolute position, such as that of a joystick."""
+    """An event with an absolute position, such as that of a joystick."""
 
 
 class KeyEvent(SynEvent):
-    """A press or release of a key."""
+    """An event with a press or release of a key."""
 
     key_up, key_down, key_hold = 0, 1, 2
 

@@ -130,7 +130,13 @@ class AttributeFile(DeviceFile):
             self._device.is_opened = True
 
     def read(self, opened: OpenFile, size: int) -> bytes:
-        """Return the value as text with an end of line; a value of bytes is returned unchanged."""
+        """Return up to `size` bytes of the attribute's value, all bytes for a negative size.
+
+        A value is read as text with an end of line; a value of bytes is read unchanged.
+
+        Raises:
+            OSError: the driver's error.
+        """
         if not opened.at:
             try:
                 value = self._device.read(self._name)

@@ -104,9 +104,9 @@ class DriveBase(Connected):
         return self.brick.finish(self._wait_for_end(call), self.stop) if wait else None
 
     def _wait_for_end(self, call: str) -> Waiting[None]:
-        """Wait until a move is over; print a message once if something blocks the wheels.
+        """Wait until a move is over: yield the times in microseconds at which to check again.
 
-        `call` is the call that waits, for the message.
+        If something blocks the wheels, print a message once; `call` is the call that waits, for this message.
         """
         base = self._base
 

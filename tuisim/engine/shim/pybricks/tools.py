@@ -28,10 +28,9 @@ def wait(time: float) -> None:
 
 
 def wait_until(end_us: int) -> Waiting[None]:
-    """Wait until a simulated time in microseconds.
+    """Wait until a simulated time in microseconds: yield that time, until which the caller has to let time pass.
 
-    Yield `end_us`, and yield it again if a motor ends a move before that time, so that the caller would go on too
-    early.
+    Yield it again if a motor ends a move before that time, so that the caller would go on too early.
     """
     if Connected.brick.command() == end_us:
         yield end_us
