@@ -167,7 +167,7 @@ class OpenedLog:
         return (find_notes_file(file),) if file.is_file() else ()
 
     def stamp(self) -> object:
-        """Return an object that is equal to that of an earlier call if the log's source has not grown since then."""
+        """Return an object that equals the one from an earlier call if the log's source has not grown in between."""
         if self.runs:
             return tuple(
                 (run.telemetry.count if self.request.telemetry else run.output.length)

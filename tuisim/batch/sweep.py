@@ -174,7 +174,7 @@ def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -
 
 
 def _read(name: str, value: Any) -> Any:
-    """Return a cell of a stored table with its original type.
+    """Return a cell of a stored table with its original type; None for NaN.
 
     A whole number is stored as a float if other cells of its column are empty.
 

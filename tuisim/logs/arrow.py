@@ -135,7 +135,7 @@ def sort_places(column: pa.ChunkedArray, descending: bool) -> IntArray:
 
 
 def format_cell(cell: pa.Scalar) -> str:
-    """Return a cell as text; a time span in seconds."""
+    """Return a cell as text, empty for a missing value; a time span is given in seconds."""
     if pa.types.is_duration(cell.type):
         # `as_py` is avoided, as it imports pandas, which takes longer than drawing a whole screen.
         return f"{cell.value / PER_S[cell.type.unit]:.3f}" if cell.is_valid else ""

@@ -154,7 +154,10 @@ def _list_names(log: Log) -> list[str]:
 
 
 def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
-    """Return the columns that can be computed for a log of telemetry: functions by the names of the columns."""
+    """Return the columns that can be computed for a log of telemetry, by name: functions that return their values.
+
+    The result is empty for other logs.
+    """
     if (spec := read_spec(log.metadata)) is None:
         return {}
     return find_lacking_columns(spec, list_numeric_columns(log.table.schema), log.numbers)

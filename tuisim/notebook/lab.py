@@ -81,10 +81,10 @@ class Lab:
 
     @property
     def responder(self) -> Callable[[str], object] | None:
-        """The function that collaborative mode calls with each line printed for the notebook, without `PY::`.
+        """The function that is called with each line that a program prints for the notebook, without `PY::` in front.
 
-        A return value other than None is an answer; `pyState()` in the program returns all of them.
-        The function replaces a `pyresponder`.
+        A return value other than None is an answer; `pyState()` in the program returns all answers. None for no
+        function. Setting it removes a `pyresponder`.
         """
         return None if self._in_texts else self._responder
 
@@ -95,10 +95,10 @@ class Lab:
 
     @property
     def pyresponder(self) -> Callable[[str], object] | None:
-        """The old simulator's responder: called with whole lines, `PY::` included, or with `IMG_DATA::` and JSON.
+        """The function that is called as in the old simulator: with whole lines that begin with `PY::` or `IMG_DATA::`.
 
-        Its answers are shown below a heading; the program gets the JSON of those that begin with `JSON::`.
-        The function replaces a `responder`.
+        Its answers are shown below a heading; of answers that begin with `JSON::`, the program gets the JSON. None for
+        no function. Setting it removes a `responder`.
         """
         return self._responder if self._in_texts else None
 

@@ -18,14 +18,14 @@ _OWN_NAMES = (ast.Lambda, ast.ClassDef, ast.ListComp, ast.SetComp, ast.DictComp,
 
 
 def map_line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ...]]:
-    """Return the variables to show beside the lines of a paused program: those that a line has assigned, by its number.
+    """Return the variables to show beside the lines of a paused program, by line number: those that the line assigned.
 
     If several lines assign a variable, above the current line or in a loop around it, only the line that ran last and
     the current line are included. A line that assigns a constant is left out if the variable now has another value.
 
     Args:
         text: The program that runs.
-        inspected: Where it is paused. It has the variables of the selected function, and those of the program itself.
+        inspected: The state of the paused program: its stack, the variables of the selected function, and its globals.
     """
     tree = parse(text)
     frame = inspected.stack[inspected.frame] if inspected.frame < len(inspected.stack) else None

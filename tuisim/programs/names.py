@@ -334,6 +334,8 @@ def _list_prelude_names(prelude: str) -> frozenset[str]:
 def _build_hint(name: str, follows: str, own: set[str], within: Mapping[str, str]) -> str:
     """Return a hint on what to write for a name that is not defined, such as an import or a similar name.
 
+    The hint is empty if nothing fits.
+
     Args:
         name: The name.
         follows: The character after the name.

@@ -238,7 +238,11 @@ def _is_line(condition: FollowCondition, percent: Array) -> Array:
 
 
 def _find_longest_gap(on_line: Array) -> int:
-    """Return the index at which the longest stretch of ticks off the line begins."""
+    """Return the index at which the longest stretch of ticks off the line begins; 0 if there is none.
+
+    Args:
+        on_line: Whether the robot is on the line, at each tick, shape (n,).
+    """
     import numpy as np
 
     edges = np.flatnonzero(np.diff(np.concatenate(([True], on_line, [True])).astype("i1")))

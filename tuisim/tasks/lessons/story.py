@@ -19,8 +19,10 @@ from tuisim.tasks.goals.spec import (
 def build_story(judgements: Iterable[Judgement]) -> str:
     """Return when and where a run met goals, such as `Your run: line 3 printed it at 5.42 s, at x = 1153 mm.`
 
+    The text is empty if the run met none, or if only the program's text decided on them.
+
     Args:
-        judgements: Those of the goals of the step.
+        judgements: The judgements of the goals of the step.
     """
     parts = dict.fromkeys(
         part for each in sorted(judgements, key=_time_s) for part in _list_parts(each)

@@ -69,7 +69,7 @@ class Journal:
             raise self._build_error(error) from error
 
     def _read(self) -> dict[str, Outcome]:
-        """Return the outcomes in the file by key, without incomplete lines that an interrupted process has written."""
+        """Return the outcomes in the file by key; incomplete lines of an interrupted process are left out."""
         outcomes = {}
         try:
             lines = self._path.read_bytes().split(b"\n")

@@ -191,6 +191,7 @@ def compute_distribution(sheet: Sheet) -> tuple[tuple[float, float, int], ...]:
     """Divide the scale of points into equal parts; return for each its lower end, upper end and number of students.
 
     A student at the border of two parts counts in the upper part, a student beyond the scale in the first or last part.
+    The result is empty if no points can be earned, or no student's points are known.
     """
     max_points = sheet.most_points
     known = [row.points for row in sheet.rows if not math.isnan(row.points)]

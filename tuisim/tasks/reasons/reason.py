@@ -146,7 +146,7 @@ def _rank(reason: Reason, reasons: Sequence[Reason]) -> ReasonKind:
 
 
 def _find_line(run: StoredRun, time_s: float) -> int:
-    """Return the number of the program's line that ran at a time."""
+    """Return the number of the program's line that ran at a time, in simulated seconds; 0 if none did."""
     if not run.telemetry.count:
         return 0
     tick = round(time_s * run.spec.profile.tick_hz)

@@ -388,15 +388,17 @@ class _Search:
         needs_all: bool,
         limit: float | None,
     ) -> str | None:
-        """Return as text what all readings had in common; None if they differ, or if the awaited value came.
+        """Return what all readings had in common, such as `12 cm`; None if they differ, or if the awaited value came.
+
+        The text is empty if the source has no value to name, such as a button that was never pressed.
 
         Args:
             subject: The kind of sensor, or other source.
             port: Its port.
             rows: The indices of its readings.
             sought: Names of the values that the program waits for.
-            needs_all: Whether it waits for all of these together.
-            limit: The distance that the program compares with; None if there is none.
+            needs_all: Whether the program waits for all of these together.
+            limit: The distance that the program compares with, as from `_find_limit`; None if there is none.
         """
         import numpy as np
 
