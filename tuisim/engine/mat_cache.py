@@ -224,7 +224,7 @@ def _identity(found: os.stat_result) -> tuple[int, ...]:
 
 
 def _noted(path: Path) -> tuple[int, tuple[int, ...]] | None:
-    """Return the checksum and the identity in the note of a file; None if there is no valid note."""
+    """Return the checksum in the note of a file, and the numbers of `_identity`; None if there is no valid note."""
     try:
         checksum, *identity = map(int, read_regular(_note_of(path), _MOST_NOTE_BYTES).split())
     except (OSError, ValueError):

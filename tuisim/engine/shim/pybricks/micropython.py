@@ -204,7 +204,10 @@ def _opt_level(level: int | None = None) -> int | None:
 
 
 def _lenient(real: Callable[..., Any], fitted: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that calls `real`, a function of Python; if it raises ValueError, call `fitted` instead."""
+    """Return a function that calls `real`, a function of Python, or `fitted` with the same arguments if that fails.
+
+    Only a ValueError counts as a failure; other errors are raised.
+    """
 
     @wraps(real)
     def function(*given: Any, **named: Any) -> Any:

@@ -30,7 +30,7 @@ class Speaker(_OfBrick):
     def beep(
         self, frequency: float = 500, duration: float = 100, volume: float = START_VOLUMES["Beep"]
     ) -> None:
-        """Play a tone of a frequency in Hz for a duration in ms, and wait for its end."""
+        """Play a tone of a frequency in Hz for a duration in ms, at a volume in percent, and wait for its end."""
         _brick.speaker.set_volume(volume, "Beep")
         _brick.speaker.beep(frequency, duration)
 
@@ -45,7 +45,7 @@ class Speaker(_OfBrick):
         frequencies_and_durations: Iterable[tuple[float, float]],
         volume: float = START_VOLUMES["Beep"],
     ) -> None:
-        """Play tones, each given by a frequency in Hz and a duration in ms."""
+        """Play tones, each given by a frequency in Hz and a duration in ms, at a volume in percent."""
         for frequency, duration in frequencies_and_durations:
             self.beep(frequency, duration, volume)
 
@@ -60,7 +60,7 @@ class Speaker(_OfBrick):
         _brick.speaker.play_file(file_name)
 
     def speech(self, text: str, volume: float = START_VOLUMES["Beep"]) -> None:
-        """Speak a text, and wait for its end."""
+        """Speak a text at a volume in percent, and wait for its end."""
         _brick.speaker.set_volume(volume, "PCM")
         _brick.speaker.say(text)
 
