@@ -28,7 +28,7 @@ _FORM = re.compile(rf"\s*(?P<column>[^±]+?)\s*(?:±|\+-)\s*(?P<margin>{NUMBER})
 
 @dataclass(frozen=True, slots=True)
 class Precision:
-    """How precisely the mean of a column must be known: the margin within which it must be with 95 %."""
+    """How precisely the mean of a column must be known: within a margin, with a probability of 95 %."""
 
     column: str
     margin: float

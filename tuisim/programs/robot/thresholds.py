@@ -48,7 +48,7 @@ class ProgramThreshold:
 
     @property
     def is_aim(self) -> bool:
-        """Whether the value is the target to which the program controls the reading, and not one of a comparison."""
+        """Whether the value is a target to which the program controls the reading, not one that it compares with."""
         return self.sign == AIM
 
     @property

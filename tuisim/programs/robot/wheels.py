@@ -250,10 +250,10 @@ def add_others(kinds: Mapping[str, DeviceKind], mentions: Mentions) -> dict[str,
 def _add_medium(
     kinds: Mapping[str, DeviceKind], mentions: Mentions, others: list[str]
 ) -> dict[str, DeviceKind]:
-    """Return the kinds of motors by port.
+    """Return the kinds of motors by port; motors of an unknown kind that drive no wheel become medium motors.
 
-    Those of `others` whose kind is unknown become medium unless a name says large. This is done only for Pybricks on an
-    EV3, and only for up to `_MAX_MEDIUM` others, as EV3 sets have few medium motors.
+    Motors with a name that says large are unchanged. So are all motors if the program is not for Pybricks on an EV3, or
+    if there are more than `_MAX_MEDIUM` others, as EV3 sets have few medium motors.
 
     Args:
         kinds: The kind of each motor, by port.
