@@ -87,7 +87,7 @@ def write_report(
         path: The file.
         names: Variables of chart and bands, none for those that the analyser shows first.
         search: Finds the bands, such as `find_plateaus`, or `find_plateaus_in_subprocess` for long logs.
-        explain: Returns why a run went wrong, such as `describe_reasons`.
+        explain: Returns why a run went wrong, such as `describe_reasons`; None to leave this out.
 
     Raises:
         ExportError: the file cannot be written; an existing one is unchanged.
@@ -119,7 +119,7 @@ def build_report(
             title of the log.
         movie: Whether the page has a movie of each run.
         pins: Places that are marked on the pictures.
-        goals: What the run has met and missed.
+        goals: The table of the goals that the run has met and missed; None for none.
 
     Raises:
         LogError: a recording is damaged, or there is nothing to report on.

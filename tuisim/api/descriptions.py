@@ -195,7 +195,7 @@ def read_world(world: str | Path | WorldDescription | None, mats: str | None) ->
 
     Args:
         world: A world, or its file.
-        mats: A folder of mats if the file names none.
+        mats: A folder of mats that is used if the file names none; None for none.
 
     Raises:
         ConfigError: there is no such file, or it is wrong.

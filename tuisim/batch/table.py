@@ -77,7 +77,7 @@ def build_frame(rows: Iterable[Row], expressions: Mapping[str, str] | None = Non
 
     Args:
         rows: The rows of the runs, in any order.
-        expressions: Expressions by the name of their column; a later one may use an earlier one.
+        expressions: Expressions by the name of their column; a later one may use an earlier one. None for none.
 
     Raises:
         LogError: an expression is invalid, or names a column that does not exist.

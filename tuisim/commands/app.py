@@ -167,7 +167,7 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
 
     Args:
         lesson: The lesson.
-        folder: The folder with the user's own lessons, if one was named.
+        folder: The folder with the user's own lessons; None if the user has named none.
 
     Raises:
         ConfigError: the student's program of the lesson cannot be read or written.

@@ -59,7 +59,7 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
 
     Args:
         path: The file.
-        mats: A folder of mats if the file names none, as for `settings.worlds.load_world`.
+        mats: A folder of mats that is used if the file names none; None for none.
 
     Raises:
         ConfigError: the file, or its world, cannot be read or is wrong.

@@ -201,7 +201,7 @@ def _print_program_robot(program: str, out: str | None, *, as_json: bool) -> int
 
     Args:
         program: A program, or the number of a run, or `last`.
-        out: The file.
+        out: The file; None to print the robot.
         as_json: Whether to print JSON.
     """
     if program.isdecimal() or program == "last":

@@ -276,7 +276,7 @@ def prepare_runs(
     Args:
         words: The programs and worlds that the user named.
         arguments: The arguments of the command line.
-        usual_world: The world if none is named.
+        usual_world: The world if the user names none; None to run each program in its own.
         command: The name of the command, for errors.
         config: The user's defaults.
 

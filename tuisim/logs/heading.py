@@ -168,7 +168,7 @@ def _skip_to(lines: Sequence[tuple[int, str]], row: int) -> Sequence[tuple[int, 
 
     Args:
         lines: Lines, each with its number in the file.
-        row: The number.
+        row: The number of the first line to return.
 
     Raises:
         LogError: no line has that number.

@@ -241,7 +241,7 @@ class Rows:
             text: The text.
             from_place: Position next to which the search begins; it is searched last.
             step: 1 for forwards, -1 for backwards.
-            task: Receives the progress, and can stop the search.
+            task: Receives the progress, and can stop the search; None for no task.
         """
         seen = 0
         for first, last in _split_places(from_place, len(self), step):

@@ -64,7 +64,7 @@ def find_wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
     Args:
         text: The program.
         name: The name of its file.
-        folder: The folder of the user's own mats.
+        folder: A further folder with mats of the user; None for none.
     """
     try:
         magic = find_magic(text, name)
@@ -92,7 +92,7 @@ def drop_wrong_mat(source: ProgramSource, folder: str | None) -> ProgramSource:
 
     Args:
         source: The program.
-        folder: The folder of the user's own mats.
+        folder: A further folder with mats of the user; None for none.
     """
     if find_wrong_mat(source.program.text, source.program.name, folder) is None:
         return source
@@ -117,7 +117,7 @@ def find_mistake(text: str, name: str, mats: str | None = None) -> Mistake | Non
     Args:
         text: The text of the file; a magic line is allowed.
         name: Name of the file, for the message.
-        mats: The folder of the user's own mats.
+        mats: A further folder with mats of the user; None for none.
     """
     try:
         source = parse_program(text, name)

@@ -262,7 +262,7 @@ def build_program_settings(
     Args:
         source: The program with the options of its magic line.
         above: Layers that override these options, such as a world file and the command line, by path.
-        below: The layer that they override: the user's defaults.
+        below: The layer that they override: the user's defaults; None for none.
         insists: Whether a chosen profile for another library is an error; otherwise it is replaced.
 
     Raises:

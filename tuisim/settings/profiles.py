@@ -48,7 +48,8 @@ def parse_profile(
         data: The table.
         name: The name of the profile, unless the table gives one.
         location: The place of the table, for errors.
-        changes_to: The profile that provides keys missing in the table, unless the table names its base.
+        changes_to: The profile that provides keys missing in the table, unless the table names its base; None for the
+            default profile.
 
     Raises:
         ProfileError: a key or a value is wrong.

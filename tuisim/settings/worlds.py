@@ -115,7 +115,7 @@ def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
 
     Args:
         path: The file.
-        mats: A folder of mats if the file names none.
+        mats: A folder of mats that is used if the file names none; None for none.
 
     Raises:
         ConfigError: the file, or a file that it refers to, cannot be read or is wrong.
@@ -223,7 +223,7 @@ def _load_base(
         word: The path of its file, as the other file gives it.
         location: The location of that path, for errors.
         resolve: Resolves a path in the other file.
-        mats: A folder of mats if the file names none.
+        mats: A folder of mats that is used if the file names none; None for none.
         above: The files that are based on this one, directly or through others.
 
     Raises:
@@ -314,7 +314,7 @@ def _parse_mat(
         world: The keys of the file.
         location: The file, for errors.
         resolve: Resolves a path in the file.
-        mats: The folder of mats if the file names none.
+        mats: A folder of mats that is used if the file names none; None for none.
     """
     settings: dict[str, Any] = {}
     if "mats" in world:
@@ -387,7 +387,7 @@ def save_world(
     Args:
         spec: The run.
         path: The file; paths of an image and a program are written relative to its folder.
-        program: The program to run in it, as a path or as the name of an example.
+        program: The program to run in it, as a path or as the name of an example; None for none.
         arguments: The program's arguments.
 
     Raises:

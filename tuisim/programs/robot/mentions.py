@@ -413,7 +413,7 @@ class _Reader:
         Args:
             call: The call that creates the device.
             name: The name of the parameter.
-            position: Its index.
+            position: The index of the parameter.
             names: The names for the object that the call creates.
         """
         node = find_argument_node(call, name, position)
@@ -566,7 +566,7 @@ class _Reader:
         Args:
             call: The call.
             name: The name of the parameter.
-            at: Its index.
+            at: The index of the parameter.
             devices: The devices that the program creates.
         """
         instances = [

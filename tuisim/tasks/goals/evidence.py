@@ -377,7 +377,7 @@ def find_motion_line(records: Array, index: int) -> int:
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`.
-        index: The tick.
+        index: The last tick to consider.
     """
     import numpy as np
 

@@ -117,7 +117,7 @@ def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, Goa
 
     Args:
         path: The file, or one of `list_example_names`.
-        mats: A folder in which the mat is searched for if the file names no folder of mats.
+        mats: A further folder in which the mat is searched for if the file names no folder of mats; None for none.
 
     Raises:
         ConfigError: a file cannot be read or is wrong; the error names file, line and key.

@@ -296,8 +296,8 @@ def _report_printed(moment: EvidencePoint, line: int, once: bool, evidence: Evid
     """Return the finding that a program has printed all lines of a goal.
 
     Args:
-        moment: When the last of them was printed.
-        line: The program's line that printed it.
+        moment: When the last of these lines was printed.
+        line: The number of the program's line that printed the last one.
         once: Whether each line must be printed only once. The goal is then met only at the end of the recording, as the
             program may print a line again before.
         evidence: The recording.

@@ -75,7 +75,7 @@ def build_page(
         sheet: The marks of the class.
         links: The paths of the reports of kept runs.
         ignored: Names of files that are no programs.
-        similar: Which programs resemble each other.
+        similar: Which programs resemble each other; None if they were not compared.
         maps: Pictures of where goals were missed.
     """
     goals = [column.name for column in sheet.columns]
