@@ -48,7 +48,10 @@ class Measures:
 
     @property
     def identity(self) -> list[str]:
-        """A hash of the code of each metric, and the names of the columns; if equal, the values will be equal."""
+        """A hash of the code of each metric, and the names of the columns.
+
+        Experiments with the same identity measure the same values in equal runs.
+        """
         metrics = (f"{name} {describe(metric)}" for name, metric in self._metrics.items())
         return [*(sha256(text.encode()).hexdigest() for text in metrics), *self._columns]
 

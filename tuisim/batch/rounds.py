@@ -92,7 +92,11 @@ class Rounds(Iterator[int]):
         return self._due.popleft()
 
     def _ask(self, indices: range) -> None:
-        """If all runs of a combination so far are done and its mean is not precise enough, request further runs."""
+        """If all runs of a combination so far are done and its mean is not precise enough, request further runs.
+
+        Args:
+            indices: The indices of all runs that the combination can have.
+        """
         rows = self._sweep.rows
         while all(index in rows for index in indices[: self._counts[indices]]):
             count = self._counts[indices]

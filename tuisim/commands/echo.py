@@ -380,8 +380,8 @@ class Progress:
         what: The description, such as `exporting log.csv`.
         total: The amount of work, None if unknown.
         in_lines: Whether to write lines if stderr can show no bar.
-        wait: Waits for a number of seconds, or until the work is done, and returns whether it is; None is the real
-            clock.
+        wait: Called with a number of seconds: waits that long, or until the work is done, and returns whether the work
+            is done. None waits in real time.
     """
 
     def __init__(

@@ -129,7 +129,7 @@ def print_results(results: Sequence[tuple[str, StoredRun | None]]) -> None:
     """Print a table of runs: label, state, samples, simulated time and number.
 
     Args:
-        results: Labels and runs; a label with None was not run.
+        results: The label and the run of each program; the run is None for a program that was not run.
     """
     rows = [_build_row(label, run) for label, run in results]
     echo_lines(draw_table(("cell", "state", "samples", "time s", "run"), rows))

@@ -127,7 +127,10 @@ class Lab:
         return eds.get_dataframe_from_datalog(self.results_log)
 
     def images(self) -> pd.DataFrame:
-        """Return the pixel arrays that were logged since the log was cleared, as numbers; see `eds`."""
+        """Return the pixel arrays that were logged since the log was cleared, as a frame.
+
+        Its columns are those of `eds.get_image_data_from_datalog`.
+        """
         return eds.image_frame(self._images.list_arrays(self.results_log))
 
     def logged_arrays(self) -> list[list[LoggedArray]]:

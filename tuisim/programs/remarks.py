@@ -65,7 +65,7 @@ class Remarks:
 
     @cached_property
     def late_stops(self) -> tuple[tuple[int, int, int], ...]:
-        """The lines of loop, sleep and stop, for each loop that ends at a band before a sleep and a stop."""
+        """The line numbers of loop, sleep and stop, for each loop up to a band that a sleep and a stop follow."""
         return tuple(_list_late_stops(self._tree, self))
 
     def find_color(self, first_line: int, last_line: int, others: Iterable[int] = ()) -> str:

@@ -128,9 +128,9 @@ def is_plain(value: object) -> bool:
 
 
 def list_parts(kind: type) -> Sequence[str]:
-    """Return the field names of a NamedTuple or dataclass that is created from exactly these values.
+    """Return the names of the fields of a NamedTuple or dataclass that is created from exactly their values.
 
-    Otherwise, return an empty list.
+    The result is empty for any other class.
     """
     if not is_dataclass(kind):
         return getattr(kind, "_fields", ()) if issubclass(kind, tuple) else ()

@@ -69,8 +69,8 @@ class Name(Value):
     """The value of an option that is a name, such as that of a mat, or a path.
 
     Args:
-        allowed: What it may name, for errors.
-        metavar: The word for it in the help.
+        allowed: What the value may name, for errors.
+        metavar: The word for the value in the help.
     """
 
     __slots__ = ("_allowed", "_metavar")

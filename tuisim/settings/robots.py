@@ -213,7 +213,7 @@ def parse_robot(
 
 
 def _parse_motors(robot: Mapping[str, Any], base: RobotSpec, location: Location) -> dict[str, Any]:
-    """Return the motors of a robot's table as fields of `RobotSpec`.
+    """Return the motors of a robot's table as values by field name of `RobotSpec`.
 
     The motors of the base robot stay, unless the table changes them, or removes them by `false`.
 

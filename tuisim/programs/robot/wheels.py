@@ -161,9 +161,9 @@ def _sort_sides(motors: Sequence[Mention], *, of_class: bool) -> WheelMotors | N
 
 
 def _order_motors(motors: Sequence[Mention]) -> WheelMotors:
-    """Return the two motors on the usual ports of wheels as left and right.
+    """Return those two of the motors that are on the usual ports of wheels, as the left and the right one.
 
-    The lower port is left unless names say otherwise.
+    The motor on the lower port is the left one unless the program's names for the motors say otherwise.
     """
     by_port = {motor.port: motor for motor in motors}
     left, right = next(pair for pair in _USUAL if by_port.keys() >= set(pair))

@@ -104,7 +104,7 @@ class KeepCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class CountCondition(Condition):
-    """A condition of a goal: a comparison becomes true, or lines or samples are printed, a number of times."""
+    """A condition of a goal: how often a comparison becomes true, or how many matching lines or samples are printed."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
 

@@ -339,7 +339,7 @@ class Evidence:
         return float(self.times_s[min(max(moment.tick, 0), len(self.records) - 1)])
 
     def place_mm(self, tick: int) -> tuple[float, float]:
-        """Return x and y of the robot at the end of a tick."""
+        """Return x and y of the robot at the end of a tick, in mm."""
         if not len(self.records):
             return self.spec.world.start.x_mm, self.spec.world.start.y_mm
         record = self.records[min(max(tick, 0), len(self.records) - 1)]

@@ -262,7 +262,8 @@ def parse_goals(
         data: The list.
         location: Its place, for errors.
         folder: The folder of the goals file.
-        beside: Goals of the first world, to which these may refer; one of the same name is replaced.
+        beside: Goals of the first world, to which the goals in the list may refer. A goal in the list replaces the one
+            of the same name.
 
     Raises:
         ConfigError: a goal is wrong; the error names its key.
@@ -458,7 +459,7 @@ def _find_circle(
     """Return the names of goals that refer to each other in a circle, reached from a goal; empty if there is no circle.
 
     Args:
-        name: The goal.
+        name: The name of the goal from which to follow the references.
         goals: All goals, by name.
         above: The names of the goals through whose references this goal was reached.
         checked: Names of goals from which no circle can be reached; the function adds to it.

@@ -462,7 +462,7 @@ CONDITIONS: Mapping[str, type[Condition]] = {
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """One goal of a task. Times are simulated seconds."""
+    """One goal of a task: its condition, its points, and when it is judged, in simulated seconds."""
 
     name: str
     condition: Condition

@@ -126,7 +126,7 @@ _OTHER_LENGTHS = frozenset({"m", "dm", "cm", "in", "inch", "inches"})
 
 
 def is_met(check: Check, events: Sequence[Event]) -> bool:
-    """Return whether a step is passed by the events since it began.
+    """Return whether the events since the beginning of a step pass its check.
 
     Args:
         check: The check of the step.

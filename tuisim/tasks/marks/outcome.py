@@ -221,13 +221,13 @@ def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
 
 
 def _is_weightier(goal: GoalOutcome, before: GoalOutcome | None) -> bool:
-    """Return whether a goal's outcome in one world replaces its outcome in the worlds before, when these are merged.
+    """Return whether a goal's outcome in one world replaces the merged outcome of earlier worlds.
 
     A good outcome is always replaced, an unknown one only by a miss, and a miss never.
 
     Args:
         goal: The outcome in this world.
-        before: The merged outcome of the worlds before; None if there is none.
+        before: The merged outcome of earlier worlds; None if this is the first world.
     """
     if before is None or before.is_good:
         return True

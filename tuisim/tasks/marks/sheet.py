@@ -334,7 +334,7 @@ def _find_reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
 
 
 def round_points(value: float) -> float:
-    """Return points or a share, rounded for display and storage."""
+    """Return points or a share, rounded to `DIGITS` decimals for display and storage."""
     # Adding 0 turns -0 into 0.
     return round(value, DIGITS) + 0.0
 

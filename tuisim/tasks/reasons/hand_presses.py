@@ -11,7 +11,7 @@ from tuisim.engine.protocol import SetButtons, UserAction
 
 @dataclass(frozen=True, slots=True)
 class HandPress:
-    """A button or touch sensor that was pressed by hand for some time."""
+    """A press of one button or touch sensor by hand, with its start and end in simulated seconds."""
 
     name: str
     """One of `PRESSABLE`."""
@@ -43,10 +43,10 @@ def find_presses(
 
 
 def find_hits(presses: Iterable[HandPress], names: Sequence[str]) -> list[HandPress]:
-    """Return those of the presses that are of buttons or sensors with some names, or of all touch sensors together.
+    """Return those of the presses that are of one of some buttons or sensors, or of all touch sensors together.
 
     Args:
         presses: The presses.
-        names: The names; empty for all presses.
+        names: The names of the buttons and sensors; if this is empty, all presses are returned.
     """
     return [press for press in presses if not names or press.name in (*names, TOUCH)]

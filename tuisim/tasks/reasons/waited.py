@@ -291,9 +291,9 @@ class _Search:
         return any(dps for _, dps in face.turns)
 
     def _describe(self, subject: Subject, port: str, rows: Array) -> Awaited | None:
-        """Return what the program waits for, as found from its readings.
+        """Return what the program waits for, given its readings of one source.
 
-        The result is None if what they read changed, or if the value came.
+        The result is None if the readings changed, or if the awaited value came.
 
         Args:
             subject: The kind of sensor, or other source.

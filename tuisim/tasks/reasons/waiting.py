@@ -83,7 +83,7 @@ def _build_recorded(recording: Recording, open_mat: Callable[[RunSpec], Field | 
 
 
 def describe_so_far(recording: Recording) -> str:
-    """Return a sentence that nothing is wrong with a paused run so far, with the time and the program's lines.
+    """Return a sentence which says that nothing is wrong so far with a paused run, its time, and the program's lines.
 
     An action id in braces stands for the action's key.
     """
