@@ -208,7 +208,7 @@ class Lab:
         Before the first run, the pose is the start, and `state` is `ready`.
         """
         self._catch_up()
-        # The user may have changed settings in the app, so that its run had others than the cells.
+        # The last run may be one of the app, whose user can change settings: its settings are shown, not the cells'.
         spec = self._last.spec if self._last else self.spec
         record = self._last.telemetry.last() if self._last else None
         pose = record.pose if record else spec.world.start

@@ -42,7 +42,7 @@ class NotebookProgram:
 
 @dataclass(frozen=True, slots=True)
 class _Words:
-    """A magic line of a notebook: its settings, and the notebook variables in its other options."""
+    """A parsed magic line of a notebook: its settings, and the names of the notebook's variables in other options."""
 
     magic: re.Match[str]
     settings: Mapping[str, Any]

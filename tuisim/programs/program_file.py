@@ -476,7 +476,7 @@ def build_program(text: str, path: Path | None, name: str, *, alone: bool = Fals
     Raises:
         ConfigError: its magic line is wrong.
     """
-    # A program alone gets a path inside its own file, where Python finds no modules beside it.
+    # With `alone`, the program gets a path inside its own file, where Python finds no modules beside it.
     where = path / name if path and alone else path
     source = parse_program(text, name, str(where) if where else "")
     return replace(

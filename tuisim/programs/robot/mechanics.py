@@ -262,7 +262,7 @@ class _MechanicsReader:
     def _find_ways(
         self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope
     ) -> Iterator[bool]:
-        """Yield whether a motor turns forwards, for each speed that endless moves of some motors can have.
+        """Yield for each speed in calls that move some motors without an end whether it is a speed forwards.
 
         Args:
             nodes: The nodes of the syntax tree.

@@ -168,7 +168,7 @@ def _order_motors(motors: Sequence[Mention]) -> WheelMotors:
     by_port = {motor.port: motor for motor in motors}
     left, right = next(pair for pair in _USUAL if by_port.keys() >= set(pair))
     sides = find_side(by_port[left].names), find_side(by_port[right].names)
-    # If one name stands for both motors, such as a list `right = [A, B]`, both sides are equal, and it tells nothing.
+    # If one name stands for both motors, such as a list `right = [A, B]`, both sides are equal: they are ignored.
     if sides[0] is not sides[1] and (sides[0] is Side.RIGHT or sides[1] is Side.LEFT):
         left, right = right, left
     rest = ", ".join(port for port in by_port if port not in (left, right))

@@ -274,7 +274,7 @@ class _Search:
 
     @cached_property
     def _blocking_line(self) -> int | None:
-        """The line that alone was running in the last seconds, if the program has readings there; None otherwise."""
+        """The number of the only line that ran in the last seconds, if it reads sensors or motors; None otherwise."""
         import numpy as np
 
         lines = np.unique(self._records["line"][self._first + 1 :])
