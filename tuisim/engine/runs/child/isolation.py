@@ -162,18 +162,19 @@ class Quota:
     def exceeded(self, now_s: float) -> str:
         """Return a text that says which limit the program exceeds.
 
-        It is empty if the program exceeds none, or if the last check was only a moment ago.
+        It is empty if the program exceeds none. Sockets and files are only counted every `_LOOK_EVERY_S` seconds.
 
         Args:
             now_s: The time on any clock.
         """
-        if now_s < self._next_look_s:
-            return ""
-        self._next_look_s = now_s + _LOOK_EVERY_S
+        # Threads are counted at each call: in a quarter of a second, a program can start all that the system allows.
         with suppress(OSError):
             # The number of links to a folder is two more than the number of folders in it, here one for each thread.
             if os.stat(f"{self._process}/task").st_nlink - 2 > _MAX_THREADS:
                 return f"the program has started more than {_MAX_THREADS:,} threads"
+        if now_s < self._next_look_s:
+            return ""
+        self._next_look_s = now_s + _LOOK_EVERY_S
         if self._count_sockets() - self._sockets > _MAX_SOCKETS:
             return f"the program has opened more than {_MAX_SOCKETS} sockets"
         files, size = self._count_growth(MOST_FILES, MOST_BYTES)
