@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pyarrow as pa
 import pytest
 
@@ -10,7 +11,7 @@ from tuisim.analysis.chart import View, build_chart
 from tuisim.base.errors import LogError
 from tuisim.logs.columns import Layout
 from tuisim.logs.log import Log
-from tuisim.logs.plateaus import Plateau
+from tuisim.logs.stillness import FIELDS
 
 
 def test_cursor_keys_step_along_samples_of_the_selected_variable() -> None:
@@ -91,7 +92,7 @@ def test_a_log_without_numbers_is_refused() -> None:
 def test_bands_are_searched_for_only_the_variables_asked_for() -> None:
     model = model_of(long_log())
     assert (model.list_unsearched(), list(model.bands())) == (["Colour", "Left"], [])
-    model.find_bands(["Colour"], lambda _: [Plateau(0, 5, 2.0, 0.0, 0.0)])
+    model.find_bands(["Colour"], lambda _: np.array([(0, 5, 2.0, 0.0, 0.0, 0)], FIELDS))
     (report,) = model.list_reports()
     assert list(model.bands()) == list(report.bands) != []
     assert (model.list_unsearched(), len(model.describe_bands())) == (["Left"], 1)

@@ -14,7 +14,8 @@ from tests.cases import cases
 from tuisim.logs.bands import build_band_report
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
-from tuisim.logs.plateaus import Plateau, find_plateaus
+from tuisim.logs.plateaus import find_plateaus
+from tuisim.logs.stillness import PlateauArray
 
 HELD_SEEDS = range(20_000, 20_200)
 """For the score only: nothing was tuned on these logs."""
@@ -57,7 +58,7 @@ def made_log(seed: int) -> Made:
     return Made(whole, spans, levels)
 
 
-def hits(made: Made, found: list[Plateau]) -> int:
+def hits(made: Made, found: PlateauArray) -> int:
     """Count the plateaus found: level within 1 or 2 %, edges within a sample of the true edge."""
     count = 0
     for at, ((start, stop), level) in enumerate(zip(made.spans, made.levels, strict=True)):
@@ -65,9 +66,9 @@ def hits(made: Made, found: list[Plateau]) -> int:
         earliest = made.spans[at - 1][1] - 1 if at else 0
         latest = made.spans[at + 1][0] + 1 if at + 1 < len(made.spans) else len(made.values)
         count += any(
-            earliest <= plateau.start <= start + 1
-            and stop - 1 <= plateau.stop <= latest
-            and abs(plateau.level - level) <= max(1.0, 0.02 * abs(level))
+            earliest <= plateau["start"] <= start + 1
+            and stop - 1 <= plateau["stop"] <= latest
+            and abs(plateau["level"] - level) <= max(1.0, 0.02 * abs(level))
             for plateau in found
         )
     return count
@@ -121,7 +122,7 @@ def test_find_plateaus_gives_start_stop_and_level_of_each(
     values: list[float], expected: list[tuple[int, int, float]]
 ) -> None:
     found = find_plateaus(np.array(values, np.float64))
-    assert [(plateau.start, plateau.stop, plateau.level) for plateau in found] == expected
+    assert found[["start", "stop", "level"]].tolist() == expected
 
 
 @pytest.mark.parametrize("giant", [65535.0, -1e9, 1e300])
@@ -129,7 +130,7 @@ def test_a_huge_stray_value_does_not_hide_a_step(giant: float) -> None:
     values = np.repeat([100.0, 86.27, 100.0, 50.2, 0.0], 10)
     values[[14, 33, 34]] = giant
     found = find_plateaus(values)
-    assert [(plateau.start, plateau.stop, plateau.level, plateau.strays) for plateau in found] == [
+    assert found[["start", "stop", "level", "strays"]].tolist() == [
         (0, 10, 100.0, 0),
         (10, 20, 86.27, 1),
         (20, 30, 100.0, 0),
@@ -145,19 +146,14 @@ def test_values_near_the_largest_number_do_no_harm() -> None:
 
 def test_the_level_of_equal_samples_is_exact() -> None:
     grey = 86.27450980392157
-    assert [
-        plateau.level for plateau in find_plateaus(np.array([100.0] * 4 + [grey] * 7 + [100.0] * 4))
-    ] == [
-        100.0,
-        grey,
-        100.0,
-    ]
+    plateaus = find_plateaus(np.array([100.0] * 4 + [grey] * 7 + [100.0] * 4))
+    assert plateaus["level"].tolist() == [100.0, grey, 100.0]
 
 
 def test_values_that_differ_by_rounding_make_no_step() -> None:
     level = 38.98
     (found,) = find_plateaus(np.repeat([level, np.nextafter(level, 99.0), level], 9))
-    assert (found.start, found.stop) == (0, 27)
+    assert (found["start"], found["stop"]) == (0, 27)
 
 
 def test_a_long_log_gets_the_same_plateaus_as_a_short_one() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from tests.cases import for_each
 from tuisim.logs import pieces
-from tuisim.logs.pieces import find_strays
+from tuisim.logs.pieces import Signal, find_strays
 
 
 @for_each(seed=range(40))
@@ -19,7 +19,8 @@ def test_steps_between_pieces_are_those_of_least_squares(seed: int) -> None:
     values = rng.normal(0.0, 1.0, stop) + 50.0
     values[rng.random(stop) < 0.2] += 1000.0
     before, after = np.array([[0, edge]]), np.array([[edge + gap, stop]])
-    lines = [pieces._fit_lines(values, span, 1.0) for span in (before, after)]
+    signal = Signal(values, range=1000.0, noise=1.0, sigma=1.0, min_step=0.0)
+    lines = [pieces._fit_lines(signal, span) for span in (before, after)]
     step, spread = pieces._estimate_steps(*lines)
 
     kept = [

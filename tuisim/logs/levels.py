@@ -17,7 +17,6 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.magnitude import find_scale
 from tuisim.logs.plateaus import Search, find_plateaus
-from tuisim.logs.stillness import FIELDS
 from tuisim.logs.units import can_be_light, names_level
 
 NEAR_PERCENT = 2.0
@@ -166,10 +165,8 @@ def measure_levels(
     """
     finite = values[np.isfinite(values)]
     magnitude = find_scale(float(finite.min()), float(finite.max())) if len(finite) else 1.0
-    plateaus = np.array(search(values if magnitude == 1.0 else values / magnitude), FIELDS)
-    plateaus["level"] *= magnitude
-    plateaus["spread"] *= magnitude
-    level = plateaus["level"]
+    plateaus = search(values if magnitude == 1.0 else values / magnitude)
+    level = plateaus["level"] * magnitude
     scale = find_light_scale(values) if light else 0.0
     true_level = level
     greys_near: list[Grey | None] = [None] * len(plateaus)
@@ -182,7 +179,7 @@ def measure_levels(
         plateaus["stop"],
         level,
         true_level,
-        plateaus["spread"],
+        plateaus["spread"] * magnitude,
         plateaus["strays"],
         tuple(greys_near),
     )

@@ -44,6 +44,21 @@ Pieces = IntArray
 BoolArray = NDArray[np.bool_]
 
 
+class Signal(NamedTuple):
+    """The finite samples of a log, with the range and the noise with which its pieces are compared."""
+
+    values: FloatArray
+    """Shape (n,)."""
+    range: float
+    """From the lowest level to the highest."""
+    noise: float
+    """Standard deviation of the noise about slopes."""
+    sigma: float
+    """Standard deviation of all noise, by which strays are found."""
+    min_step: float
+    """The smallest step between levels."""
+
+
 def count_samples(pieces: Pieces) -> IntArray:
     """Return the number of samples of each piece."""
     return pieces[:, 1] - pieces[:, 0]
@@ -65,57 +80,30 @@ def group_by_length(values: FloatArray, pieces: Pieces) -> Iterator[tuple[IntArr
             yield some, windows[pieces[some, 0]]
 
 
-def join_across_strays(values: FloatArray, pieces: Pieces, min_step: float, sigma: float) -> Pieces:
-    """Return pieces of a log in which those that are separated only by a few strays are joined.
-
-    Args:
-        values: The log.
-        pieces: The pieces.
-        min_step: The smallest step between levels.
-        sigma: Standard deviation of the noise.
-    """
+def join_across_strays(signal: Signal, pieces: Pieces) -> Pieces:
+    """Return pieces of a log in which those that are separated only by a few strays are joined."""
     after = np.searchsorted(pieces[:, 1], pieces[:, 0] + STRAY_SAMPLES, side="right")
     indices = np.arange(1, len(pieces))
     indices = indices[(indices < after[indices]) & (after[indices] < len(pieces))]
     # At least two samples are needed on either side, as an edge is no stray.
-    return _join_seams(
-        values, pieces, np.stack((indices, after[indices]), axis=1), MIN_SAMPLES, min_step, sigma
-    )
+    return _join_seams(signal, pieces, np.stack((indices, after[indices]), axis=1), MIN_SAMPLES)
 
 
-def join_drifting(values: FloatArray, pieces: Pieces, min_step: float, sigma: float) -> Pieces:
-    """Return pieces of a log in which neighbours of one drift, with at most a stray between them, are joined.
-
-    Args:
-        values: The log.
-        pieces: The pieces.
-        min_step: The smallest step between levels.
-        sigma: Standard deviation of the noise.
-    """
+def join_drifting(signal: Signal, pieces: Pieces) -> Pieces:
+    """Return pieces of a log in which neighbours of one drift, with at most a stray between them, are joined."""
     indices = 1 + np.flatnonzero(pieces[1:, 0] - pieces[:-1, 1] <= STRAY_SAMPLES)
-    return _join_seams(
-        values, pieces, np.stack((indices, indices), axis=1), STRAY_SAMPLES + 1, min_step, sigma
-    )
+    return _join_seams(signal, pieces, np.stack((indices, indices), axis=1), STRAY_SAMPLES + 1)
 
 
-def _join_seams(
-    values: FloatArray,
-    pieces: Pieces,
-    seams: IntArray,
-    min_samples: int,
-    min_step: float,
-    sigma: float,
-) -> Pieces:
+def _join_seams(signal: Signal, pieces: Pieces, seams: IntArray, min_samples: int) -> Pieces:
     """Return pieces of a log; the pieces on both sides of a seam are joined if the right one continues the left one.
 
     Args:
-        values: The log.
+        signal: The log.
         pieces: Its pieces.
         seams: Shape (n, 2): for each seam the index of the piece after the left piece, and the index of the right
             piece. They are equal if the two pieces are neighbours, and differ if strays are between them.
         min_samples: Fewest samples on either side.
-        min_step: The smallest step between levels.
-        sigma: Standard deviation of the noise.
     """
     left, right = pieces[seams[:, 0] - 1], pieces[seams[:, 1]]
     firsts = np.arange(len(pieces))
@@ -123,9 +111,7 @@ def _join_seams(
     unsure = np.ones(len(seams), bool)
     # A join makes the piece on the left of the next seam longer: judge that seam again, with more samples.
     while unsure.any():
-        goes_on[unsure] = _find_continued(
-            values, left[unsure], right[unsure], min_samples, min_step, sigma
-        )
+        goes_on[unsure] = _find_continued(signal, left[unsure], right[unsure], min_samples)
         firsts = _find_firsts(len(pieces), seams[goes_on])
         nearest = left[:, 1] - NEAR_SAMPLES
         starts = pieces[firsts[seams[:, 0] - 1], 0]
@@ -157,31 +143,21 @@ def _find_firsts(count: int, seams: IntArray) -> IntArray:
     return firsts
 
 
-def _find_continued(
-    values: FloatArray,
-    left: Pieces,
-    right: Pieces,
-    min_samples: int,
-    min_step: float,
-    sigma: float,
-) -> BoolArray:
+def _find_continued(signal: Signal, left: Pieces, right: Pieces, min_samples: int) -> BoolArray:
     """Return for each pair of pieces whether the right one continues the left one, as parts of one drift.
 
     Args:
-        values: The log.
+        signal: The log.
         left, right: The pieces of each pair.
         min_samples: Fewest samples of either piece.
-        min_step: The smallest step between levels.
-        sigma: Standard deviation of the noise.
     """
     goes_on = np.minimum(count_samples(left), count_samples(right)) >= min_samples
     before, after = left[goes_on], right[goes_on]
     before[:, 0] = np.maximum(before[:, 0], before[:, 1] - NEAR_SAMPLES)
     after[:, 1] = np.minimum(after[:, 1], after[:, 0] + NEAR_SAMPLES)
-    step, spread = _estimate_steps(
-        _fit_lines(values, before, sigma), _fit_lines(values, after, sigma)
-    )
-    goes_on[goes_on] = np.abs(step) <= np.maximum(min_step, CERTAINTY * sigma * spread)
+    step, spread = _estimate_steps(_fit_lines(signal, before), _fit_lines(signal, after))
+    min_steps = np.maximum(signal.min_step, CERTAINTY * signal.sigma * spread)
+    goes_on[goes_on] = np.abs(step) <= min_steps
     return goes_on
 
 
@@ -199,10 +175,10 @@ class _Lines(NamedTuple):
     """Sum of the products of the distances from both means."""
 
 
-def _fit_lines(values: FloatArray, pieces: Pieces, sigma: float) -> _Lines:
+def _fit_lines(signal: Signal, pieces: Pieces) -> _Lines:
     lines = _Lines(*np.empty((5, len(pieces))))
-    for some, part in group_by_length(values, pieces):
-        weights = (~find_strays(part, sigma)).astype(np.float64)
+    for some, part in group_by_length(signal.values, pieces):
+        weights = (~find_strays(part, signal.sigma)).astype(np.float64)
         positions = np.arange(part.shape[1], dtype=np.float64)
         samples = weights.sum(axis=1)
         place = weights @ positions / samples

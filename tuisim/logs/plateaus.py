@@ -22,7 +22,6 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -37,6 +36,7 @@ from tuisim.logs.pieces import (
     STRAY_SAMPLES,
     BoolArray,
     Pieces,
+    Signal,
     compute_medians,
     count_samples,
     group_by_length,
@@ -45,16 +45,14 @@ from tuisim.logs.pieces import (
 )
 from tuisim.logs.stillness import (
     FIELDS,
-    Ground,
     PlateauArray,
     add_apart,
-    drop_moving,
     estimate_noise,
+    find_moving,
+    find_still_parts,
     go_one_way,
     measure,
-    measure_noise_of_slopes,
     read_spans,
-    split_still,
 )
 
 MAX_SAMPLES_CUT_ANYWHERE = 4000
@@ -89,40 +87,8 @@ _BLOCK = 400_000
 """Samples that are cut at a time in a long log; a level that goes on in the next block is joined again."""
 
 
-class Plateau(NamedTuple):
-    """A span of a log with one level, from the sample `start` to before the sample `stop`."""
-
-    start: int
-    stop: int
-    level: float
-    """Mean without strays; the value itself where all are equal."""
-    spread: float
-    """Standard deviation of its samples without strays."""
-    drift: float
-    """How much it rises from its first sample to its last."""
-    strays: int = 0
-    """Samples that lie far off."""
-
-    @property
-    def samples(self) -> int:
-        """The number of samples in the plateau."""
-        return self.stop - self.start
-
-
-Search = Callable[[FloatArray], list[Plateau]]
+Search = Callable[[FloatArray], PlateauArray]
 """A function that finds plateaus: `find_plateaus`, or `find_plateaus_in_subprocess`."""
-
-
-def measure_noise(values: FloatArray) -> float:
-    """Return the standard deviation of the noise in finite values, shape (n,), from the differences of neighbours.
-
-    The result is 0 if the values change only by steps.
-    """
-    if len(values) < 3:
-        return 0.0
-    differences = np.abs(np.diff(values))
-    differences = differences[~_find_steps(differences)]
-    return estimate_noise(differences, 2.0)
 
 
 def _find_steps(differences: FloatArray) -> BoolArray:
@@ -140,7 +106,7 @@ def _find_steps(differences: FloatArray) -> BoolArray:
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def find_plateaus(values: FloatArray) -> list[Plateau]:
+def find_plateaus(values: FloatArray) -> PlateauArray:
     """Return the plateaus of a log in order; the samples between plateaus are edges.
 
     Samples that are not finite belong to no plateau.
@@ -151,83 +117,69 @@ def find_plateaus(values: FloatArray) -> list[Plateau]:
     is_finite = np.isfinite(values)
     clean = np.asarray(values, np.float64)[is_finite]
     if not len(clean):
-        return []
-    noise = measure_noise(clean)
+        return np.empty(0, FIELDS)
+    differences = np.abs(np.diff(clean))
+    is_step = _find_steps(differences)
+    noise = estimate_noise(differences[~is_step], 2.0)
     low, high = _find_extremes(clean)
     # Without noise, the price of a cut follows from the smallest step.
     min_step = max((high - low) * _STEP_OF_RANGE, _DUST * max(abs(low), abs(high)), 1e-12)
     sigma = max(noise, min_step / CERTAINTY)
-    ground = Ground(
-        high - low, min(sigma, max(measure_noise_of_slopes(clean), min_step / CERTAINTY)), sigma
-    )
+    noise_of_slopes = max(estimate_noise(np.abs(np.diff(clean, 2)), 6.0), min_step / CERTAINTY)
+    signal = Signal(clean, high - low, min(sigma, noise_of_slopes), sigma, min_step)
     # Huge values are limited, as their squares would leave no digits for other values.
-    far = _GIANT * max(ground.range, sigma)
+    far = _GIANT * max(signal.range, sigma)
     cut = _cut(np.clip(clean, low - far, high + far), sigma)
-    short_levels = _find_steps(np.abs(np.diff(clean))).any()
-    pieces = _join_pieces(clean, cut, min_step, sigma, has_strays=not short_levels)
-    plateaus = measure(clean, pieces[count_samples(pieces) >= MIN_SAMPLES], sigma)
-    plateaus, parts = split_still(clean, plateaus, cut, ground)
+    short_levels = is_step.any()
+    pieces = _join_pieces(signal, cut, has_strays=not short_levels)
+    plateaus = measure(signal, pieces[count_samples(pieces) >= MIN_SAMPLES])
+    moving = find_moving(signal, plateaus)
+    parts = find_still_parts(signal, plateaus[moving], cut)
+    plateaus = plateaus[~moving]
     if not short_levels:
-        plateaus = plateaus[~_find_ramps(clean, plateaus, sigma)]
+        plateaus = plateaus[~_find_ramps(signal, plateaus)]
         plateaus = plateaus[~_find_edges(plateaus)]
         # With noise, a level needs one sample more than `MIN_SAMPLES`, except at the ends of a log.
         at_an_end = (plateaus["start"] == 0) | (plateaus["stop"] == len(clean))
         plateaus = plateaus[
             at_an_end | (count_samples(read_spans(plateaus)) >= MIN_SAMPLES + (noise > 0.0))
         ]
-    plateaus = _settle(clean, plateaus, parts, ground, min_step)
-    plateaus = _add_ends(clean, plateaus, max(min_step, FAR * sigma))
+    plateaus = _add_ends(signal, add_apart(_settle(signal, plateaus), parts))
     places = np.flatnonzero(is_finite)
     plateaus["start"], plateaus["stop"] = (
         places[plateaus["start"]],
         places[plateaus["stop"] - 1] + 1,
     )
-    return list(map(Plateau._make, plateaus.tolist()))
+    return plateaus
 
 
-def _join_pieces(
-    values: FloatArray, pieces: Pieces, min_step: float, sigma: float, *, has_strays: bool
-) -> Pieces:
+def _join_pieces(signal: Signal, pieces: Pieces, *, has_strays: bool) -> Pieces:
     """Return pieces of a log, joined where one continues another.
 
     Args:
-        values: The log.
+        signal: The log.
         pieces: Its pieces.
-        min_step: The smallest step between levels.
-        sigma: Standard deviation of the noise.
         has_strays: Whether to join also across strays.
     """
     # Strays are joined twice, as one may be hidden between short pieces of a drift.
     for _ in range(2):
         count = len(pieces)
         if has_strays:
-            pieces = join_across_strays(values, pieces, min_step, sigma)
-        pieces = join_drifting(values, pieces, min_step, sigma)
+            pieces = join_across_strays(signal, pieces)
+        pieces = join_drifting(signal, pieces)
         if len(pieces) == count:
             break
     return pieces
 
 
-def _settle(
-    values: FloatArray, plateaus: PlateauArray, parts: PlateauArray, ground: Ground, min_step: float
-) -> PlateauArray:
-    """Return plateaus that are extended at their ends and joined where one continues another, without moving ones.
-
-    Args:
-        values: The log.
-        plateaus: The plateaus.
-        parts: Level parts of slopes; those that overlap none of the plateaus are added.
-        ground: Range and noise of the log.
-        min_step: The smallest step between levels.
-    """
-    if len(plateaus):
-        # After they were extended, two plateaus may be separated only by a stray, so they are joined again.
-        grown = _extend_pieces(values, read_spans(plateaus), ground.sigma)
-        spans = join_drifting(values, grown, min_step, ground.sigma)
-        plateaus = drop_moving(
-            values, _measure_again(values, spans, plateaus, ground.sigma), ground
-        )
-    return add_apart(plateaus, parts)
+def _settle(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
+    """Return plateaus that are extended at their ends and joined where one continues another, without moving ones."""
+    if not len(plateaus):
+        return plateaus
+    # After they were extended, two plateaus may be separated only by a stray, so they are joined again.
+    grown = _extend_pieces(signal, read_spans(plateaus))
+    settled = _measure_again(signal, join_drifting(signal, grown), plateaus)
+    return settled[~find_moving(signal, settled)]
 
 
 def _find_extremes(values: FloatArray) -> tuple[float, float]:
@@ -345,21 +297,12 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
     return np.stack((chosen[:-1], chosen[1:]), axis=1)
 
 
-def _measure_again(
-    values: FloatArray, pieces: Pieces, plateaus: PlateauArray, sigma: float
-) -> PlateauArray:
-    """Return pieces as plateaus; a piece that is one of the given plateaus keeps its values, others are measured.
-
-    Args:
-        values: The log.
-        pieces: The pieces.
-        plateaus: Plateaus that were measured before.
-        sigma: Standard deviation of the noise.
-    """
+def _measure_again(signal: Signal, pieces: Pieces, plateaus: PlateauArray) -> PlateauArray:
+    """Return pieces as plateaus; a piece that is one of the given plateaus keeps its values, others are measured."""
     known = np.minimum(np.searchsorted(plateaus["start"], pieces[:, 0]), len(plateaus) - 1)
     measured = plateaus[known]
     changed = (read_spans(measured) != pieces).any(axis=1)
-    measured[changed] = measure(values, pieces[changed], sigma)
+    measured[changed] = measure(signal, pieces[changed])
     return measured
 
 
@@ -375,30 +318,27 @@ def _find_edges(plateaus: PlateauArray) -> BoolArray:
     return edges
 
 
-def _find_ramps(values: FloatArray, plateaus: PlateauArray, sigma: float) -> BoolArray:
+def _find_ramps(signal: Signal, plateaus: PlateauArray) -> BoolArray:
     """Return for each plateau whether it is short, and clearly rises or falls from each sample to the next."""
     ramps = count_samples(read_spans(plateaus)) <= _EDGE_SAMPLES + 1
     short = np.flatnonzero(ramps)
-    for some, part in group_by_length(values, read_spans(plateaus[short])):
+    for some, part in group_by_length(signal.values, read_spans(plateaus[short])):
         steps = np.abs(np.diff(part, axis=1))
         ramps[short[some]] = np.logical_and(
-            go_one_way(part), (steps > CERTAINTY * sigma).all(axis=1)
+            go_one_way(part), (steps > CERTAINTY * signal.sigma).all(axis=1)
         )
     return ramps
 
 
-def _add_ends(values: FloatArray, plateaus: PlateauArray, min_step: float) -> PlateauArray:
+def _add_ends(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
     """Return plateaus in order; the first and the last sample of the log also become plateaus if they are a step away.
 
     They are so for a program that logs until it meets a value: its log ends at the first sample of that level.
-
-    Args:
-        values: The log.
-        plateaus: Its plateaus.
-        min_step: The smallest step between levels.
     """
     if not len(plateaus):
         return plateaus
+    values = signal.values
+    min_step = max(signal.min_step, FAR * signal.sigma)
     first, last = 0, len(values) - 1
     before, after = plateaus[0], plateaus[-1]
     ends = (
@@ -415,17 +355,13 @@ def _add_ends(values: FloatArray, plateaus: PlateauArray, min_step: float) -> Pl
     return np.concatenate((added[is_first], plateaus, added[~is_first]))
 
 
-def _extend_pieces(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
+def _extend_pieces(signal: Signal, pieces: Pieces) -> Pieces:
     """Return pieces extended at their ends: if a stray is there, by the samples of the same level beyond that stray.
 
     A short piece is not extended at its start.
-
-    Args:
-        values: The log.
-        pieces: Its pieces.
-        sigma: Standard deviation of the noise.
     """
-    near = FAR * sigma / 2.0
+    values = signal.values
+    near = FAR * signal.sigma / 2.0
     # In the reversed log, the ends of pieces are starts.
     mirrored = len(values) - pieces[::-1, ::-1]
     stops = (
@@ -471,7 +407,7 @@ _PACKAGE_FOLDER = Path(__file__).resolve().parents[2]
 _LOOK_S = 0.1
 
 
-def find_plateaus_in_subprocess(values: FloatArray, stopped: Callable[[], bool]) -> list[Plateau]:
+def find_plateaus_in_subprocess(values: FloatArray, stopped: Callable[[], bool]) -> PlateauArray:
     """Return the plateaus of a log, as `find_plateaus` does, computed in another process.
 
     A search in a thread would block the keys for a second.
@@ -502,13 +438,12 @@ def find_plateaus_in_subprocess(values: FloatArray, stopped: Callable[[], bool])
                     raise LogError("the search for bands was stopped") from None
     if process.returncode:
         raise LogError(f"the search for bands failed (exit code {process.returncode})")
-    return list(map(Plateau._make, np.frombuffer(answer, FIELDS).tolist()))
+    return np.frombuffer(answer, FIELDS)
 
 
 def _answer() -> None:
     """Read values from the standard input and write their plateaus to the standard output."""
-    plateaus = find_plateaus(np.frombuffer(sys.stdin.buffer.read()))
-    sys.stdout.buffer.write(np.array(plateaus, FIELDS).tobytes())
+    sys.stdout.buffer.write(find_plateaus(np.frombuffer(sys.stdin.buffer.read())).tobytes())
 
 
 if __name__ == "__main__":

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +10,7 @@ from tuisim.logs.pieces import (
     NEAR_SAMPLES,
     BoolArray,
     Pieces,
+    Signal,
     count_samples,
     find_strays,
     group_by_length,
@@ -64,24 +63,26 @@ FIELDS = np.dtype(
         ("strays", "i8"),
     ]
 )
+"""A plateau is a span of a log with one level, from the sample `start` to before the sample `stop`.
 
-
-def measure_noise_of_slopes(values: FloatArray) -> float:
-    """Return the noise as `measure_noise` does, but from second differences, which are 0 on slopes."""
-    bends = np.abs(np.diff(values, 2))
-    return estimate_noise(bends, 6.0) if len(bends) else 0.0
+`level` is the mean without strays, or the value itself where all are equal; `spread` is the standard deviation without
+strays; `drift` is how much it rises from its first sample to its last; `strays` counts the samples that lie far off.
+"""
 
 
 def estimate_noise(differences: FloatArray, variance: float) -> float:
-    """Return the standard deviation of the noise that explains differences between samples.
+    """Return the standard deviation of the noise that explains differences between samples; 0 without differences.
 
     The median of absolute differences, times 1.4826, is the standard deviation of normal noise, even if up to half of
     them are steps (Rousseeuw and Croux 1993).
 
     Args:
-        differences: Absolute differences of samples from what their neighbours predict, shape (n,), at least one.
-        variance: Variance of such differences in units of the noise's: 2 for first differences, 6 for second ones.
+        differences: Absolute differences of samples from what their neighbours predict, shape (n,).
+        variance: Variance of such differences in units of the noise's: 2 for first differences; 6 for second ones,
+            which are 0 on slopes.
     """
+    if not len(differences):
+        return 0.0
     by_median = 1.4826 * float(np.median(differences)) / np.sqrt(variance)
     # If values jump between two steps of a coarse scale, the median difference may be 0: the calm ones are used, too.
     calm = np.sort(differences)[: max(1, int(0.8 * len(differences)))]
@@ -93,12 +94,12 @@ def read_spans(plateaus: PlateauArray) -> Pieces:
     return np.stack((plateaus["start"], plateaus["stop"]), axis=1)
 
 
-def measure(values: FloatArray, pieces: Pieces, sigma: float) -> PlateauArray:
+def measure(signal: Signal, pieces: Pieces) -> PlateauArray:
     """Return pieces of a log as plateaus, with level, spread, drift and strays."""
     plateaus = np.zeros(len(pieces), FIELDS)
     plateaus["start"], plateaus["stop"] = pieces.T
-    for some, part in group_by_length(values, pieces):
-        off = find_strays(part, sigma)
+    for some, part in group_by_length(signal.values, pieces):
+        off = find_strays(part, signal.sigma)
         counts = off.sum(axis=1)
         plateaus["strays"][some] = counts
         for count in np.unique(counts):
@@ -137,40 +138,25 @@ def go_one_way(part: FloatArray) -> BoolArray:
     return one_way
 
 
-class Ground(NamedTuple):
-    """Range and noise of a log, with which its pieces are compared."""
-
-    range: float
-    """From the lowest level to the highest."""
-    noise: float
-    """Standard deviation of the noise about slopes."""
-    sigma: float
-    """Standard deviation of all noise, by which strays are found."""
-
-
-def drop_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> PlateauArray:
-    """Return the plateaus that have a level, without those that rise, fall or bend, or are a few samples far apart."""
-    return plateaus[~_find_moving(values, plateaus, ground)]
-
-
-def _find_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> BoolArray:
+def find_moving(signal: Signal, plateaus: PlateauArray) -> BoolArray:
+    """Return for each plateau whether it has no level: it rises, falls or bends, or is a few samples far apart."""
     lengths = count_samples(read_spans(plateaus))
     moving: BoolArray = plateaus["strays"] > _MAX_STRAYS * lengths
     spread = plateaus["spread"]
     drift = np.abs(plateaus["drift"])
-    wide = spread > max(_STILL_NOISES * ground.noise, _STILL_OF_RANGE * ground.range)
-    steep = drift > _SLOPE_OF_RANGE * ground.range
+    wide = spread > max(_STILL_NOISES * signal.noise, _STILL_OF_RANGE * signal.range)
+    steep = drift > _SLOPE_OF_RANGE * signal.range
     root = np.sqrt(lengths - plateaus["strays"])
-    unsure = spread > _UNSURE_OF_RANGE * ground.range * root
-    long = (lengths >= _SWING_SAMPLES) & (spread > _STILL_OF_RANGE * ground.range)
+    unsure = spread > _UNSURE_OF_RANGE * signal.range * root
+    long = (lengths >= _SWING_SAMPLES) & (spread > _STILL_OF_RANGE * signal.range)
     judged = np.flatnonzero(wide | steep | unsure | long)
-    for some, part in group_by_length(values, read_spans(plateaus[judged])):
+    for some, part in group_by_length(signal.values, read_spans(plateaus[judged])):
         some = judged[some]
         highest = np.abs(part).max(axis=1)
         moving[some] |= (
             wide[some]
             & (spread[some] > _STILL_OF_VALUE * highest)
-            & _find_wandering(part, spread[some], ground.sigma)
+            & _find_wandering(part, spread[some], signal.sigma)
         )
         moving[some] |= (
             long[some] & (spread[some] > _SWING_OF_VALUE * highest) & _find_swinging(part)
@@ -209,49 +195,32 @@ def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
     return variance
 
 
-def split_still(
-    values: FloatArray, plateaus: PlateauArray, cut: Pieces, ground: Ground
-) -> tuple[PlateauArray, PlateauArray]:
-    """Return the plateaus that have a level; and of the other plateaus, those parts that have a level.
-
-    Args:
-        values: The log.
-        plateaus: Its plateaus.
-        cut: The pieces from which they were joined, without gaps between them.
-        ground: Range and noise of the log.
-    """
-    moving = _find_moving(values, plateaus, ground)
-    return plateaus[~moving], _find_still_parts(values, plateaus[moving], cut, ground)
-
-
-def _find_still_parts(
-    values: FloatArray, moving: PlateauArray, cut: Pieces, ground: Ground
-) -> PlateauArray:
+def find_still_parts(signal: Signal, moving: PlateauArray, cut: Pieces) -> PlateauArray:
     """Return, from pieces without a level, those parts that have one, such as the top between two slopes.
 
     Args:
-        values: The log.
+        signal: The log.
         moving: The pieces without a level.
         cut: The pieces from which they were joined, without gaps between them.
-        ground: Range and noise of the log.
     """
     if not len(moving):
         return moving
     owners = np.maximum(np.searchsorted(moving["start"], cut[:, 0], side="right") - 1, 0)
     chosen = (moving["start"][owners] <= cut[:, 0]) & (cut[:, 1] <= moving["stop"][owners])
     chosen &= count_samples(cut) >= NEAR_SAMPLES
-    levels = np.add.reduceat(values, cut[:, 0]) / count_samples(cut)
+    levels = np.add.reduceat(signal.values, cut[:, 0]) / count_samples(cut)
     rates = np.abs(np.diff(levels) / np.diff(cut.mean(axis=1)))
     slopes = np.maximum(np.append(0.0, rates), np.append(rates, 0.0))[chosen]
-    parts = _trim(values, cut[chosen], _STILL_NOISES * ground.noise)
-    measured = measure(values, parts, ground.sigma)
+    parts = _trim(signal.values, cut[chosen], _STILL_NOISES * signal.noise)
+    measured = measure(signal, parts)
     spread = slopes * count_samples(parts) / np.sqrt(12.0)
     still = measured["spread"] <= _PART_OF_SLOPE * spread
-    for some, part in group_by_length(values, parts):
+    for some, part in group_by_length(signal.values, parts):
         min_variance = _WANDERS * measured["spread"][some] ** 2
-        still[some] &= _compare_neighbours(part, ground.sigma) >= min_variance
+        still[some] &= _compare_neighbours(part, signal.sigma) >= min_variance
     still &= count_samples(parts) >= _SHORT_SAMPLES
-    return drop_moving(values, measured[still], ground)
+    measured = measured[still]
+    return measured[~find_moving(signal, measured)]
 
 
 def _trim(values: FloatArray, parts: Pieces, far: float) -> Pieces:
