@@ -178,7 +178,7 @@ def _settle(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
         return plateaus
     # After they were extended, two plateaus may be separated only by a stray, so they are joined again.
     grown = _extend_pieces(signal, read_spans(plateaus))
-    settled = _measure_again(signal, join_drifting(signal, grown), plateaus)
+    settled = measure(signal, join_drifting(signal, grown))
     return settled[~find_moving(signal, settled)]
 
 
@@ -295,15 +295,6 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
         cuts.append(before[cuts[-1]])
     chosen = places[cuts[::-1]]
     return np.stack((chosen[:-1], chosen[1:]), axis=1)
-
-
-def _measure_again(signal: Signal, pieces: Pieces, plateaus: PlateauArray) -> PlateauArray:
-    """Return pieces as plateaus; a piece that is one of the given plateaus keeps its values, others are measured."""
-    known = np.minimum(np.searchsorted(plateaus["start"], pieces[:, 0]), len(plateaus) - 1)
-    measured = plateaus[known]
-    changed = (read_spans(measured) != pieces).any(axis=1)
-    measured[changed] = measure(signal, pieces[changed])
-    return measured
 
 
 def _find_edges(plateaus: PlateauArray) -> BoolArray:
