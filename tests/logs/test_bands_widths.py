@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 from tests.cases import cases, for_each
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.logs.bands import measure_widths
+from tuisim.logs.bands import compute_driven_mm, measure_widths
+from tuisim.logs.columns import Layout
 from tuisim.logs.levels import Levels, measure_levels
+from tuisim.logs.log import Log
 
 GREYS = (100.0, 86.0, 100.0, 50.0, 0.0, 83.0)
 
@@ -29,6 +32,13 @@ def drawn_levels(places_mm: FloatArray, edges_mm: FloatArray, spot_mm: float) ->
     level = np.array(GREYS)
     none = np.zeros(len(GREYS))
     return Levels(start, stop, level, level, none, none.astype(np.int64), (None,) * len(GREYS))
+
+
+def test_the_distance_driven_is_summed_along_the_path() -> None:
+    table = pa.table({"x_mm": [0.0, 3.0, 3.0], "y_mm": [0.0, 4.0, 6.0], "red": [1.0, 2.0, 3.0]})
+    log = Log("a", table, Layout(values=("red",)))
+    driven_mm = compute_driven_mm(log, log.series("red"))
+    assert driven_mm is not None and driven_mm.tolist() == [0, 5, 7]
 
 
 @for_each(width_mm=[30.0, 73.0, 200.0], spot_mm=[2.0, 12.0, 20.0], period_mm=[0.2, 1.0, 2.6, 6.0])

@@ -18,7 +18,6 @@ from tuisim.base.errors import LogError
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.engine.runs.frames import compute_dead_reckoning
-from tuisim.logs.bands import distance_mm
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.derived import (
     NEEDED,
@@ -175,10 +174,9 @@ class TestReckoning:
         got = compute_dead_reckoning(column(0, inner), column(0, outer), Pose(0, 0, 0), robot)
         assert_allclose([got.x_mm[1], got.y_mm[1], got.heading_deg[1]], [radius, radius, 90])
 
-    def test_dead_reckoning_has_error_and_distance(self) -> None:
+    def test_dead_reckoning_has_an_error(self) -> None:
         got = compute_dead_reckoning(column(0, 0), column(0, 0), Pose(0, 0, 0), RobotSpec())
         assert_allclose(got.compute_error_mm(column(0, 3), column(0, 4)), [0, 5])
-        assert_allclose(distance_mm(column(0, 3, 3), column(0, 4, 6)), [0, 5, 7])
 
 
 @pytest.mark.parametrize(

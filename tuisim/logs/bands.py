@@ -207,14 +207,7 @@ def compute_driven_mm(log: Log, series: Series) -> FloatArray | None:
     x_mm, y_mm = (log.pick_numbers(name, series.rows) for name in ("x_mm", "y_mm"))
     if not (np.isfinite(x_mm).all() and np.isfinite(y_mm).all()):
         return None
-    return distance_mm(x_mm, y_mm)
-
-
-def distance_mm(x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
-    """Return the distance in mm along a path since its first point, shape (n,)."""
-    if not len(x_mm):
-        return np.empty(0)
-    return np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(x_mm), np.diff(y_mm)))))
+    return np.append(0.0, np.cumsum(np.hypot(np.diff(x_mm), np.diff(y_mm))))
 
 
 def describe_levels(report: BandReport) -> str:
