@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.cases import cases
-from tuisim.logs.columns import read_times
+from tuisim.logs.columns import Layout, read_times
 from tuisim.logs.export import EXPORTERS, export_log
 from tuisim.logs.reader import open_log
 
@@ -31,9 +31,7 @@ def test_dates_and_times_as_text_are_read_as_seconds(
     texts: list[str | None], expected: list[float]
 ) -> None:
     assert_allclose(
-        read_times(
-            pa.chunked_array([pa.array(texts, pa.string())]), 1.0, since_first=False
-        ).seconds,
+        read_times(pa.table({"t": pa.array(texts, pa.string())}), Layout("t")).seconds,
         expected,
         atol=1e-9,
     )
@@ -55,9 +53,7 @@ KINDS: dict[str, tuple[pa.Array, list[float]]] = {
 def test_timestamp_and_duration_columns_are_read_as_seconds(
     column: pa.Array, expected: list[float]
 ) -> None:
-    assert_allclose(
-        read_times(pa.chunked_array([column]), 1.0, since_first=False).seconds, expected, rtol=1e-12
-    )
+    assert_allclose(read_times(pa.table({"t": column}), Layout("t")).seconds, expected, rtol=1e-12)
 
 
 @pytest.mark.parametrize("suffix", EXPORTERS)

@@ -132,14 +132,14 @@ class Times(NamedTuple):
     """The period in words, if there are wraps."""
 
 
-def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool) -> Times:
-    """Return a time column in seconds: dates count from the first date, numbers are multiplied by their unit.
+def read_times(table: pa.Table, layout: Layout) -> Times:
+    """Return the time column of a table in seconds: dates count from the first date, numbers have the layout's unit.
 
     Args:
-        column: Numbers, dates, time spans, or texts with dates or time spans.
-        unit_s: Unit of numbers in seconds.
-        since_first: Whether numbers are times since 1970: they then count from the first number.
+        table: The table.
+        layout: Names the column, which has numbers, dates, time spans, or texts with dates or time spans.
     """
+    column = table.column(layout.time)
     kind = column.type
     if is_text(kind):
         return parse_times(column)
@@ -156,14 +156,16 @@ def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool) -> Tim
         # Differences of unsigned numbers would wrap where time goes back; those from 2⁶³ on are no signed ones.
         is_signed = (pc.max(column).as_py() or 0) < 2**63
         column = column.cast(pa.int64() if is_signed else pa.float64(), safe=False)
-    if since_first or pa.types.is_timestamp(kind):
+    if layout.since_first or pa.types.is_timestamp(kind):
         # Integers are subtracted, as floats have too few digits for nanoseconds since 1970.
         column = pc.subtract(column, pc.first(column.filter(pc.is_finite(column))))
     seconds = np.asarray(convert_to_floats(column), np.float64)
     if is_temporal:
         return Times(seconds / PER_S[kind.unit])
-    times = Times(seconds) if since_first else _unwrap(seconds, _COUNTER, "2³²")
-    return times if unit_s == 1.0 else times._replace(seconds=times.seconds * unit_s)
+    times = Times(seconds) if layout.since_first else _unwrap(seconds, _COUNTER, "2³²")
+    if layout.unit_s == 1.0:
+        return times
+    return times._replace(seconds=times.seconds * layout.unit_s)
 
 
 def _unwrap(seconds: FloatArray, period: float, words: str) -> Times:

@@ -218,9 +218,7 @@ class Log:
         if self.layout.time == ROW:
             return np.arange(self.rows if rows is None else len(rows), dtype=np.float64)
         if self._cache.times_s is None:
-            self._cache.times_s = read_times(
-                self.table.column(self.layout.time), self.layout.unit_s, self.layout.since_first
-            ).seconds
+            self._cache.times_s = read_times(self.table, self.layout).seconds
         return self._cache.times_s if rows is None else self._cache.times_s[rows]
 
     def numbers(self, column: str) -> FloatArray:

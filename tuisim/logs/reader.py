@@ -54,7 +54,7 @@ from tuisim.logs.program_lines import (
     strip_brackets,
 )
 from tuisim.logs.text_tables import CsvReader
-from tuisim.logs.time_order import guess_unit_s, join_times, keep_timed_rows, order_times
+from tuisim.logs.time_order import guess_unit_s, join_times, keep_timed_rows, number_runs
 from tuisim.logs.units import TIMEDELTA
 from tuisim.logs.warnings import Notes
 
@@ -159,19 +159,17 @@ def _build_log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: Rea
     metadata = arrow.read_metadata(parts[0].schema) or read_companion(Path(title))
     # These notes are about the rows so far, so they are collected again each time.
     later = Notes()
-    seconds = None
+    if not (metadata or choices.unit) and (unit_s := guess_unit_s(table, layout)) is not None:
+        layout = replace(layout, unit_s=unit_s)
+        later.say(
+            f"the times in {layout.time!r} are whole numbers in large steps: read as"
+            f" {UNIT_NAMES[unit_s]} (--unit selects another)"
+        )
+    table, layout, times = keep_timed_rows(table, layout, later)
     if not metadata:
-        if not choices.unit and (unit_s := guess_unit_s(table, layout)) is not None:
-            layout = replace(layout, unit_s=unit_s)
-            later.say(
-                f"the times in {layout.time!r} are whole numbers in large steps: read as"
-                f" {UNIT_NAMES[unit_s]} (--unit selects another)"
-            )
-        table, layout, seconds = order_times(table, layout, later)
+        if times is not None:
+            table, layout = number_runs(table, layout, times, later)
         _tell_odd_columns(table, layout, unread, later)
-    else:
-        table, layout, times = keep_timed_rows(table, layout, later)
-        seconds = None if times is None else times.seconds
     return Log(
         title,
         table,
@@ -181,7 +179,7 @@ def _build_log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: Rea
         metadata,
         notes.form,
         notes.first_lines,
-        _cache=LogCache(times_s=seconds),
+        _cache=LogCache(times_s=None if times is None else times.seconds),
     )
 
 

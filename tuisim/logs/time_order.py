@@ -102,21 +102,19 @@ def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
     return next((unit_s for unit_s, min_step in _MIN_STEPS.items() if step >= min_step), None)
 
 
-def order_times(
-    table: pa.Table, layout: Layout, notes: Notes
-) -> tuple[pa.Table, Layout, FloatArray | None]:
-    """Return a table, its layout, and its times in seconds; these are None if the table has no times.
+def number_runs(
+    table: pa.Table, layout: Layout, times: Times, notes: Notes
+) -> tuple[pa.Table, Layout]:
+    """Return a table and its layout; where the time begins again, another run begins.
 
-    Where the time begins again, another run begins; the table then gets a further column with the runs.
+    The table then gets a further column with the runs.
 
     Args:
         table: The table.
         layout: The roles of its columns.
+        times: The times of its rows.
         notes: Receives the rows where time goes back.
     """
-    table, layout, times = keep_timed_rows(table, layout, notes)
-    if times is None:
-        return table, layout, None
     seconds, wraps, period = times
     if len(wraps):
         notes.say(f"the clock begins again at 0 in {_name_rows(wraps)}: {period} is added")
@@ -133,7 +131,7 @@ def order_times(
             numbers = 1 + np.searchsorted(restarts, np.arange(table.num_rows), side="right")
             table = table.append_column(name, wrap_int64(numbers))
             layout = replace(layout, run=name)
-    return table, layout, seconds
+    return table, layout
 
 
 def keep_timed_rows(
@@ -151,7 +149,7 @@ def keep_timed_rows(
     """
     if layout.time in (ROW, "row"):
         return table, layout, None
-    times = _read_layout_times(table, layout)
+    times = read_times(table, layout)
     has_time = np.isfinite(times.seconds)
     count = int(np.count_nonzero(~has_time))
     if not count:
@@ -163,11 +161,7 @@ def keep_timed_rows(
     notes.say(f"{rows} left out: {layout.time!r} is empty there, or cannot be read")
     table = table.filter(pa.array(has_time))
     # The times are read again, as a clock may begin again at 0 after a row that is left out.
-    return table, layout, _read_layout_times(table, layout)
-
-
-def _read_layout_times(table: pa.Table, layout: Layout) -> Times:
-    return read_times(table.column(layout.time), layout.unit_s, layout.since_first)
+    return table, layout, read_times(table, layout)
 
 
 def _name_rows(rows: IntArray) -> str:
