@@ -149,11 +149,11 @@ def make_names_unique(names: Sequence[str], notes: Notes | None = None) -> list[
     """Return column names in which repeated names are changed to be unique; the changes are added to `notes`."""
     unique: list[str] = []
     for number, name in enumerate(names, 1):
-        unique_name = name or f"column {number}"
+        base = unique_name = name or f"column {number}"
         again = 2
         while unique_name in unique:
-            unique_name = f"{name or f'column {number}'} ({again})"
-            again = again + 1
+            unique_name = f"{base} ({again})"
+            again += 1
         if name and unique_name != name and notes:
             notes.say(f"two columns are named {name!r}: the second is renamed to {unique_name!r}")
         unique.append(unique_name)

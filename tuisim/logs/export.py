@@ -192,11 +192,7 @@ def build_typed_frame(table: LogTable) -> pd.DataFrame:
             frame[name] = column if spans.isna().any() else spans.astype("timedelta64[ns]")
         elif name in WHOLE and pd.api.types.is_float_dtype(column.dtype):
             numbers = column.to_numpy()
-            if (
-                np.isfinite(numbers)
-                & (np.abs(numbers) < _MAX_WHOLE)
-                & (numbers == np.rint(numbers))
-            ).all():
+            if ((np.abs(numbers) < _MAX_WHOLE) & (numbers == np.rint(numbers))).all():
                 frame[name] = column.astype("int64")
     return frame
 

@@ -102,11 +102,11 @@ def evaluate(
     Raises:
         LogError: the expression is invalid, or names an unknown column or function.
     """
-    parsed, names = _read(text)
+    parsed = _read(text)
     length = len(next(iter(columns.values()))) if columns else 0
     # A division by zero gives inf or NaN.
     with np.errstate(all="ignore"):
-        value = _Evaluation(columns, names, text, functions).value(parsed.body)
+        value = _Evaluation(columns, text, functions).value(parsed.body)
     return np.broadcast_to(np.asarray(value, np.float64), (length,)).copy()
 
 
@@ -116,18 +116,17 @@ def find_names(text: str) -> list[str]:
     Raises:
         LogError: the expression cannot be parsed.
     """
-    parsed, names = _read(text)
+    parsed = _read(text)
     called = {id(node.func) for node in ast.walk(parsed) if isinstance(node, ast.Call)}
     nodes = [
         node for node in ast.walk(parsed) if isinstance(node, ast.Name) and id(node) not in called
     ]
     nodes.sort(key=lambda node: (node.lineno, node.col_offset))
-    named = dict.fromkeys(names.get(node.id, node.id) for node in nodes)
-    return [name for name in named if name not in CONSTANTS]
+    return [name for name in dict.fromkeys(node.id for node in nodes) if name not in CONSTANTS]
 
 
-def _read(text: str) -> tuple[ast.Expression, dict[str, str]]:
-    """Return a parsed expression, and the names in backticks by the placeholders that replace them in it."""
+def _read(text: str) -> ast.Expression:
+    """Return a parsed expression, in which names may be any text that was in backticks."""
     if len(text) > MAX_CHARS:
         raise LogError(f"the expression has {len(text)} characters", f"at most {MAX_CHARS}")
     names: dict[str, str] = {}
@@ -137,7 +136,11 @@ def _read(text: str) -> tuple[ast.Expression, dict[str, str]]:
     source = _QUOTED.sub(lambda _: next(stand_ins), text)
     if "`" in source:
         raise LogError(f"a backtick is not closed in {text!r}")
-    return _parse(source, text), names
+    parsed = _parse(source, text)
+    for node in ast.walk(parsed):
+        if isinstance(node, ast.Name):
+            node.id = names.get(node.id, node.id)
+    return parsed
 
 
 def _parse(source: str, text: str) -> ast.Expression:
@@ -162,20 +165,12 @@ class _Evaluation:
 
     Args:
         columns: The values of each column, by name.
-        names: The names that the expression has in backticks, by the placeholders that replace them.
         text: The expression, for errors.
         functions: The functions that it may call, by name.
     """
 
-    def __init__(
-        self,
-        columns: Mapping[str, FloatArray],
-        names: Mapping[str, str],
-        text: str,
-        functions: Functions,
-    ) -> None:
+    def __init__(self, columns: Mapping[str, FloatArray], text: str, functions: Functions) -> None:
         self._columns = columns
-        self._names = names
         self._text = text
         self._functions = functions
 
@@ -190,7 +185,7 @@ class _Evaluation:
                 # An integer may be larger than the largest float.
                 return float(number) if number <= sys.float_info.max else math.inf
             case ast.Name(id=name):
-                return self._read_name(self._names.get(name, name))
+                return self._read_name(name)
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
                 return _BINARY[type(op)](self.value(left), self.value(right))
             case ast.UnaryOp(op=op, operand=operand) if type(op) in _UNARY:
