@@ -1,18 +1,21 @@
-"""Cells of a text: numbers in the forms that people and programs write them in; truth values are 1 and 0."""
+"""Cells of a text as columns: numbers in the forms that people and programs write, truth values as 1 and 0, texts."""
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
 from tuisim.base.data_class import dataclass
+from tuisim.base.errors import listed
 from tuisim.engine.core.conditions import NUMBER
 from tuisim.logs.arrow import build_text_array
+from tuisim.logs.warnings import Notes
 
 EMPTY_CELLS = ("", "NA", "N/A", "null", "None", "-")
 """Cells that mean a missing value."""
@@ -26,10 +29,16 @@ is_unit = re.compile(UNIT, re.IGNORECASE).fullmatch
 _UNIT = r"^(?P<number>.*\d\.?)(?P<gap>\s*)(?P<unit>%|°\w?|[A-Za-zµΩ][A-Za-z0-9µΩ²/]{0,7})$"
 _JUDGED_CELLS = 10_000
 """Cells of a column from which the form of its numbers is found."""
+_CODED = pa.dictionary(pa.int32(), pa.string())
+"""Dictionary-encoded text."""
+_MIN_REPEATED = 4
+"""Texts are dictionary-encoded if each occurs at least this often, on average."""
+_MIN_CELLS = 100
+"""With fewer cells, texts are not dictionary-encoded."""
 
 
 @dataclass(frozen=True, slots=True)
-class NumberForm:
+class _NumberForm:
     """The form of a column's numbers, such as their decimal sign."""
 
     pattern: str = rf"^{NUMBER}$|{_SPECIAL}"
@@ -43,35 +52,35 @@ class NumberForm:
     is_hexadecimal: bool = False
 
 
-PLAIN = NumberForm(decimal=".")
-DECIMAL_COMMA = NumberForm(
+_PLAIN = _NumberForm(decimal=".")
+_DECIMAL_COMMA = _NumberForm(
     rf"^[+-]?\d*,?\d+(?:[eE][+-]?\d+)?$|{_SPECIAL}",
     ((",", "."),),
     "have a comma as decimal sign",
     ",",
 )
-_COMMAS = NumberForm(
+_COMMAS = _NumberForm(
     r"^[+-]?(?:\d{1,3}(?:,\d{3})+|\d{1,3})(?:\.\d*)?$",
     ((",", ""),),
     "have commas between thousands (1,000 is a thousand)",
     ".",
 )
-_POINTS = NumberForm(
+_POINTS = _NumberForm(
     r"^[+-]?(?:\d{1,3}(?:\.\d{3})+|\d{1,3})(?:,\d*)?$",
     ((r"\.", ""), (",", ".")),
     "have points between thousands (1.000 is a thousand)",
     ",",
 )
-_GAPS = NumberForm(
+_GAPS = _NumberForm(
     r"^[+-]?\d{1,3}(?:[ '\x{a0}\x{202f}’]\d{3})*(?:[.,]\d*)?$",
     ((r"[ '\x{a0}\x{202f}’]", ""), (",", ".")),
     "have gaps between thousands",
 )
-_HEXADECIMAL = NumberForm(r"^0[xX][0-9a-fA-F]{1,15}$", (), "are hexadecimal", is_hexadecimal=True)
-_TRUTHS = NumberForm(r"^(?i:true|false)$", ((r"(?i)true", "1"), (r"(?i)false", "0")))
+_HEXADECIMAL = _NumberForm(r"^0[xX][0-9a-fA-F]{1,15}$", (), "are hexadecimal", is_hexadecimal=True)
+_TRUTHS = _NumberForm(r"^(?i:true|false)$", ((r"(?i)true", "1"), (r"(?i)false", "0")))
 
 
-def parse_numbers(cells: pa.Array, form: NumberForm) -> tuple[pa.Array, pa.Array]:
+def _parse_numbers(cells: pa.Array, form: _NumberForm) -> tuple[pa.Array, pa.Array]:
     """Return texts as float64, with nulls for the texts that are not numbers.
 
     Args:
@@ -101,7 +110,7 @@ def _trim(cells: pa.Array) -> tuple[Any, Any]:
     return pc.if_else(empty, pa.scalar(None, pa.string()), texts), empty
 
 
-def find_form(cells: pa.Array, separator: str, decimal: str) -> NumberForm | None:
+def _find_form(cells: pa.Array, separator: str, decimal: str) -> _NumberForm | None:
     """Return the form in which most cells of a column are numbers; None if most are not numbers.
 
     Args:
@@ -113,16 +122,16 @@ def find_form(cells: pa.Array, separator: str, decimal: str) -> NumberForm | Non
     special = pc.match_substring_regex(texts, _SPECIAL)
     if not pc.all(special).as_py():
         texts = texts.filter(pc.invert(special))
-    commas = (_COMMAS, DECIMAL_COMMA) if separator == "," else (DECIMAL_COMMA, _COMMAS)
+    commas = (_COMMAS, _DECIMAL_COMMA) if separator == "," else (_DECIMAL_COMMA, _COMMAS)
     forms = [
         form
-        for form in (PLAIN, *commas, _POINTS, _GAPS, _HEXADECIMAL, _TRUTHS)
+        for form in (_PLAIN, *commas, _POINTS, _GAPS, _HEXADECIMAL, _TRUTHS)
         if not decimal or form.decimal in ("", decimal)
     ]
     return _choose_form(texts, forms) or _find_unit_form(texts, forms)
 
 
-def _find_unit_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm | None:
+def _find_unit_form(texts: pa.Array, forms: Sequence[_NumberForm]) -> _NumberForm | None:
     """Return the form of numbers followed by a unit, such as `12 cm`; None if most of the texts have no unit."""
     parts: Any = pc.extract_regex(texts, _UNIT)
     units = Counter(pc.struct_field(parts, "unit").drop_null().to_pylist())
@@ -137,10 +146,10 @@ def _find_unit_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm 
     escaped = re.escape(unit)
     body = inner.pattern.replace("$", rf"\s*(?:{escaped})?$")
     words = f"have the unit {unit}" + (f" and {inner.words}" if inner.words else "")
-    return NumberForm(body, ((rf"\s*{escaped}$", ""), *inner.changes), words)
+    return _NumberForm(body, ((rf"\s*{escaped}$", ""), *inner.changes), words)
 
 
-def _choose_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm | None:
+def _choose_form(texts: pa.Array, forms: Sequence[_NumberForm]) -> _NumberForm | None:
     """Return the first of some forms that more than half of the texts have; None if no form does."""
     counts = []
     for form in forms:
@@ -152,6 +161,113 @@ def _choose_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm | N
     return forms[counts.index(largest)] if 2 * largest > len(texts) else None
 
 
-def is_empty(cells: pa.Array) -> bool:
+def _is_empty(cells: pa.Array) -> bool:
     """Return whether all cells of a column are empty."""
     return bool(pc.all(_trim(cells)[1]).as_py())
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    kind: pa.DataType
+    form: _NumberForm = _PLAIN
+
+
+class TypedColumns:
+    """The types and number forms of the columns of one file, which their first cells decide.
+
+    Args:
+        decimal: The decimal sign; empty to find it.
+    """
+
+    def __init__(self, notes: Notes, decimal: str) -> None:
+        self._notes = notes
+        self._decimal = decimal
+        self._columns: dict[str, _Column] = {}
+        """By name; missing while all cells of a column were empty."""
+
+    def list_plain(self) -> dict[str, pa.DataType]:
+        """Return the types of the columns that pyarrow can parse itself, by column; the others are read as texts."""
+        forms = (_PLAIN, _DECIMAL_COMMA) if self.has_decimal_commas else (_PLAIN,)
+        return {name: column.kind for name, column in self._columns.items() if column.form in forms}
+
+    @property
+    def has_decimal_commas(self) -> bool:
+        """Whether the numbers of any column have a comma as decimal sign."""
+        return any(column.form is _DECIMAL_COMMA for column in self._columns.values())
+
+    def convert(
+        self,
+        columns: Mapping[str, pa.Array],
+        list_rows: Callable[[], Sequence[int]],
+        separator: str,
+    ) -> pa.Table:
+        """Return a table in which each column of texts that this reader takes for numbers or times has such values.
+
+        A column whose first cells are neither stays as it is. A cell that its column's type does not allow is null.
+
+        Args:
+            columns: The columns by name.
+            list_rows: Returns the row of each cell in the file, for a note; called only if a cell is not a number.
+            separator: The separator of cells in a line: a comma that separates cells is no decimal sign.
+        """
+        texts = {
+            name: cells
+            for name, cells in columns.items()
+            if name not in self._columns and not _is_empty(cells)
+        }
+        self._find_columns(texts, separator)
+        return pa.table(
+            {name: self._convert_column(name, cells, list_rows) for name, cells in columns.items()}
+        )
+
+    def _find_columns(self, texts: Mapping[str, pa.Array], separator: str) -> None:
+        """Set the types and number forms of new columns.
+
+        Args:
+            texts: The first cells of each of these columns, by name.
+            separator: The separator of cells in a line.
+        """
+        forms = {name: _find_form(cells, separator, self._decimal) for name, cells in texts.items()}
+        if _DECIMAL_COMMA in forms.values():
+            # If one column has decimal commas, points in the others separate thousands.
+            forms = {
+                name: _find_form(texts[name], separator, ",") or form
+                for name, form in forms.items()
+            }
+        names_by_words: dict[str, list[str]] = {}
+        for name, form in forms.items():
+            if form is None:
+                self._columns[name] = _Column(_choose_text_kind(texts[name]))
+                continue
+            self._columns[name] = _Column(pa.float64(), form)
+            if form.words and not (form is _DECIMAL_COMMA and separator == ";"):
+                names_by_words.setdefault(form.words, []).append(repr(name))
+        for words, names in names_by_words.items():
+            self._notes.say(f"the numbers of {listed(names)} {words}")
+
+    def _convert_column(
+        self, name: str, cells: pa.Array, list_rows: Callable[[], Sequence[int]]
+    ) -> pa.Array:
+        column = self._columns.get(name)
+        if column is None:
+            return pa.nulls(len(cells))
+        if cells.type == column.kind:
+            return cells
+        if column.kind == _CODED:
+            return cells.dictionary_encode()
+        numbers, wrong = _parse_numbers(cells, column.form)
+        if len(positions := np.flatnonzero(wrong)):
+            rows = list_rows()
+            self._notes.add(
+                f"cell of {name!r} is not a number",
+                f"cells of {name!r} are not numbers",
+                [rows[position] for position in positions.tolist()],
+            )
+        return numbers
+
+
+def _choose_text_kind(cells: pa.Array) -> pa.DataType:
+    """Return the type for a column of texts: `_CODED` if the given first cells often repeat, else strings."""
+    count = len(cells)
+    often = count > _MIN_CELLS and _MIN_REPEATED * pc.count_distinct(cells).as_py() <= count
+    return _CODED if often else pa.string()

@@ -1,8 +1,10 @@
-"""Rows as objects, from lines of JSON, of Python's dictionaries, or of what else has names with values."""
+"""Rows as objects: from lines of JSON, of Python's dictionaries or of names with values, and from JSON documents."""
 
 from __future__ import annotations
 
 import ast
+import csv
+import io
 import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -10,10 +12,14 @@ from typing import Any
 
 import pyarrow as pa
 
-from tuisim.logs.blocks import Block
-from tuisim.logs.typed_columns import TypedColumns
+from tuisim.base.errors import LogError, listed, shortened
+from tuisim.logs.blocks import MAX_DOCUMENT_BYTES, Block
+from tuisim.logs.cells import TypedColumns
+from tuisim.logs.choices import ReadChoices
+from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.warnings import Notes
 
+_ALLOWED = "a JSON log is rows as objects, or an object of columns that have equal lengths"
 _NAMELESS = "(no name)"
 # Python's output can contain values that JSON does not have, such as sets and bytes.
 _format_value = json.JSONEncoder(default=repr, skipkeys=True).encode
@@ -89,7 +95,7 @@ def _escape_surrogates(text: str) -> str:
     return text if text.isascii() else text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
-def parse_value(line: str) -> Any:
+def _parse_value(line: str) -> Any:
     """Return the value of a line in JSON, or in the form in which Python prints dictionaries and lists.
 
     The result is None for a line in neither form.
@@ -103,13 +109,137 @@ def parse_value(line: str) -> Any:
     return None
 
 
-def is_row(line: str) -> bool:
-    """Return whether a line is an object, or a list of objects."""
-    return bool(_parse_rows(line))
-
-
 def _parse_rows(line: str) -> list[dict[str, Any]]:
     """Return the object in a line, or the objects in its list; empty for other lines."""
-    value = parse_value(line)
+    value = _parse_value(line)
     rows = value if isinstance(value, list) else [value]
     return rows if all(isinstance(row, dict) for row in rows) else []
+
+
+def is_json_start(lines: Sequence[str]) -> bool:
+    """Return whether a text with these first lines is JSON."""
+    first = lines[0].strip() if lines else ""
+    if first == "[" or first.startswith(("{", "[{")):
+        return True
+    return first.startswith("[") and _parse_value(first) is not None
+
+
+def has_objects(lines: Sequence[str]) -> bool:
+    """Return whether there are several lines, most of which are a JSON object each."""
+    count = sum(isinstance(_parse_value(line), dict) for line in lines)
+    return len(lines) > 1 and 2 * count > len(lines)
+
+
+class DocumentReader:
+    """Reads a file that is one JSON document: collects its blocks, and parses them at the end."""
+
+    def __init__(self, notes: Notes, choices: ReadChoices) -> None:
+        self._notes = notes
+        self._choices = choices
+        self._text = ""
+
+    def read(self, block: Block) -> None:
+        """Add a block of the file.
+
+        Raises:
+            LogError: the file is too large.
+        """
+        self._text += block.text
+        if len(self._text) > MAX_DOCUMENT_BYTES:
+            raise LogError(
+                f"is JSON in one piece, larger than {MAX_DOCUMENT_BYTES >> 20} MiB",
+                "write each row as an object on a line of its own",
+            )
+
+    def finish(self) -> pa.Table | None:
+        """Return the rows of the document as a table; None if it has no rows.
+
+        Of a damaged document, only the rows in a line of their own are returned.
+
+        Raises:
+            LogError: the document is not a table.
+        """
+        try:
+            value = json.loads(self._text)
+        except (ValueError, RecursionError) as error:
+            table = build_json_reader(self._notes).read(Block(1, self._text))
+            if table is None:
+                self._notes.say(f"not complete JSON: {error}")
+            return table
+        self._notes.noun = "row"
+        return self._build_table(value)
+
+    def _build_table(self, value: Any) -> pa.Table | None:
+        if isinstance(value, dict):
+            return self._build_table(self._list_rows(value))
+        if not isinstance(value, list):
+            raise LogError(
+                f"is a single JSON value, {shortened(json.dumps(value), 40)}, not a table", _ALLOWED
+            )
+        objects = [(number, row) for number, row in enumerate(value, 1) if isinstance(row, dict)]
+        if not objects:
+            return self._build_from_lists(value)
+        others = [number for number, row in enumerate(value, 1) if not isinstance(row, dict)]
+        self._notes.add(
+            "value is not a row and was skipped", "values are not rows and were skipped", others
+        )
+        return build_json_reader(self._notes).build_table(objects) if any(objects[0][1]) else None
+
+    def _build_from_lists(self, rows: Sequence[Any]) -> pa.Table | None:
+        """Return a table of rows that are lists or single values; the first list may be the column names.
+
+        The result is None if there are no rows.
+        """
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerows(
+            row if isinstance(row, list) else [row] for row in rows
+        )
+        return CsvReader(self._notes, self._choices).read(Block(1, text.getvalue()))
+
+    def _list_rows(self, value: Mapping[str, Any]) -> list[Any]:
+        """Return the rows in a JSON object: those of the only table in it, or those of its columns.
+
+        Otherwise, return the object as one row.
+
+        Raises:
+            LogError: the object has several tables.
+        """
+        inner = [name for name, cells in value.items() if _is_table(cells)]
+        if len(inner) > 1:
+            raise LogError(f"has several tables: {listed(map(repr, inner))}", _ALLOWED)
+        if inner:
+            self._notes.say(f"only the table {inner[0]!r} is read")
+            table = value[inner[0]]
+            return self._list_rows(table) if isinstance(table, dict) else table
+        # pandas writes a frame as an object of cells for each column.
+        has_labels = all(isinstance(cells, dict) for cells in value.values())
+        columns = {n: cells for n, cells in value.items() if has_labels or isinstance(cells, list)}
+        if not columns:
+            return [value] if value else []
+        others = [repr(name) for name in value if name not in columns]
+        if others:
+            self._notes.say(f"only the lists are read as columns, without {listed(others)}")
+        return _list_rows(columns)
+
+
+def _is_table(value: Any) -> bool:
+    """Return whether a value in a JSON document is a table: a list of objects, or an object with at least one list."""
+    if isinstance(value, list):
+        return bool(value) and all(isinstance(cell, dict) for cell in value)
+    return isinstance(value, dict) and any(isinstance(cell, list) for cell in value.values())
+
+
+def _list_rows(columns: Mapping[str, Any]) -> list[Any]:
+    """Return columns, lists by name, as rows.
+
+    Raises:
+        LogError: their lengths differ.
+    """
+    import pandas as pd
+
+    try:
+        frame = pd.DataFrame(columns, dtype=object)
+    except ValueError as error:
+        raise LogError("has columns of different lengths", _ALLOWED) from error
+    rows: list[Any] = frame.where(frame.notna(), None).to_dict("records")
+    return rows

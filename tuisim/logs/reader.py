@@ -44,9 +44,14 @@ from tuisim.logs.columns import (
     has_guessed_order,
     is_text,
 )
-from tuisim.logs.documents import DocumentReader, has_objects, is_json_start
 from tuisim.logs.export import find_companion, log_metadata
-from tuisim.logs.json_rows import ObjectReader, build_json_reader
+from tuisim.logs.json_rows import (
+    DocumentReader,
+    ObjectReader,
+    build_json_reader,
+    has_objects,
+    is_json_start,
+)
 from tuisim.logs.log import Log, LogCache
 from tuisim.logs.program_lines import (
     choose_reader,

@@ -18,7 +18,7 @@ from pyarrow.types import is_floating
 from tuisim.base.errors import LogError, counted, listed
 from tuisim.logs.arrow import build_text_array
 from tuisim.logs.blocks import Block
-from tuisim.logs.cells import EMPTY_CELLS
+from tuisim.logs.cells import EMPTY_CELLS, TypedColumns
 from tuisim.logs.choices import NAMES_OF_SIGNS, ReadChoices
 from tuisim.logs.csv_cells import WRITTEN, restore_formula
 from tuisim.logs.heading import (
@@ -33,7 +33,6 @@ from tuisim.logs.heading import (
     split_cells,
     split_rows,
 )
-from tuisim.logs.typed_columns import TypedColumns
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
 
