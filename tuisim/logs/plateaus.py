@@ -130,26 +130,19 @@ def find_plateaus(values: FloatArray) -> PlateauArray:
     # Huge values are limited, as their squares would leave no digits for other values.
     far = _GIANT * max(signal.range, sigma)
     cut = _cut(np.clip(clean, low - far, high + far), sigma)
-    short_levels = is_step.any()
-    pieces = _join_pieces(signal, cut, has_strays=not short_levels)
+    has_strays = not is_step.any()
+    pieces = _join_pieces(signal, cut, has_strays=has_strays)
     plateaus = measure(signal, pieces[count_samples(pieces) >= MIN_SAMPLES])
     moving = find_moving(signal, plateaus)
     parts = find_still_parts(signal, plateaus[moving], cut)
     plateaus = plateaus[~moving]
-    if not short_levels:
-        plateaus = plateaus[~_find_ramps(signal, plateaus)]
-        plateaus = plateaus[~_find_edges(plateaus)]
+    if has_strays:
         # With noise, a level needs one sample more than `MIN_SAMPLES`, except at the ends of a log.
-        at_an_end = (plateaus["start"] == 0) | (plateaus["stop"] == len(clean))
-        plateaus = plateaus[
-            at_an_end | (count_samples(read_spans(plateaus)) >= MIN_SAMPLES + (noise > 0.0))
-        ]
+        plateaus = _drop_short(signal, plateaus, MIN_SAMPLES + (noise > 0.0))
     plateaus = _add_ends(signal, add_apart(_settle(signal, plateaus), parts))
     places = np.flatnonzero(is_finite)
-    plateaus["start"], plateaus["stop"] = (
-        places[plateaus["start"]],
-        places[plateaus["stop"] - 1] + 1,
-    )
+    plateaus["start"] = places[plateaus["start"]]
+    plateaus["stop"] = places[plateaus["stop"] - 1] + 1
     return plateaus
 
 
@@ -170,6 +163,14 @@ def _join_pieces(signal: Signal, pieces: Pieces, *, has_strays: bool) -> Pieces:
         if len(pieces) == count:
             break
     return pieces
+
+
+def _drop_short(signal: Signal, plateaus: PlateauArray, min_samples: int) -> PlateauArray:
+    """Return plateaus without those that are ramps, edges between two others, or too short inside of the log."""
+    plateaus = plateaus[~_find_ramps(signal, plateaus)]
+    plateaus = plateaus[~_find_edges(plateaus)]
+    at_an_end = (plateaus["start"] == 0) | (plateaus["stop"] == len(signal.values))
+    return plateaus[at_an_end | (count_samples(read_spans(plateaus)) >= min_samples)]
 
 
 def _settle(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
