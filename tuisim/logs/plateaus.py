@@ -170,7 +170,9 @@ def _drop_short(signal: Signal, plateaus: PlateauArray, min_samples: int) -> Pla
     plateaus = plateaus[~_find_ramps(signal, plateaus)]
     plateaus = plateaus[~_find_edges(plateaus)]
     at_an_end = (plateaus["start"] == 0) | (plateaus["stop"] == len(signal.values))
-    return plateaus[at_an_end | (count_samples(read_spans(plateaus)) >= min_samples)]
+    is_long = count_samples(read_spans(plateaus)) >= min_samples
+    long_plateaus: PlateauArray = plateaus[at_an_end | is_long]
+    return long_plateaus
 
 
 def _settle(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
@@ -180,7 +182,8 @@ def _settle(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
     # After they were extended, two plateaus may be separated only by a stray, so they are joined again.
     grown = _extend_pieces(signal, read_spans(plateaus))
     settled = measure(signal, join_drifting(signal, grown))
-    return settled[~find_moving(signal, settled)]
+    still: PlateauArray = settled[~find_moving(signal, settled)]
+    return still
 
 
 def _find_extremes(values: FloatArray) -> tuple[float, float]:

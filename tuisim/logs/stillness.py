@@ -219,8 +219,8 @@ def find_still_parts(signal: Signal, moving: PlateauArray, cut: Pieces) -> Plate
         min_variance = _WANDERS * measured["spread"][some] ** 2
         still[some] &= _compare_neighbours(part, signal.sigma) >= min_variance
     still &= count_samples(parts) >= _SHORT_SAMPLES
-    measured = measured[still]
-    return measured[~find_moving(signal, measured)]
+    level_parts: PlateauArray = measured[still & ~find_moving(signal, measured)]
+    return level_parts
 
 
 def _trim(values: FloatArray, parts: Pieces, far: float) -> Pieces:
