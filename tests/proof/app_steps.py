@@ -66,7 +66,7 @@ NAMED = (
 MANY_TICKS = 1_000_000
 """A longer run is stopped: a robot that is blocked at full speed would record gigabytes, which the model compares."""
 
-Shown = dict[tuple[str, int], object]
+Shown = dict[tuple[str, int, int | None], object]
 
 
 class AppSteps:
@@ -147,7 +147,9 @@ class AppSteps:
             view.gyro_deg,
             view.pen_down,
         )
-        before = self._shown.setdefault((controller.run_id, tick), now)
+        # At a pause, the values are those between two ticks that the program would read then.
+        pause_ns = controller.shown_pause and controller.shown_pause.inspected.time_ns
+        before = self._shown.setdefault((controller.run_id, tick, pause_ns), now)
         if before != now:
             raise FaultError(
                 f"tick {tick} of {controller.run_id} was shown as {before}, then as {now}"
