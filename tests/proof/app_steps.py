@@ -148,7 +148,8 @@ class AppSteps:
             view.pen_down,
         )
         # At a pause, the values are those between two ticks that the program would read then.
-        pause_ns = controller.shown_pause and controller.shown_pause.inspected.time_ns
+        pause = controller.shown_pause
+        pause_ns = pause.inspected.time_ns if pause else None
         before = self._shown.setdefault((controller.run_id, tick, pause_ns), now)
         if before != now:
             raise FaultError(
