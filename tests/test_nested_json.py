@@ -18,8 +18,8 @@ from tuisim.engine.runs.side_files import (
     MODULES_FILE,
     READS_FILE,
     STOP_FILE,
+    FilesRead,
     read_modules,
-    read_reads,
     read_stop_tick,
 )
 from tuisim.logs.arrow import METADATA_KEY, read_metadata
@@ -100,7 +100,7 @@ def test_optional_files_of_deeply_nested_json_are_ignored(
     {
         "notes": ("notes.jsonl", DEEP, lambda folder: read_notes(folder / "notes.jsonl")),
         "modules": (MODULES_FILE, DEEP, read_modules),
-        "reads": (READS_FILE, DEEP, read_reads),
+        "reads": (READS_FILE, DEEP, FilesRead.read),
         "stop": (STOP_FILE, DEEP, read_stop_tick),
         "stop-at-infinity": (STOP_FILE, b'{"tick": 1e999}', read_stop_tick),
     },

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tuisim.app.debugger import break_lines
 from tuisim.base.errors import ConfigError
 from tuisim.engine.breakpoints import (
     Breakpoint,
@@ -11,8 +12,6 @@ from tuisim.engine.breakpoints import (
     LineBreak,
     StallBreak,
     TimeBreak,
-    break_lines,
-    parse_break,
     parse_breakpoints,
 )
 from tuisim.engine.core.conditions import ValueCondition, ValueSource
@@ -68,12 +67,12 @@ RULES: dict[str, tuple[BreakRule, str]] = {
 def test_a_breakpoints_text_is_parsed_and_written_back_the_same(
     text: str, rule: BreakRule, common: str
 ) -> None:
-    found = parse_break(text, RUN)
+    found = Breakpoint.parse(text, RUN)
     assert found == Breakpoint(rule, common)
-    assert parse_break(found.written(), RUN) == found
-    off = parse_break("# " + text, RUN)
+    assert Breakpoint.parse(found.written(), RUN) == found
+    off = Breakpoint.parse("# " + text, RUN)
     assert off.disabled
-    assert parse_break(off.written(), RUN) == off
+    assert Breakpoint.parse(off.written(), RUN) == off
 
 
 WRONG = {
@@ -100,7 +99,7 @@ WRONG = {
 @pytest.mark.parametrize("text, why", WRONG.items(), ids=[text[:20] or "empty" for text in WRONG])
 def test_a_text_that_is_no_breakpoint_is_refused_with_what_is_allowed(text: str, why: str) -> None:
     with pytest.raises(ConfigError, match="break: ") as refused:
-        parse_break(text, RUN)
+        Breakpoint.parse(text, RUN)
     assert why in refused.value.message
     assert refused.value.hint
 
@@ -108,8 +107,10 @@ def test_a_text_that_is_no_breakpoint_is_refused_with_what_is_allowed(text: str,
 def test_breakpoints_can_compare_every_column_of_the_robot() -> None:
     for column in list_columns(RUN):
         for name in (column.name, *column.also):
-            assert parse_break(f"{name} > 1.5", RUN).rule == ValueCondition(column.name, ">", "1.5")
-    assert parse_break("middle.red > 1").rule == ValueCondition("middle.red", ">", "1")
+            assert Breakpoint.parse(f"{name} > 1.5", RUN).rule == ValueCondition(
+                column.name, ">", "1.5"
+            )
+    assert Breakpoint.parse("middle.red > 1").rule == ValueCondition("middle.red", ">", "1")
 
 
 def test_breakpoints_know_their_lines_and_can_be_moved() -> None:

@@ -67,7 +67,7 @@ def naive_sums(pixels: np.ndarray, diameter: int, col: int, row: int) -> list[in
 
 @pytest.mark.slow
 def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
-    files = mat_cache.prepare(mats.background("Testcard").image, (10, 20, 30))
+    files = mat_cache.FieldFiles.prepare(mats.background("Testcard").image, (10, 20, 30))
     field = files.open_field()
     pixels = files.read_pixels()
     dice = random.Random(5)
@@ -96,7 +96,7 @@ def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
 @pytest.mark.quick_cases("2", "7")
 @pytest.mark.parametrize("diameter", [2, 7, 100, 128])
 def test_cached_sums_are_right_for_unusual_diameters(diameter: int, home: Path) -> None:
-    files = mat_cache.prepare(mats.background("Radial_red").image, [diameter])
+    files = mat_cache.FieldFiles.prepare(mats.background("Radial_red").image, [diameter])
     field = files.open_field()
     pixels = files.read_pixels()
     for col, row in [(1130, 520), (-3, -3), (WIDTH - 2, 600)]:
@@ -105,14 +105,16 @@ def test_cached_sums_are_right_for_unusual_diameters(diameter: int, home: Path) 
 
 @pytest.mark.slow
 def test_the_sum_over_the_largest_white_disc_does_not_overflow(home: Path, tmp_path: Path) -> None:
-    files = mat_cache.prepare(picture(tmp_path, fill="white"), [mat_cache.MAX_DIAMETER_PX])
+    files = mat_cache.FieldFiles.prepare(
+        picture(tmp_path, fill="white"), [mat_cache.MAX_DIAMETER_PX]
+    )
     pixels = sum(map(sum, build_disc_mask(mat_cache.MAX_DIAMETER_PX)))
     assert files.open_field().sum_disc(mat_cache.MAX_DIAMETER_PX, 500, 500) == (255 * pixels,) * 3
 
 
 def test_cached_pixels_equal_those_of_the_image(home: Path) -> None:
     image = mats.background("Rainbow_bands").image
-    files = mat_cache.prepare(image, ())
+    files = mat_cache.FieldFiles.prepare(image, ())
     with Image.open(image) as opened:
         assert np.array_equal(files.read_pixels(), np.asarray(opened))
     assert files.open_field().read_box(4, -1, -1)[12:24] == bytes(3) + b"\xff" * 9
@@ -120,9 +122,9 @@ def test_cached_pixels_equal_those_of_the_image(home: Path) -> None:
 
 def test_a_cached_mat_is_not_prepared_again(home: Path, tmp_path: Path) -> None:
     image = picture(tmp_path)
-    first = mat_cache.prepare(image, (20, 10))
+    first = mat_cache.FieldFiles.prepare(image, (20, 10))
     made = {path: path.stat().st_ino for path in cached(home)}
-    assert mat_cache.prepare(image, [10, 20, 20]) == first
+    assert mat_cache.FieldFiles.prepare(image, [10, 20, 20]) == first
     assert {path: path.stat().st_ino for path in cached(home)} == made
     assert [diameter for diameter, _ in first.sums] == [10, 20]
 
@@ -131,20 +133,20 @@ def test_a_cached_mat_is_found_by_its_images_content_not_its_name(
     home: Path, tmp_path: Path
 ) -> None:
     image = picture(tmp_path)
-    first = mat_cache.prepare(image, ())
-    assert mat_cache.prepare(image.rename(tmp_path / "other.png"), ()) == first
-    assert mat_cache.prepare(picture(tmp_path, fill="red"), ()) != first
+    first = mat_cache.FieldFiles.prepare(image, ())
+    assert mat_cache.FieldFiles.prepare(image.rename(tmp_path / "other.png"), ()) == first
+    assert mat_cache.FieldFiles.prepare(picture(tmp_path, fill="red"), ()) != first
 
 
 @pytest.mark.slow
 def test_a_cut_off_cache_file_is_made_again(home: Path, tmp_path: Path) -> None:
     image = picture(tmp_path)
-    files = mat_cache.prepare(image, [20])
+    files = mat_cache.FieldFiles.prepare(image, [20])
     whole = files.sums[0][1].read_bytes()
     os.truncate(files.sums[0][1], 1000)
     with pytest.raises(BackgroundError, match="1000 bytes"):
         files.open_field()
-    assert mat_cache.prepare(image, [20]).sums[0][1].read_bytes() == whole
+    assert mat_cache.FieldFiles.prepare(image, [20]).sums[0][1].read_bytes() == whole
 
 
 def zeroed(path: Path, keeps_times: bool = False) -> None:
@@ -193,31 +195,31 @@ def test_a_damaged_cache_file_is_made_again(
     home: Path, tmp_path: Path, damage: Callable[[Path], None]
 ) -> None:
     image = picture(tmp_path, fill="white")
-    files = mat_cache.prepare(image, [10])
+    files = mat_cache.FieldFiles.prepare(image, [10])
     for path in (files.pixels, files.sums[0][1]):
         damage(path)
         assert not files.are_sound
     with pytest.raises(BackgroundError):
         files.open_field()
-    assert mat_cache.prepare(image, [10]) == files
+    assert mat_cache.FieldFiles.prepare(image, [10]) == files
     assert files.open_field().sum_disc(10, 500, 500) == (69 * 255,) * 3
     assert files.open_field().read_box(1, 500, 500) == b"\xff" * 3
 
 
 def test_a_copied_cache_file_is_checked_once_and_then_trusted(home: Path, tmp_path: Path) -> None:
     image = picture(tmp_path, fill="white")
-    files = mat_cache.prepare(image, ())
+    files = mat_cache.FieldFiles.prepare(image, ())
     shutil.copy(files.pixels, tmp_path / "copy")
     os.replace(tmp_path / "copy", files.pixels)
     copied = files.pixels.stat().st_ino
-    assert mat_cache.prepare(image, ()) == files
+    assert mat_cache.FieldFiles.prepare(image, ()) == files
     assert files.pixels.stat().st_ino == copied
     # Known again: it need not be read any more.
     assert note_of(files.pixels).read_text().split()[1] == str(copied)
 
 
 def test_opening_a_mat_whose_cache_file_is_missing_raises(home: Path, tmp_path: Path) -> None:
-    files = mat_cache.prepare(picture(tmp_path), [20])
+    files = mat_cache.FieldFiles.prepare(picture(tmp_path), [20])
     files.pixels.unlink()
     with pytest.raises(BackgroundError, match="cannot be opened"):
         files.open_field()
@@ -226,7 +228,7 @@ def test_opening_a_mat_whose_cache_file_is_missing_raises(home: Path, tmp_path: 
 def test_an_open_field_stays_readable_after_its_files_were_deleted(
     home: Path, tmp_path: Path
 ) -> None:
-    files = mat_cache.prepare(picture(tmp_path, fill="white"), [10])
+    files = mat_cache.FieldFiles.prepare(picture(tmp_path, fill="white"), [10])
     field = files.open_field()
     for path in cached(home):
         path.unlink()
@@ -241,12 +243,12 @@ def test_the_cache_of_mats_drops_the_files_unused_for_longest(
         picture(tmp_path, f"{shade}.png", fill=f"#{shade}{shade}{shade}")
         for shade in ("00", "33", "66", "99")
     ]
-    made = [mat_cache.prepare(image, ()).pixels for image in images[:3]]
+    made = [mat_cache.FieldFiles.prepare(image, ()).pixels for image in images[:3]]
     for age_s, path in zip((300, 200, 100), made, strict=True):
         used = path.stat().st_mtime - age_s
         os.utime(note_of(path), (used, used))
-    mat_cache.prepare(images[0], ())
-    last = mat_cache.prepare(images[3], ()).pixels
+    mat_cache.FieldFiles.prepare(images[0], ())
+    last = mat_cache.FieldFiles.prepare(images[3], ()).pixels
     assert cached(home) == sorted([made[0], made[2], last])
 
 
@@ -254,7 +256,7 @@ def test_a_cached_mat_used_while_others_are_dropped_is_not_dropped(
     home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(mat_cache, "MAX_CACHED_FILES", 1)
-    first = mat_cache.prepare(picture(tmp_path, "a.png", fill="navy"), ()).pixels
+    first = mat_cache.FieldFiles.prepare(picture(tmp_path, "a.png", fill="navy"), ()).pixels
     os.utime(note_of(first), (0, 0))
     by_age = mat_cache._by_age
 
@@ -264,7 +266,7 @@ def test_a_cached_mat_used_while_others_are_dropped_is_not_dropped(
         return found
 
     monkeypatch.setattr(mat_cache, "_by_age", listed_then_used)
-    last = mat_cache.prepare(picture(tmp_path, "b.png", fill="white"), ()).pixels
+    last = mat_cache.FieldFiles.prepare(picture(tmp_path, "b.png", fill="white"), ()).pixels
     assert cached(home) == sorted([first, last])
 
 
@@ -273,7 +275,7 @@ def test_all_cached_files_of_the_mat_just_prepared_are_kept(
     home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(mat_cache, "MAX_CACHED_FILES", 1)
-    files = mat_cache.prepare(picture(tmp_path), (10, 20))
+    files = mat_cache.FieldFiles.prepare(picture(tmp_path), (10, 20))
     assert files.open_field().sums.keys() == {10, 20}
 
 
@@ -284,7 +286,7 @@ def test_temporary_cache_files_of_killed_processes_are_removed(home: Path, tmp_p
     for part in (old, new):
         part.write_bytes(b"half")
     os.utime(old, (0, 0))
-    mat_cache.prepare(picture(tmp_path), ())
+    mat_cache.FieldFiles.prepare(picture(tmp_path), ())
     assert cached(home, "*.tmp") == [new]
 
 
@@ -294,7 +296,7 @@ def test_several_processes_preparing_a_mat_at_once_make_the_same_files(
 ) -> None:
     image = picture(tmp_path, fill="navy")
     with ThreadPoolExecutor(3) as pool:
-        found = {pool.submit(mat_cache.prepare, image, [20]) for _ in range(3)}
+        found = {pool.submit(mat_cache.FieldFiles.prepare, image, [20]) for _ in range(3)}
     assert len({each.result() for each in found}) == 1
     assert [path.suffix for path in cached(home)] == [".sums", ".rgb"]
     (files,) = {each.result() for each in found}
@@ -304,7 +306,7 @@ def test_several_processes_preparing_a_mat_at_once_make_the_same_files(
 def test_a_copied_field_stays_readable_after_its_files_were_cut_off(
     home: Path, tmp_path: Path
 ) -> None:
-    files = mat_cache.prepare(picture(tmp_path, fill="white"), [10])
+    files = mat_cache.FieldFiles.prepare(picture(tmp_path, fill="white"), [10])
     field = files.open_field(is_copied=True)
     pixels = files.read_pixels()
     for path in (files.pixels, *dict(files.sums).values()):
@@ -317,7 +319,7 @@ def test_a_copied_field_stays_readable_after_its_files_were_cut_off(
 @pytest.mark.parametrize("diameter", [0, -5, 129])
 def test_a_diameter_beyond_the_limits_is_refused(diameter: int, home: Path, tmp_path: Path) -> None:
     with pytest.raises(BackgroundError, match="from 1 to 128"):
-        mat_cache.prepare(picture(tmp_path), [diameter])
+        mat_cache.FieldFiles.prepare(picture(tmp_path), [diameter])
 
 
 def test_a_cache_folder_that_cannot_be_created_is_named(
@@ -326,7 +328,7 @@ def test_a_cache_folder_that_cannot_be_created_is_named(
     (tmp_path / "file").write_text("in the way")
     monkeypatch.setenv("TUISIM_HOME", str(tmp_path / "file"))
     with pytest.raises(BackgroundError, match="TUISIM_HOME"):
-        mat_cache.prepare(picture(tmp_path), [20])
+        mat_cache.FieldFiles.prepare(picture(tmp_path), [20])
 
 
 def test_without_tuisim_home_the_users_cache_folder_is_used(
@@ -339,7 +341,7 @@ def test_without_tuisim_home_the_users_cache_folder_is_used(
 
 @pytest.mark.slow
 def test_opening_a_cached_mat_imports_no_heavy_library(home: Path, tmp_path: Path) -> None:
-    files = mat_cache.prepare(picture(tmp_path, fill="white"), [20])
+    files = mat_cache.FieldFiles.prepare(picture(tmp_path, fill="white"), [20])
     code = (
         "import json, sys\n"
         "from tuisim.engine import mat_cache as fields\n"

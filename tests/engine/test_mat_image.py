@@ -120,7 +120,7 @@ def test_a_bad_mat_image_is_refused_with_a_reason_and_leaves_no_cache_file(
 ) -> None:
     make(tmp_path / "mat.png")
     with pytest.raises(BackgroundError, match=message) as caught:
-        mat_cache.prepare(tmp_path / "mat.png", [20])
+        mat_cache.FieldFiles.prepare(tmp_path / "mat.png", [20])
     assert caught.value.file == str(tmp_path / "mat.png")
     assert "40 megapixels and 256 MB" in caught.value.hint
     assert not home.exists()
@@ -148,7 +148,7 @@ def test_a_decompression_bomb_is_refused_quickly_and_in_little_memory(
         "from pathlib import Path\n"
         "from tuisim.engine import mat_cache as fields\n"
         "from tuisim.base.errors import BackgroundError\n"
-        "try: fields.prepare(Path(sys.argv[1]), [20])\n"
+        "try: fields.FieldFiles.prepare(Path(sys.argv[1]), [20])\n"
         "except BackgroundError as error: print(error.message)\n"
         "used = resource.getrusage(resource.RUSAGE_SELF)\n"
         # Linux passes the most that a process has used on to its children, but not through the status of their own.
@@ -202,7 +202,7 @@ def test_an_unknown_fit_of_a_mat_image_is_refused_with_the_known_ones(
 ) -> None:
     (tmp_path / "mat.png").write_bytes(WHOLE)
     with pytest.raises(BackgroundError, match="no such fit") as caught:
-        mat_cache.prepare(tmp_path / "mat.png", [20], fit)
+        mat_cache.FieldFiles.prepare(tmp_path / "mat.png", [20], fit)
     assert all(allowed in caught.value.hint for allowed in BACKGROUND_FITS)
 
 
@@ -374,5 +374,8 @@ def test_mat_fits_share_a_cached_image_only_if_they_give_the_same_pixels(
     size: tuple[int, int], alike: bool, home: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "mat.png").write_bytes(saved(Image.new("RGB", size, "gray"), compress_level=1))
-    prepared = {mat_cache.prepare(tmp_path / "mat.png", (), fit).pixels for fit in BACKGROUND_FITS}
+    prepared = {
+        mat_cache.FieldFiles.prepare(tmp_path / "mat.png", (), fit).pixels
+        for fit in BACKGROUND_FITS
+    }
     assert len(prepared) == (1 if alike else len(BACKGROUND_FITS))

@@ -31,9 +31,9 @@ from tuisim.engine.runs.side_files import (
     MODULES_FILE,
     READS_FILE,
     STOP_FILE,
+    FilesRead,
     read_actions,
     read_modules,
-    read_reads,
     read_stop_tick,
 )
 from tuisim.programs.notebook_file import read_notebook_programs
@@ -284,7 +284,9 @@ FORMATS: Mapping[str, Format] = {
     "modules": Format(
         MODULES_FILE, _reads(lambda path: read_modules(Path(path).parent)), Syntax.ROWS
     ),
-    "reads": Format(READS_FILE, _reads(lambda path: read_reads(Path(path).parent)), Syntax.ROWS),
+    "reads": Format(
+        READS_FILE, _reads(lambda path: FilesRead.read(Path(path).parent)), Syntax.ROWS
+    ),
     "stop": Format(STOP_FILE, _reads(lambda path: read_stop_tick(Path(path).parent)), Syntax.JSON),
     "telemetry": Format(
         "home/runs/plain/telemetry.bin", _run("plain", *_SHOWN), Syntax.FIELDS, is_slow=True

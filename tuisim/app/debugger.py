@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ from tuisim.app.snapshot import PauseView
 from tuisim.base.errors import TuisimError, counted
 from tuisim.base.source import find_code_line, source_lines
 from tuisim.engine import protocol
-from tuisim.engine.breakpoints import Breakpoint, break_lines, parse_break
+from tuisim.engine.breakpoints import Breakpoint
 from tuisim.engine.core.profile import compute_due_ns
 from tuisim.engine.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
 from tuisim.engine.runs.replay_debugger import Position, ReplayDebugger
@@ -29,6 +29,16 @@ SHOWS_PANELS = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.BREAK}
 
 _GOES_ON = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.INSTANT})
 """Pause reasons with which a step, or the start for one, ends: the next of the waiting steps follows."""
+
+
+def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
+    """Return the breakpoints that are on lines, by line; if a line has several, an enabled one is preferred."""
+    by_line: dict[int, Breakpoint] = {}
+    for point in sorted(breaks, key=lambda point: not point.disabled):
+        line = point.find_line()
+        if line:
+            by_line[line] = point
+    return by_line
 
 
 class DebugController:
@@ -174,7 +184,7 @@ class DebugController:
         name = f"line {code_line}, {which}" if which else f"line {code_line}"
         there = break_lines(self.breaks).get(code_line)
         if there is None:
-            self.set_breaks((*self.breaks, parse_break(str(code_line))))
+            self.set_breaks((*self.breaks, Breakpoint.parse(str(code_line))))
             self._app.say(f"Breakpoint on {name}")
         elif there.disabled:
             self.set_breaks(

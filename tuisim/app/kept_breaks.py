@@ -10,7 +10,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.regular_file import read_regular
 from tuisim.base.source import source_lines
-from tuisim.engine.breakpoints import Breakpoint, LineBreak, parse_break
+from tuisim.engine.breakpoints import Breakpoint, LineBreak
 from tuisim.engine.files import MAX_FILE_BYTES
 
 FOLDER = "breaks"
@@ -34,7 +34,7 @@ def load_kept(program: str) -> StoredBreaks:
     """
     try:
         data = json.loads(read_regular(find_program_data(FOLDER, program), MAX_FILE_BYTES))
-        breaks = tuple(parse_break(text) for text in data["breaks"][:MAX_KEPT])
+        breaks = tuple(Breakpoint.parse(text) for text in data["breaks"][:MAX_KEPT])
         return StoredBreaks(breaks, tuple(str(text) for text in data["watches"][:MAX_KEPT]))
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, ConfigError):
         return StoredBreaks()

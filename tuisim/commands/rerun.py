@@ -14,7 +14,7 @@ from tuisim.engine.protocol import End, RunState, Stop, Unended, UserAction
 from tuisim.engine.runs.diff import RunDiff, diff_runs
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.engine.runs.run_folder import restore_program
-from tuisim.engine.runs.side_files import MAX_PATH, read_reads, read_state, read_stop_tick
+from tuisim.engine.runs.side_files import FilesRead, read_state, read_stop_tick
 
 if TYPE_CHECKING:
     from tuisim.engine.runs.run_folder import StoredRun
@@ -32,6 +32,8 @@ CUT_OFF: frozenset[RunState] = frozenset(
     }
 )
 """Ends that do not result from the program and its limits: such a run is a prefix of its re-run."""
+MAX_PATH = 200
+"""Characters of a path that are shown."""
 
 
 def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
@@ -80,7 +82,7 @@ def list_changed_files(run: StoredRun) -> tuple[str, ...]:
         LogError: the list of the files is damaged.
     """
     notes = []
-    for read in read_reads(run.folder).files:
+    for read in FilesRead.read(run.folder).files:
         now = read_state(read.path)
         if now is not None and read.is_same(now):
             continue

@@ -28,16 +28,16 @@ from tuisim.commands.echo import (
 )
 from tuisim.commands.exit_status import describe, describe_last_state, has_shown_error
 from tuisim.commands.movies import movie, picture
-from tuisim.commands.rerun import list_changed_files, rerun, same
+from tuisim.commands.rerun import MAX_PATH, list_changed_files, rerun, same
 from tuisim.engine.core.drift import describe_errors
 from tuisim.engine.protocol import Unended
 from tuisim.engine.runs.catalogue import RunInfo
 from tuisim.engine.runs.diff import RunDiff
 from tuisim.engine.runs.frames import describe_damage
-from tuisim.engine.runs.handle import ASK_AGAIN_S
+from tuisim.engine.runs.handle import RunHandle
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun, format_end
-from tuisim.engine.runs.side_files import MAX_PATH, FilesRead, read_reads
+from tuisim.engine.runs.side_files import FilesRead
 from tuisim.engine.runs.store import RunStore, count_bytes
 from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
@@ -162,7 +162,7 @@ def _list_files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
     If the list is damaged, there are no files and a note.
     """
     try:
-        return read_reads(run.folder), ()
+        return FilesRead.read(run.folder), ()
     except LogError as error:
         return FilesRead(), (str(error),)
 
@@ -303,7 +303,7 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
         ticks = run.telemetry.count
         tell(what, 0, ticks)
         try:
-            while handle.wait(ASK_AGAIN_S) is None:
+            while handle.wait(RunHandle.ASK_AGAIN_S) is None:
                 tell(what, handle.telemetry.count, ticks)
         finally:
             handle.close()

@@ -90,7 +90,7 @@ class Breakpoint:
     disabled: bool = False
 
     def written(self) -> str:
-        """The breakpoint as a text that `parse_break` can read; the text of a disabled breakpoint begins with `# `."""
+        """The breakpoint as a text that `parse` can read; the text of a disabled breakpoint begins with `# `."""
         return f"# {self.text}" if self.disabled else self.text
 
     def check_line(self, lines: Sequence[str]) -> None:
@@ -121,31 +121,31 @@ class Breakpoint:
         """Return the line of a breakpoint; 0 if it has none."""
         return self.rule.line if isinstance(self.rule, LineBreak) else 0
 
+    @classmethod
+    def parse(cls, text: str, run: RunSpec | None = None) -> Breakpoint:
+        """Return the breakpoint that a text describes; without a run, any possible name of a column is accepted.
+
+        Raises:
+            ConfigError: the text is not a valid breakpoint; the hint lists what is allowed.
+        """
+        stripped = text.strip()
+        disabled = stripped.startswith("#")
+        bare = stripped.lstrip("#").strip()
+        rule = _rule(bare, run)
+        return cls(rule, _common_text(rule), disabled)
+
 
 _LINE = re.compile(r"(?:line\s+)?(\d+)(?:\s+if\s+(.*))?", re.DOTALL)
 _NAME = re.compile(r"\w+(?:[. ]\w+)*\s*%?")
 
 
-def parse_break(text: str, run: RunSpec | None = None) -> Breakpoint:
-    """Return the breakpoint that a text describes; without a run, any possible name of a column is accepted.
-
-    Raises:
-        ConfigError: the text is not a valid breakpoint; the hint lists what is allowed.
-    """
-    stripped = text.strip()
-    disabled = stripped.startswith("#")
-    bare = stripped.lstrip("#").strip()
-    rule = _rule(bare, run)
-    return Breakpoint(rule, _common_text(rule), disabled)
-
-
 def parse_breakpoints(texts: Iterable[str], run: RunSpec | None = None) -> tuple[Breakpoint, ...]:
-    """Return the breakpoints that several texts describe, in their order; each as `parse_break` returns it.
+    """Return the breakpoints that several texts describe, in their order; each as `Breakpoint.parse` returns it.
 
     Raises:
         ConfigError: a text is not a valid breakpoint.
     """
-    return tuple(parse_break(text, run) for text in texts)
+    return tuple(Breakpoint.parse(text, run) for text in texts)
 
 
 def _refuse(
@@ -264,13 +264,3 @@ def _common_text(rule: BreakRule) -> str:
             return f"time {time_s:.12g}"
         case StallBreak():
             return "stall"
-
-
-def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
-    """Return the breakpoints that are on lines, by line; if a line has several, an enabled one is preferred."""
-    by_line: dict[int, Breakpoint] = {}
-    for point in sorted(breaks, key=lambda point: not point.disabled):
-        line = point.find_line()
-        if line:
-            by_line[line] = point
-    return by_line

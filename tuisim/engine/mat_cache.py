@@ -151,47 +151,47 @@ class FieldFiles:
             find_floor_rgb(width, height, pixels) if has_floor else None,
         )
 
+    @classmethod
+    def prepare(cls, image: Path, diameters: Iterable[int], fit: str = "stretch") -> FieldFiles:
+        """Write the files of a mat into the cache, for colour sensors of given diameters, and return them.
+
+        Files that are already in the cache are reused.
+
+        Args:
+            image: Any image that Pillow reads, within the limits of `mat_image`.
+            diameters: Disc diameters in pixels, in any order, with or without duplicates.
+            fit: How an image whose size differs from the field's is placed, one of
+                `engine.core.spec.BACKGROUND_FITS`; see `mat_image`.
+
+        Raises:
+            BackgroundError: the image cannot be read, a diameter or `fit` is impossible, or the cache folder cannot be
+                written.
+        """
+        import hashlib
+
+        sizes = sorted(set(diameters))
+        for diameter in sizes:
+            if not 1 <= diameter <= MAX_DIAMETER_PX:
+                raise BackgroundError(
+                    f"disc diameter must be from 1 to {MAX_DIAMETER_PX} pixels, got {diameter}"
+                )
+        check_fit(fit)
+        content = read_file(image)
+        folder = cache_folder() / "fields"
+        how = "" if fits_as_it_is(content) else f"{fit}-"
+        stem = f"{hashlib.sha256(content).hexdigest()[:24]}-{how}{_LAYOUT}"
+        sums = tuple((diameter, folder / f"{stem}-{diameter}.sums") for diameter in sizes)
+        files = cls(FIELD_WIDTH_MM, FIELD_HEIGHT_MM, folder / f"{stem}.rgb", sums)
+        missing = [
+            (diameter, path) for diameter, path in sums if not _in_use(path, _sums_size(diameter))
+        ]
+        if not _in_use(files.pixels, 3 * FIELD_WIDTH_MM * FIELD_HEIGHT_MM) or missing:
+            _make(files, missing, decode(content, image, fit))
+        return files
+
 
 def _sums_size(diameter: int) -> int:
     return (FIELD_HEIGHT_MM + diameter) * (FIELD_WIDTH_MM + diameter) * 3 * 4
-
-
-def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> FieldFiles:
-    """Write the files of a mat into the cache, for colour sensors of given diameters, and return them.
-
-    Files that are already in the cache are reused.
-
-    Args:
-        image: Any image that Pillow reads, within the limits of `mat_image`.
-        diameters: Disc diameters in pixels, in any order, with or without duplicates.
-        fit: How an image whose size differs from the field's is placed, one of `engine.core.spec.BACKGROUND_FITS`; see
-            `mat_image`.
-
-    Raises:
-        BackgroundError: the image cannot be read, a diameter or `fit` is impossible, or the cache folder cannot be
-            written.
-    """
-    import hashlib
-
-    sizes = sorted(set(diameters))
-    for diameter in sizes:
-        if not 1 <= diameter <= MAX_DIAMETER_PX:
-            raise BackgroundError(
-                f"disc diameter must be from 1 to {MAX_DIAMETER_PX} pixels, got {diameter}"
-            )
-    check_fit(fit)
-    content = read_file(image)
-    folder = cache_folder() / "fields"
-    how = "" if fits_as_it_is(content) else f"{fit}-"
-    stem = f"{hashlib.sha256(content).hexdigest()[:24]}-{how}{_LAYOUT}"
-    sums = tuple((diameter, folder / f"{stem}-{diameter}.sums") for diameter in sizes)
-    files = FieldFiles(FIELD_WIDTH_MM, FIELD_HEIGHT_MM, folder / f"{stem}.rgb", sums)
-    missing = [
-        (diameter, path) for diameter, path in sums if not _in_use(path, _sums_size(diameter))
-    ]
-    if not _in_use(files.pixels, 3 * FIELD_WIDTH_MM * FIELD_HEIGHT_MM) or missing:
-        _make(files, missing, decode(content, image, fit))
-    return files
 
 
 def _in_use(path: Path, size: int) -> bool:

@@ -14,7 +14,7 @@ from tuisim.base.errors import LogError, TuisimError
 from tuisim.base.faults import describe_fault
 from tuisim.base.regular_file import of_the_machine
 from tuisim.engine.core.spec import RunSpec
-from tuisim.engine.mat_cache import FieldFiles, prepare
+from tuisim.engine.mat_cache import FieldFiles
 from tuisim.engine.mats import background
 from tuisim.engine.protocol import End, Ended
 from tuisim.engine.runs.handle import RunHandle, describe_falsified
@@ -102,7 +102,7 @@ def _run_to_end(handle: RunHandle, limit_s: float) -> Ended:
 
 @lru_cache(MATS_KEPT)
 def _prepare_field(background_name: str, fit: str, diameters: frozenset[int]) -> FieldFiles:
-    return prepare(background(background_name).image, diameters, fit=fit)
+    return FieldFiles.prepare(background(background_name).image, diameters, fit=fit)
 
 
 def _load_field_files(spec: RunSpec) -> FieldFiles:

@@ -9,7 +9,7 @@ from textual.app import App
 from textual.widgets import Input, OptionList
 
 from tuisim.app.dialogs.entries import BreaksDialog, WatchesDialog
-from tuisim.engine.breakpoints import parse_break
+from tuisim.engine.breakpoints import Breakpoint
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 
@@ -37,7 +37,7 @@ async def test_tab_completes_the_name_of_a_column(
     ("dialog", "typed"),
     [
         (lambda keep: WatchesDialog(("1+1",), RUN, keep), "e+2"),
-        (lambda keep: BreaksDialog((parse_break("3", RUN),), RUN, keep), "time 2"),
+        (lambda keep: BreaksDialog((Breakpoint.parse("3", RUN),), RUN, keep), "time 2"),
     ],
     ids=["watch", "breakpoint"],
 )

@@ -12,7 +12,7 @@ from tests.cases import cases
 from tuisim.app.dialogs.entries import BreaksDialog, SavedPoses, WatchesDialog
 from tuisim.app.dialogs.runs import Differences
 from tuisim.app.setup.poses import save_pose
-from tuisim.engine.breakpoints import parse_break
+from tuisim.engine.breakpoints import Breakpoint
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
@@ -38,7 +38,7 @@ def _differences() -> Screen[Any]:
 DIALOGS: dict[str, tuple[Callable[[], Screen[Any]], tuple[str, ...]]] = {
     "poses": (_poses, ("door [/x]",)),
     "breaks": (
-        lambda: BreaksDialog((parse_break("print matches [/b]"),), RUN, lambda _: None),
+        lambda: BreaksDialog((Breakpoint.parse("print matches [/b]"),), RUN, lambda _: None),
         ("[/b]",),
     ),
     "watches": (

@@ -13,7 +13,7 @@ import pytest
 from tuisim.analysis.events import FORM, Threshold, parse_events, parse_threshold
 from tuisim.app.timeline import find, find_begins
 from tuisim.base.errors import ConfigError, LogError
-from tuisim.engine.breakpoints import parse_break
+from tuisim.engine.breakpoints import Breakpoint
 from tuisim.engine.core.conditions import (
     Edge,
     ValueCondition,
@@ -34,7 +34,7 @@ VALUES = (40.0, 50.0, 60.0)
 
 
 def by_breakpoint(condition: str) -> list[float]:
-    rule = parse_break(f"sample {condition}").rule
+    rule = Breakpoint.parse(f"sample {condition}").rule
     assert isinstance(rule, ValueCondition)
     return [value for value in VALUES if Edge(rule).update(value)]
 

@@ -19,7 +19,7 @@ from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.sensors import measure_sensors
 from tuisim.engine.core.sensors.color import measure_color
 from tuisim.engine.core.spec import NoiseSpec, Obstacle, RunSpec, WorldSpec
-from tuisim.engine.mat_cache import FieldFiles, prepare
+from tuisim.engine.mat_cache import FieldFiles
 from tuisim.engine.mats import background
 from tuisim.engine.runs.frames import SAMPLE_COLUMNS, build_samples_frame, build_telemetry_frame
 from tuisim.engine.runs.records import TELEMETRY_FILE
@@ -233,7 +233,7 @@ def mat_spec(spec: RunSpec) -> RunSpec:
 @pytest.fixture(scope="module")
 def grey() -> FieldFiles:
     """A real mat, prepared."""
-    return prepare(background("Grey_bands").image, [20])
+    return FieldFiles.prepare(background("Grey_bands").image, [20])
 
 
 def test_telemetry_opens_the_prepared_mat_that_the_run_recorded(

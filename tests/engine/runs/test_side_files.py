@@ -20,7 +20,6 @@ from tuisim.engine.runs.side_files import (
     is_held,
     note_read,
     note_reads_left_out,
-    read_reads,
     read_state,
 )
 
@@ -41,7 +40,7 @@ def test_pipes_in_place_of_lists_and_locks_do_not_block(tmp_path: Path) -> None:
     for name in (READS_FILE, LOCK_FILE):
         os.mkfifo(tmp_path / name)
     with pytest.raises(LogError, match="not a regular file"):
-        read_reads(tmp_path)
+        FilesRead.read(tmp_path)
     assert is_held(tmp_path) is False
 
 
@@ -88,13 +87,13 @@ def test_noted_files_are_listed_once(tmp_path: Path) -> None:
     note_reads_left_out(tmp_path, 12)
     with open(tmp_path / READS_FILE, "ab") as cut:
         cut.write(b'{"path": "/t')
-    assert read_reads(tmp_path) == FilesRead(files, 12)
+    assert FilesRead.read(tmp_path) == FilesRead(files, 12)
 
 
 def test_a_list_of_read_files_beyond_the_limit_is_cut_and_counted(tmp_path: Path) -> None:
     rows = (json.dumps(asdict(FileRead(str(n), there=False))) + "\n" for n in range(MAX_READS + 3))
     (tmp_path / READS_FILE).write_text("".join(rows))
-    found = read_reads(tmp_path)
+    found = FilesRead.read(tmp_path)
     assert (len(found.files), found.left_out) == (MAX_READS, 3)
 
 
@@ -104,8 +103,8 @@ def test_a_list_of_read_files_beyond_the_limit_is_cut_and_counted(tmp_path: Path
 def test_a_damaged_list_of_read_files_is_refused_by_name(row: str, tmp_path: Path) -> None:
     (tmp_path / READS_FILE).write_text(f"{row}\n")
     with pytest.raises(LogError, match=READS_FILE):
-        read_reads(tmp_path)
+        FilesRead.read(tmp_path)
 
 
 def test_a_run_without_a_list_of_read_files_has_none(tmp_path: Path) -> None:
-    assert read_reads(tmp_path) == FilesRead()
+    assert FilesRead.read(tmp_path) == FilesRead()

@@ -17,7 +17,7 @@ from tuisim.app.dialogs.dialog import FieldDialog, Result, name_and_title
 from tuisim.app.dialogs.question import LineInput, build_form_table
 from tuisim.app.setup.poses import MAX_NAME, delete_pose, load_poses, save_pose
 from tuisim.base.errors import TuisimError
-from tuisim.engine.breakpoints import FORMS, Breakpoint, parse_break, parse_watch
+from tuisim.engine.breakpoints import FORMS, Breakpoint, parse_watch
 from tuisim.engine.core.geometry import Pose, shown_heading_deg
 from tuisim.engine.core.sensors import list_column_names
 from tuisim.engine.core.spec import RunSpec
@@ -182,7 +182,7 @@ class BreaksDialog(_TextList[Breakpoint]):
         Raises:
             ConfigError: the text is no breakpoint, or the program has no such line.
         """
-        entry = parse_break(text, self.run_spec)
+        entry = Breakpoint.parse(text, self.run_spec)
         if self._lines:
             entry.check_line(self._lines)
         return entry

@@ -35,11 +35,11 @@ from tuisim.engine.core.spec import (
     SensorSpec,
     UltrasonicSpec,
 )
-from tuisim.engine.core.values import OFF, ON, Number, Numbers, Value, WrongValue, list_values
+from tuisim.engine.core.values import Flag, Number, Numbers, Value, WrongValue, list_values
 from tuisim.settings.options import RUN_VALUES
 from tuisim.settings.robots import ROBOTS
 
-SWITCHED = (ON, OFF)
+SWITCHED = (Flag.ON, Flag.OFF)
 MAX_LABEL = 12
 
 
@@ -244,7 +244,7 @@ def _build_presence_field(name: str, change: Callable[[RobotSpec, str], RobotSpe
     return _build_robot_field(
         f"{name}.used",
         "Used",
-        lambda robot: ON if name in _collect_sensors(robot) else OFF,
+        lambda robot: Flag.ON if name in _collect_sensors(robot) else Flag.OFF,
         change,
         SWITCHED,
     )
@@ -283,7 +283,7 @@ def _build_color_sensor_fields(
 ) -> tuple[FormField, ...]:
     def switch_sensor(robot: RobotSpec, word: str) -> RobotSpec:
         others = tuple(other for other in robot.color_sensors if other.name != name)
-        if word == OFF:
+        if word == Flag.OFF:
             return replace(robot, color_sensors=others)
         if len(others) < len(robot.color_sensors):
             return robot
@@ -318,7 +318,7 @@ def _build_single_fields(
     fresh: SensorSpec = mounted or getattr(plan.robot.spec, field) or kind()
 
     def switch_sensor(robot: RobotSpec, word: str) -> RobotSpec:
-        if word == OFF:
+        if word == Flag.OFF:
             return tree.put(robot, field, None)
         if getattr(robot, field) is not None:
             return robot

@@ -56,7 +56,7 @@ def prepare_mat(spec: RunSpec) -> Mat:
     """
     image = mats.background(spec.world.background).image
     key = mat_key(spec)
-    return _open_mat(key, mat_cache.prepare(image, key[2], fit=key[1]))
+    return _open_mat(key, mat_cache.FieldFiles.prepare(image, key[2], fit=key[1]))
 
 
 def prepare_stored_mat(run: StoredRun) -> Mat:

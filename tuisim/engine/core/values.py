@@ -24,8 +24,6 @@ METADATA = "value"
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 
-ON = "on"
-OFF = "off"
 MAX_SEED = 2**63 - 1
 
 
@@ -151,6 +149,9 @@ class Flag(Value):
         off_help: The help of that option.
     """
 
+    ON = "on"
+    OFF = "off"
+
     __slots__ = ("off_flag", "off_help")
     stored_as = bool
 
@@ -168,7 +169,7 @@ class Flag(Value):
 
     @property
     def choices(self) -> tuple[str, ...]:
-        return ON, OFF
+        return Flag.ON, Flag.OFF
 
     def parse_data(self, data: object) -> bool:
         if not isinstance(data, bool):
@@ -176,12 +177,12 @@ class Flag(Value):
         return data
 
     def parse_text(self, text: str) -> bool:
-        if text not in (ON, OFF):
-            raise WrongValue(f"no such value {text!r}", f"one of {ON}, {OFF}")
-        return text == ON
+        if text not in self.choices:
+            raise WrongValue(f"no such value {text!r}", f"one of {', '.join(self.choices)}")
+        return text == Flag.ON
 
     def format_text(self, value: Any) -> str:
-        return ON if value else OFF
+        return Flag.ON if value else Flag.OFF
 
 
 class Number(Value):

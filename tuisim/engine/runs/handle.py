@@ -72,7 +72,6 @@ from tuisim.engine.runs.views import TelemetryView, open_views
 
 STUCK_AFTER_S = 0.3
 """Time after a stop at which a child that has not ended is killed; see `RunHandle.time_used_s`."""
-ASK_AGAIN_S = 0.05
 WAIT_S = 0.15
 """Interval at which `RunHandle.wait` checks a child that sends nothing, unless the child has been asked to stop."""
 LOOK_EVERY_S = 0.03
@@ -139,6 +138,9 @@ class RunHandle:
             forks this child. Otherwise `prepare_next` makes one.
         isolated: Whether the child runs in bubblewrap; no template forks it then.
     """
+
+    ASK_AGAIN_S = 0.05
+    """Interval at which a child that has been asked to stop is asked again."""
 
     def __init__(
         self,
@@ -463,7 +465,7 @@ class RunHandle:
         until = None if timeout_s is None else time.monotonic() + timeout_s
         while self.ended is None:
             now = time.monotonic()
-            rest = WAIT_S if self._stop_at is None else ASK_AGAIN_S
+            rest = WAIT_S if self._stop_at is None else RunHandle.ASK_AGAIN_S
             if until is not None:
                 rest = min(rest, until - now)
             if rest <= 0:
@@ -558,7 +560,7 @@ class RunHandle:
         if self._stop_at is not None:
             if self._clock.read_s() - self._stop_at > STUCK_AFTER_S:
                 self._read_stack_and_kill()
-            elif self.started and time.monotonic() - self._asked_at > ASK_AGAIN_S:
+            elif self.started and time.monotonic() - self._asked_at > RunHandle.ASK_AGAIN_S:
                 self._asked_at = time.monotonic()
                 self._send_signal(COMMAND_SIGNAL)
 

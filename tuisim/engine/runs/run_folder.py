@@ -20,7 +20,7 @@ from tuisim.engine.core.plugged import PLUGGED_DIAMETER_MM, PluggedPart, plug_pa
 from tuisim.engine.core.profile import NS_PER_S, compute_due_ns
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
 from tuisim.engine.core.tree import dump_run, restore
-from tuisim.engine.mat_cache import FieldFiles, prepare
+from tuisim.engine.mat_cache import FieldFiles
 from tuisim.engine.mats import background
 from tuisim.engine.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
 from tuisim.engine.runs.side_files import MAX_BYTES, is_held, read_actions
@@ -410,7 +410,7 @@ def field_files(spec: RunSpec) -> FieldFiles:
         BackgroundError: the mat does not exist, or its image cannot be read.
     """
     image = background(spec.world.background).image
-    return prepare(image, find_diameters(spec), fit=spec.world.background_fit)
+    return FieldFiles.prepare(image, find_diameters(spec), fit=spec.world.background_fit)
 
 
 def find_diameters(spec: RunSpec) -> frozenset[int]:

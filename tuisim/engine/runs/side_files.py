@@ -46,8 +46,6 @@ READS_FILE = "reads.jsonl"
 """Files outside the run folder that the program has opened for reading, one JSON object per line."""
 MAX_READS = 100
 """Further files are only counted."""
-MAX_PATH = 200
-"""Characters of a path that are shown."""
 
 READINGS_FILE = "readings.bin"
 """What sensors, encoders and buttons the program has read; see `engine.runs.readings`."""
@@ -317,6 +315,34 @@ class FilesRead:
     left_out: int = 0
     """Number of files that were read and are not listed."""
 
+    @classmethod
+    def read(cls, run_folder: Path) -> FilesRead:
+        """Return the files that the program of a run has read; an incomplete last row is ignored.
+
+        Raises:
+            LogError: the file is damaged.
+        """
+        path = run_folder / READS_FILE
+        reads: dict[str, FileRead] = {}
+        left_out = 0
+        with _convert_errors(path):
+            for row in _read_rows(path):
+                if "left_out" in row:
+                    left_out = int(row["left_out"])
+                    continue
+                name = str(row["path"])
+                reads.setdefault(
+                    name,
+                    FileRead(
+                        name,
+                        bool(row["there"]),
+                        int(row["bytes"]),
+                        int(row["mtime_ns"]),
+                        int(row["crc32"]),
+                    ),
+                )
+        return cls(tuple(reads.values())[:MAX_READS], left_out + max(0, len(reads) - MAX_READS))
+
 
 _stat = os.stat
 _lstat = os.lstat
@@ -377,31 +403,3 @@ def note_reads_left_out(run_folder: Path, count: int) -> None:
         OSError: it cannot be written.
     """
     _append(run_folder / READS_FILE, {"left_out": count})
-
-
-def read_reads(run_folder: Path) -> FilesRead:
-    """Return the files that the program of a run has read; an incomplete last row is ignored.
-
-    Raises:
-        LogError: the file is damaged.
-    """
-    path = run_folder / READS_FILE
-    reads: dict[str, FileRead] = {}
-    left_out = 0
-    with _convert_errors(path):
-        for row in _read_rows(path):
-            if "left_out" in row:
-                left_out = int(row["left_out"])
-                continue
-            name = str(row["path"])
-            reads.setdefault(
-                name,
-                FileRead(
-                    name,
-                    bool(row["there"]),
-                    int(row["bytes"]),
-                    int(row["mtime_ns"]),
-                    int(row["crc32"]),
-                ),
-            )
-    return FilesRead(tuple(reads.values())[:MAX_READS], left_out + max(0, len(reads) - MAX_READS))

@@ -27,7 +27,7 @@ def mat() -> OpenMat:
 
     @cache
     def opened(name: str) -> Field:
-        return mat_cache.prepare(mats.background(name).image, {20}).open_field()
+        return mat_cache.FieldFiles.prepare(mats.background(name).image, {20}).open_field()
 
     return opened
 

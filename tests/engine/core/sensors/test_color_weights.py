@@ -31,7 +31,7 @@ EDGE = {
 
 @pytest.fixture(scope="module")
 def grey_bands() -> Field:
-    return mat_cache.prepare(mats.background("Grey_bands").image, {20}).open_field()
+    return mat_cache.FieldFiles.prepare(mats.background("Grey_bands").image, {20}).open_field()
 
 
 def seen(field: Field, x_mm: float, strategy: str, light: int = 0) -> float:

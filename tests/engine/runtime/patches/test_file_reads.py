@@ -8,7 +8,7 @@ import pytest
 
 from tests.cases import cases
 from tests.running import Run
-from tuisim.engine.runs.side_files import MAX_READS, FileRead, read_reads, read_state
+from tuisim.engine.runs.side_files import MAX_READS, FileRead, FilesRead, read_state
 
 SETUP = "import io, os, pathlib, shutil\n"
 READS = {
@@ -58,7 +58,7 @@ def test_a_file_that_a_program_reads_is_noted_with_its_state_before(
     before = read_state(str(folder / "data.txt"))
     done = run(SETUP + text, prelude="none")
     assert done.ended.end == "finished", done.errors
-    assert read_reads(done.run.folder).files == (before,)
+    assert FilesRead.read(done.run.folder).files == (before,)
 
 
 @cases("text", NO_READS)
@@ -67,19 +67,19 @@ def test_files_that_the_program_wrote_itself_are_not_noted_as_read(
 ) -> None:
     done = run(SETUP + text, prelude="none")
     assert done.ended.end == "finished", done.errors
-    assert read_reads(done.run.folder).files == ()
+    assert FilesRead.read(done.run.folder).files == ()
 
 
 def test_a_file_that_a_program_looks_for_in_vain_is_noted(run: Run, folder: Path) -> None:
     done = run("try:\n    open('calibration.json')\nexcept OSError:\n    pass", prelude="none")
-    assert read_reads(done.run.folder).files == (
+    assert FilesRead.read(done.run.folder).files == (
         FileRead(str(folder / "calibration.json"), there=False),
     )
 
 
 def test_files_read_beyond_the_limit_are_only_counted(run: Run, folder: Path) -> None:
     text = f"for n in range({MAX_READS + 7}):\n    try:\n        open(f'n{{n}}')\n    except OSError:\n        pass"
-    read = read_reads(run(text, prelude="none").run.folder)
+    read = FilesRead.read(run(text, prelude="none").run.folder)
     assert (len(read.files), read.left_out) == (MAX_READS, 7)
 
 
@@ -102,7 +102,7 @@ def test_opening_what_is_no_path_raises_the_errors_of_python(run: Run, folder: P
         "TypeError open() missing required argumen",
         "TypeError rename() missing required argum",
     ]
-    assert read_reads(done.run.folder).files == ()
+    assert FilesRead.read(done.run.folder).files == ()
 
 
 def test_a_read_of_a_file_whose_name_is_not_utf_8_is_noted(run: Run, folder: Path) -> None:
@@ -110,4 +110,4 @@ def test_a_read_of_a_file_whose_name_is_not_utf_8_is_noted(run: Run, folder: Pat
         "import os\nopen(os.fsencode('a\\x1b') + b'\\xff', 'w').close()\nopen('b\\udcfe') ",
         prelude="none",
     )
-    assert [file.path for file in read_reads(done.run.folder).files] == [f"{folder}/b\udcfe"]
+    assert [file.path for file in FilesRead.read(done.run.folder).files] == [f"{folder}/b\udcfe"]
