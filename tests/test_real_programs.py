@@ -16,11 +16,12 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import ROOT, Command
+from tuisim.commands.listings import list_ports
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import read_program
 from tuisim.programs.program_settings import read_source_facts
-from tuisim.settings.robots import ROBOTS, list_ports
+from tuisim.settings.robots import ROBOTS
 
 USUAL = ROBOTS["Default_Robot"]
 FOLDER = ROOT / "tests" / "real_programs"

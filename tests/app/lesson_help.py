@@ -14,7 +14,7 @@ from tuisim.app.dialogs.question import LinePrompt
 from tuisim.app.snapshot import RunPhase
 from tuisim.programs.program_file import read_program
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import merge_settings
+from tuisim.settings.options import Settings
 from tuisim.tasks.lessons.files import load_lesson
 from tuisim.tasks.lessons.progress import load_progress, prepare_program
 
@@ -73,7 +73,7 @@ def opened(tmp_path: Path, check: str = "show = 'chart'", text: str = "") -> App
     path.write_text(LESSON % check + text)
     lesson = load_lesson(path)
     made = settings(lesson=lesson, goals=lesson.task, lessons_folder=str(folder), speed=0.0)
-    spec = build_run_spec(merge_settings(lesson.settings))
+    spec = build_run_spec(Settings.merge(lesson.settings))
     return replace(made, spec=spec, program=read_program(prepare_program(lesson)).program)
 
 

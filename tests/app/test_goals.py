@@ -28,7 +28,7 @@ from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import merge_settings
+from tuisim.settings.options import Settings
 from tuisim.tasks.goals.files import load_goals
 
 GOALS = """\
@@ -70,7 +70,7 @@ def with_goals(path: Path, text: str | None = None, **more: Any) -> AppSettings:
     goals = load_goals(path)
     chosen = {"panels_on": frozenset({"goals"}), "speed": 0.0, **more}
     made = settings(text, goals=goals, world_file=path, **chosen)
-    return replace(made, spec=build_run_spec(merge_settings(goals.settings)))
+    return replace(made, spec=build_run_spec(Settings.merge(goals.settings)))
 
 
 def shown(app: LabApp) -> list[str]:

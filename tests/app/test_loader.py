@@ -29,8 +29,8 @@ from tuisim.base.source import Program
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import NoiseSpec
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import Settings, merge_settings
-from tuisim.settings.worlds import load_world
+from tuisim.settings.options import Settings
+from tuisim.settings.worlds import WorldFile
 
 LAB = """\
 program = "mine.py"
@@ -177,8 +177,8 @@ async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Pa
         assert (folder / "lab.toml").read_text() == LAB
         await pilot.press("enter")
         await until(pilot, lambda: len(app.screen_stack) == 1)
-        saved = load_world("lab.toml")
-        assert build_run_spec(merge_settings(saved.settings)) == spec
+        saved = WorldFile.load("lab.toml")
+        assert build_run_spec(Settings.merge(saved.settings)) == spec
         assert saved.program == "mine.py"
         assert app.loader.world_file == Path("lab.toml")
         look(app)

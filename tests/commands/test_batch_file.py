@@ -12,7 +12,7 @@ from tuisim.base.errors import ConfigError
 from tuisim.batch.parameters import RandomDraw, SampleValues
 from tuisim.commands.batch_file import load_batch
 from tuisim.commands.batch_request import is_batch_file
-from tuisim.settings.worlds import load_world
+from tuisim.settings.worlds import WorldFile
 
 WHOLE = """
 background = "Loop"
@@ -118,4 +118,4 @@ def test_opening_a_batch_file_as_a_world_is_refused(write: Any) -> None:
     with pytest.raises(
         ConfigError, match=r"spec.toml: is a batch file, not a world \(start it with: tuisim batch "
     ):
-        load_world(write("[batch]"))
+        WorldFile.load(write("[batch]"))

@@ -14,8 +14,8 @@ from tests.tasks.goals.recorded import Run, ahead, says, wait, world
 from tuisim.engine.runs.records import HEADER_BYTES, TELEMETRY_FILE
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import merge_settings
-from tuisim.settings.worlds import load_world, save_world
+from tuisim.settings.options import Settings
+from tuisim.settings.worlds import WorldFile, save_world
 from tuisim.tasks.goals.files import list_example_names, load_goals
 from tuisim.tasks.goals.judge import judge
 
@@ -256,7 +256,7 @@ def test_the_lines_printed_by_goals_mat_can_be_used_in_a_task(task: Path, here: 
     task.write_text(GOALS + done.stdout)
     (other,) = load_goals(task).worlds[1:]
     assert other.hidden and (task.parent / "bands-7.png").read_bytes().startswith(b"\x89PNG")
-    build_run_spec(merge_settings(other.settings))
+    build_run_spec(Settings.merge(other.settings))
 
 
 WRONG_MATS = {
@@ -280,7 +280,7 @@ def test_goals_mat_refuses_wrong_words_in_one_line(case: str, here: Command) -> 
 def test_saving_a_world_into_a_goal_file_keeps_the_goals(task: Path) -> None:
     (task.parent / "base.toml").write_text("seed = 3\nbackground = 'Loop'\n")
     task.write_text(f"world = 'base.toml'\n{GOALS}")
-    spec = build_run_spec(merge_settings(load_world(task).settings))
+    spec = build_run_spec(Settings.merge(WorldFile.load(task).settings))
     save_world(spec, task)
-    assert build_run_spec(merge_settings(load_world(task).settings)) == spec
+    assert build_run_spec(Settings.merge(WorldFile.load(task).settings)) == spec
     assert [goal.name for goal in load_goals(task).goals] == ["there", "said"]

@@ -25,8 +25,8 @@ from tuisim.engine.runs.handle import RunHandle
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import Settings, merge_settings
-from tuisim.settings.worlds import load_world, save_world
+from tuisim.settings.options import Settings
+from tuisim.settings.worlds import WorldFile, save_world
 
 SHOWS = "# %%sim_magic\nimport sys\nprint(sys.argv)\n"
 
@@ -147,7 +147,10 @@ def test_a_hint_names_what_is_near_or_where_the_names_are(
 
 def test_a_world_is_saved_with_the_arguments(folder: Path) -> None:
     save_world(build_run_spec(Settings()), folder / "new.toml", "log_greys", ("A", "B 'C"))
-    assert merge_settings(load_world(folder / "new.toml").settings)["arguments"] == ("A", "B 'C")
+    assert Settings.merge(WorldFile.load(folder / "new.toml").settings)["arguments"] == (
+        "A",
+        "B 'C",
+    )
 
 
 def test_arguments_of_a_program_are_shown_with_its_run(folder: Path, here: Command) -> None:

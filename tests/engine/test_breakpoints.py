@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.app.debugger import break_lines
+from tuisim.app.kept_breaks import break_lines
 from tuisim.base.errors import ConfigError
 from tuisim.engine.breakpoints import (
     Breakpoint,

@@ -14,9 +14,9 @@ from tuisim.base.errors import ConfigError, ObstacleError, ProfileError, RobotEr
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.files import MAX_FILE_BYTES, Location, convert
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import merge_settings
+from tuisim.settings.options import Settings
 from tuisim.settings.shared_options import parse_words
-from tuisim.settings.worlds import load_world
+from tuisim.settings.worlds import WorldFile
 
 KINDS: dict[str, type[ConfigError]] = {
     "-r": RobotError,
@@ -367,9 +367,9 @@ def put(content: Content, path: Path) -> None:
 def build(switch: str, file: Path) -> None:
     """Do with a file what the command does before it runs anything."""
     if switch == "--world":
-        build_run_spec(merge_settings(load_world(file).settings))
+        build_run_spec(Settings.merge(WorldFile.load(file).settings))
     else:
-        build_run_spec(merge_settings(parse_words([switch, str(file)])))
+        build_run_spec(Settings.merge(parse_words([switch, str(file)])))
 
 
 def state(root: Path) -> list[tuple[str, float, int]]:

@@ -17,9 +17,9 @@ from tuisim.engine import files
 from tuisim.engine.core.spec import Obstacle, RobotSpec, RunSpec
 from tuisim.engine.obstacles import load_obstacles, save_obstacles
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import Settings, merge_settings
-from tuisim.settings.robots import ROBOTS, load_robot, save_robot
-from tuisim.settings.worlds import load_world, save_world
+from tuisim.settings.options import Settings
+from tuisim.settings.robots import ROBOTS, RobotChoice, save_robot
+from tuisim.settings.worlds import WorldFile, save_world
 
 
 def saved(kind: str, old: str, thing: Any, folder: Path) -> str:
@@ -33,14 +33,21 @@ def saved(kind: str, old: str, thing: Any, folder: Path) -> str:
 
 
 def load_run(file: str) -> RunSpec:
-    return build_run_spec(merge_settings(load_world(file).settings))
+    return build_run_spec(Settings.merge(WorldFile.load(file).settings))
 
 
 KINDS: dict[str, tuple[Callable[..., None], Callable[[str], object]]] = {
-    "robot": (save_robot, load_robot),
+    "robot": (save_robot, lambda file: RobotChoice.load(file).spec),
     "obstacles": (save_obstacles, load_obstacles),
     "world": (save_world, load_run),
 }
+
+
+def test_a_robot_file_may_differ_from_any_robot(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text("base = 'Small_Robot_Wide_Eyes'\nname = 'Wide'\nback_mm = -70", "utf-8")
+    wide = replace(ROBOTS["Small_Robot_Wide_Eyes"], name="Wide", back_mm=-70.0)
+    assert RobotChoice.load(str(file)).spec == wide
 
 
 def in_order(kept: str, text: str) -> bool:
@@ -66,7 +73,7 @@ y_mm = 45
 
 def test_a_robot_file_keeps_comments_order_and_what_is_equal(tmp_path: Path) -> None:
     (tmp_path / "old.toml").write_text(ROBOT_FILE)
-    robot = load_robot(str(tmp_path / "old.toml"))
+    robot = RobotChoice.load(str(tmp_path / "old.toml")).spec
     text = saved("robot", ROBOT_FILE, replace(robot, pen=replace(robot.pen, color="red")), tmp_path)
     assert in_order(ROBOT_FILE.replace("color='blue'", 'color="red"'), text)
 
@@ -158,7 +165,7 @@ def test_saving_a_world_keeps_keys_that_are_not_part_of_a_run(
     changes: dict[str, Any], expected: str, tmp_path: Path
 ) -> None:
     assert in_order(expected, saved("world", WORLD, build_run_spec(Settings(changes)), tmp_path))
-    asked = merge_settings(load_world(tmp_path / "mine.toml").settings)
+    asked = Settings.merge(WorldFile.load(tmp_path / "mine.toml").settings)
     assert (asked["rays"], asked["autorun"], asked["panels_on"]) == (True, True, ("chart",))
 
 
@@ -251,9 +258,9 @@ def test_a_failed_save_of_settings_leaves_the_old_file(
 
 def test_only_saving_into_an_existing_file_imports_its_library(tmp_path: Path) -> None:
     code = (
-        "import sys; from tuisim.settings.robots import ROBOTS, load_robot, save_robot\n"
+        "import sys; from tuisim.settings.robots import ROBOTS, RobotChoice, save_robot\n"
         "for imported in (False, True):\n"
-        "    save_robot(ROBOTS['Explorer'], 'mine.toml'); load_robot('mine.toml')\n"
+        "    save_robot(ROBOTS['Explorer'], 'mine.toml'); RobotChoice.load('mine.toml')\n"
         "    assert ('tomlkit' in sys.modules) == imported"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=tmp_path)

@@ -13,8 +13,8 @@ from tests.conftest import Command
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.mats import find_mat, mats
 from tuisim.settings.build import build_run_spec, extract_settings
-from tuisim.settings.options import Settings, merge_settings
-from tuisim.settings.worlds import load_world, save_world
+from tuisim.settings.options import Settings
+from tuisim.settings.worlds import WorldFile, save_world
 
 FIELD = (2362, 1143)
 RED = (200, 0, 0)
@@ -111,22 +111,23 @@ def test_a_saved_world_keeps_the_mats_name_and_names_its_folder(own: Path, tmp_p
     spec = build_run_spec(Settings({"background": "FLL_2018_Into_Orbit"}))
     save_world(spec, tmp_path / "lab.toml")
     assert 'background = "FLL_2018_Into_Orbit"' in (tmp_path / "lab.toml").read_text()
-    assert build_run_spec(merge_settings(load_world(tmp_path / "lab.toml").settings)) == spec
+    assert build_run_spec(Settings.merge(WorldFile.load(tmp_path / "lab.toml").settings)) == spec
     maze = paint(tmp_path / "pics" / "maze.png")
     (tmp_path / "maze.toml").write_text('background = "maze"\nmats = "pics"\n')
     assert build_run_spec(
-        merge_settings(load_world(tmp_path / "maze.toml").settings)
+        Settings.merge(WorldFile.load(tmp_path / "maze.toml").settings)
     ).world.background == str(maze)
     (tmp_path / "maze.toml").write_text('background = "maze"\n')
     assert (
-        load_world(tmp_path / "maze.toml", str(tmp_path / "pics")).settings["background"] == "maze"
+        WorldFile.load(tmp_path / "maze.toml", str(tmp_path / "pics")).settings["background"]
+        == "maze"
     )
 
 
 def test_a_rebuilt_run_stays_on_the_built_in_mat_though_the_user_adds_another(own: Path) -> None:
     spec = build_run_spec(Settings({"background": "Radial_grey"}))
     paint(own / "_radial_grey.png")
-    assert build_run_spec(merge_settings(extract_settings(spec))) == spec
+    assert build_run_spec(Settings.merge(extract_settings(spec))) == spec
 
 
 @pytest.mark.slow

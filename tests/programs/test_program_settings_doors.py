@@ -20,7 +20,7 @@ from tuisim.programs.program_file import ProgramSource, read_program
 from tuisim.programs.program_settings import build_program_settings, find_free_paths
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.magic_line import parse_line
-from tuisim.settings.options import merge_settings
+from tuisim.settings.options import Settings
 from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.marks.entries import build_entries
 from tuisim.tasks.marks.students import find_students
@@ -198,7 +198,7 @@ def runs_of(folder: Path, program: str, option: Option) -> dict[str, RunSpec]:
 def runs_in_app(source: ProgramSource, option: Option) -> dict[str, RunSpec]:
     """Return the run of a program in the app, if the option comes after it, and before."""
     plain = build_program_settings(source)
-    before = merge_settings(read_options(option.choices))
+    before = Settings.merge(read_options(option.choices))
     opened = plans.build_first_plan(
         build_run_spec(plain.settings), plain.settings, plain.decided, source.program
     )

@@ -41,8 +41,8 @@ from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 from tuisim.settings.preferences import find_preferences_file, get_preference
 from tuisim.settings.profiles import format_profile
-from tuisim.settings.user_config import find_config_file, load_config
-from tuisim.settings.worlds import load_world, save_world
+from tuisim.settings.user_config import UserConfig, find_config_file
+from tuisim.settings.worlds import WorldFile, save_world
 from tuisim.tasks.goals.files import list_examples, load_task
 from tuisim.tasks.lessons.catalogue import find_shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
@@ -198,7 +198,7 @@ def _catalogue(path: str, is_sound: bool) -> None:
 
 
 def _world(path: str) -> object:
-    return build_run_spec(Settings(load_world(path).settings))
+    return build_run_spec(Settings(WorldFile.load(path).settings))
 
 
 def _breaks() -> Path:
@@ -254,7 +254,7 @@ FORMATS: Mapping[str, Format] = {
     "world": Format("world.toml", _reads(_world)),
     "batch": Format("batch.toml", _reads(lambda path: load_batch(Path(path)))),
     "goals": Format("goals.toml", _reads(lambda path: load_task(Path(path)))),
-    "config": Format("config.toml", _home(load_config, find_config_file)),
+    "config": Format("config.toml", _home(UserConfig.load, find_config_file)),
     "lesson": Format("lesson.md", _reads(load_lesson), Syntax.FRONT),
     "notebook": Format(
         "notebook.ipynb", _reads(lambda path: read_notebook_programs(Path(path))), Syntax.JSON

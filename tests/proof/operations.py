@@ -98,7 +98,7 @@ OPERATIONS: Mapping[str, Operation] = {
     "lesson": Operation((*_COMMAND, "learn", "new", "out.md"), ("out.md",)),
     "robot": Operation(
         _call(
-            "from tuisim.settings import robots; robots.save_robot(robots.load_robot('Small_Robot'), 'out.toml')"
+            "from tuisim.settings import robots; robots.save_robot(robots.ROBOTS['Small_Robot'], 'out.toml')"
         ),
         ("out.toml",),
     ),
@@ -107,9 +107,7 @@ OPERATIONS: Mapping[str, Operation] = {
         ("home/preferences.json",),
     ),
     "setting": Operation(
-        _call(
-            "from tuisim.settings import user_config as c; c.save_setting(c.SETTINGS['app.fps'], 9)"
-        ),
+        _call("from tuisim.settings import user_config as c; c.SETTINGS['app.fps'].save(9)"),
         ("home/config.toml",),
     ),
     "draft": Operation(

@@ -12,7 +12,7 @@ from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, R
 from tuisim.engine.mats import catalogue
 from tuisim.engine.obstacles import OBSTACLES
 from tuisim.settings.build import build_run_spec, list_ineffective
-from tuisim.settings.options import Settings, merge_settings
+from tuisim.settings.options import Settings
 from tuisim.settings.robots import ROBOTS, RobotChoice
 from tuisim.settings.shared_options import parse_words
 
@@ -97,7 +97,7 @@ def test_each_built_in_set_of_obstacles_has_its_boxes(name: str, boxes: set[Obst
     ids=lambda value: value or "nothing" if isinstance(value, str) else "",
 )
 def test_start_pose_is_the_mats_unless_given(words: str, start: Pose) -> None:
-    assert build_run_spec(merge_settings(parse_words(words.split()))).world.start == start
+    assert build_run_spec(Settings.merge(parse_words(words.split()))).world.start == start
 
 
 def test_only_the_mat_radial_grey_moves_the_colour_sensors() -> None:
@@ -122,5 +122,5 @@ def test_only_the_mat_radial_grey_moves_the_colour_sensors() -> None:
 def test_the_gyro_of_a_hub_has_no_typical_scale_of_an_ev3(
     robot: str, drift: str, scale_pc: float
 ) -> None:
-    spec = build_run_spec(merge_settings(parse_words(["-r", robot, "--drift", drift])))
+    spec = build_run_spec(Settings.merge(parse_words(["-r", robot, "--drift", drift])))
     assert spec.world.drift.gyro_scale_pc == scale_pc

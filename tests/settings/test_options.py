@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from tuisim.base.errors import ConfigError
-from tuisim.settings.options import OPTIONS, RUN_VALUES, Settings, merge_settings
+from tuisim.settings.options import OPTIONS, RUN_VALUES, Settings
 from tuisim.settings.shared_options import parse_words
 
 
@@ -104,7 +104,7 @@ def test_every_value_of_the_world_has_an_option_and_no_flag_is_used_twice() -> N
 
 
 def test_later_layers_of_settings_win_and_panels_add_up() -> None:
-    settings = merge_settings(
+    settings = Settings.merge(
         parse_words(["-b", "Loop", "-x", "5", "-O"]), parse_words(["-b", "Square", "-cO"])
     )
     assert settings == Settings(

@@ -13,15 +13,15 @@ from tuisim.base.errors import ConfigError
 from tuisim.engine.core.drift_spec import DriftSpec
 from tuisim.engine.core.spec import RunSpec
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import Settings, merge_settings
+from tuisim.settings.options import Settings
 from tuisim.settings.overrides import resolve_keys
-from tuisim.settings.robots import choose_robot
+from tuisim.settings.robots import RobotChoice
 
 HERE = Path("set")
 
 
 def spec_with(values: dict[str, Any], **chosen: Any) -> RunSpec:
-    return build_run_spec(merge_settings(chosen, resolve_keys(values, Settings(chosen), HERE)))
+    return build_run_spec(Settings.merge(chosen, resolve_keys(values, Settings(chosen), HERE)))
 
 
 @cases(
@@ -56,7 +56,7 @@ def test_a_batchs_key_changes_its_setting(
 
 
 def test_a_key_of_the_robot_leaves_the_rest_of_the_chosen_robot() -> None:
-    robot = choose_robot("Explorer")
+    robot = RobotChoice.load("Explorer")
     changed = spec_with({"robot.wheel_diameter_mm": 60}, robot=robot).robot
     assert (changed.wheel_diameter_mm, changed.touch_sensors) == (60.0, robot.spec.touch_sensors)
 

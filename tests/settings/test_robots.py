@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from tests.conftest import Command
-from tuisim.settings.robots import ROBOTS, choose_robot
+from tuisim.settings.robots import ROBOTS, RobotChoice
 
 
 def eye(x: float, y: float, diameter: int) -> dict[str, Any]:
@@ -59,7 +59,7 @@ def test_a_preset_saved_by_the_old_simulator_equals_the_built_in_one(
 ) -> None:
     file = tmp_path / f"{name}.json"
     file.write_text(json.dumps(PRESETS[name]))
-    choice = choose_robot(str(file))
+    choice = RobotChoice.load(str(file))
     assert choice.spec == ROBOTS[name]
     assert (choice.motor_noise, choice.light_noise, choice.notes) == (0, 0, ())
 

@@ -14,11 +14,10 @@ from tuisim.base.errors import ConfigError
 from tuisim.settings.user_config import (
     SETTINGS,
     Section,
+    UserConfig,
     build_template,
     find_config_file,
-    load_config,
     parse_config,
-    save_setting,
     write_template,
 )
 
@@ -82,9 +81,9 @@ def test_a_damaged_config_file_is_told_and_never_overwritten(content: bytes) -> 
     find_config_file().parent.mkdir(parents=True, exist_ok=True)
     find_config_file().write_bytes(content)
 
-    assert len(load_config().problems) == 1
+    assert len(UserConfig.load().problems) == 1
     with pytest.raises(ConfigError, match=re.escape(str(find_config_file()))):
-        save_setting(SETTINGS["app.theme"], "light")
+        SETTINGS["app.theme"].save("light")
     assert find_config_file().read_bytes() == content
 
 
@@ -117,25 +116,25 @@ def test_a_setting_is_written_in_place_of_its_comment_and_removed_again(path: st
         value = next(iter(OBSTACLES))
     before = write_template().read_text()
 
-    save_setting(one, value)
+    one.save(value)
     after = find_config_file().read_text()
-    assert dict(load_config().written) == {path: value}
+    assert dict(UserConfig.load().written) == {path: value}
     assert len(after.splitlines()) == len(before.splitlines())
     assert (
         sum(old != new for old, new in zip(before.splitlines(), after.splitlines(), strict=True))
         == 1
     )
 
-    save_setting(one, None)
-    assert dict(load_config().written) == {}
+    one.save(None)
+    assert dict(UserConfig.load().written) == {}
 
 
 def test_a_change_keeps_comments_and_what_else_is_in_the_file() -> None:
     find_config_file().parent.mkdir(parents=True, exist_ok=True)
     find_config_file().write_text("# mine\n[app]\nfps = 30 # slow link\nwrong = 1\n")
 
-    save_setting(SETTINGS["app.fps"], 10)
-    save_setting(SETTINGS["simulation.robot"], "Small_Robot")
+    SETTINGS["app.fps"].save(10)
+    SETTINGS["simulation.robot"].save("Small_Robot")
 
     text = find_config_file().read_text()
     assert text.startswith("# mine\n[app]\nfps = 10 # slow link\nwrong = 1\n")
@@ -144,7 +143,7 @@ def test_a_change_keeps_comments_and_what_else_is_in_the_file() -> None:
 
 def test_a_wrong_value_is_not_written_into_the_config_file() -> None:
     with pytest.raises(ConfigError, match=r"app\.fps: must be a whole number"):
-        save_setting(SETTINGS["app.fps"], 100)
+        SETTINGS["app.fps"].save(100)
     assert not find_config_file().exists()
 
 
@@ -153,7 +152,7 @@ def test_a_path_in_the_config_file_is_relative_to_its_folder() -> None:
     (find_config_file().parent / "mats").mkdir()
     find_config_file().write_text("[simulation]\nmats = 'mats'\n")
 
-    assert load_config().values["simulation.mats"] == str(find_config_file().parent / "mats")
+    assert UserConfig.load().values["simulation.mats"] == str(find_config_file().parent / "mats")
 
 
 def test_the_guides_example_of_a_config_file_is_valid() -> None:

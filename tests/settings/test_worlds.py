@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tuisim.settings.worlds import load_world
+from tuisim.settings.worlds import WorldFile
 
 
 def test_a_world_inherits_program_and_inputs_from_the_world_that_it_names(tmp_path: Path) -> None:
@@ -12,7 +12,7 @@ def test_a_world_inherits_program_and_inputs_from_the_world_that_it_names(tmp_pa
     base.write_text("program = 'a.py'\ninputs = ['Ada']\n")
     lab.write_text("world = 'base.toml'\nbackground = 'Loop'\n")
     own.write_text("world = 'base.toml'\nprogram = 'b.py'\n")
-    above = load_world(str(lab))
-    assert above.program == load_world(str(base)).program is not None
+    above = WorldFile.load(str(lab))
+    assert above.program == WorldFile.load(str(base)).program is not None
     assert above.inputs == ("Ada",)
-    assert Path(load_world(str(own)).program or "").name == "b.py"
+    assert Path(WorldFile.load(str(own)).program or "").name == "b.py"

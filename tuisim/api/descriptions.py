@@ -14,10 +14,10 @@ from tuisim.engine.core.sensors import find_named_column
 from tuisim.engine.core.spec import RunSpec
 from tuisim.programs.program_file import find_program
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import APP, APP_PATHS, OPTIONS, Option, Settings, merge_settings
+from tuisim.settings.options import APP, APP_PATHS, OPTIONS, Option, Settings
 from tuisim.settings.overrides import resolve_keys
 from tuisim.settings.robots import DEFAULT_ROBOT
-from tuisim.settings.worlds import is_world_name, load_world
+from tuisim.settings.worlds import WorldFile, is_world_name
 
 OPTIONS_BY_NAME: Mapping[str, Option] = {
     option.name: option
@@ -76,7 +76,7 @@ class Description:
             if value is not None and value is not self
         }
         # Build a run once: a wrong value is reported in the line of the script that has it.
-        build_run_spec(merge_settings(self.settings))
+        build_run_spec(Settings.merge(self.settings))
 
     @property
     def settings(self) -> Mapping[str, Any]:
@@ -207,4 +207,4 @@ def read_world(world: str | Path | WorldDescription | None, mats: str | None) ->
     if not isinstance(world, str | Path) or not is_world_name(str(world)):
         hint = "a mat is tuisim.World(background=…)"
         raise ConfigError(f"must be a .toml file or a World, got {world!r}", hint, key="world")
-    return load_world(find_program(str(world)), mats).settings
+    return WorldFile.load(find_program(str(world)), mats).settings

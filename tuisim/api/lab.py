@@ -24,7 +24,7 @@ from tuisim.engine.core.sensors import build_reader
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.engine.runs.stepped_run import SteppedRun
 from tuisim.settings.build import build_run_spec, extract_settings, list_ineffective
-from tuisim.settings.options import merge_settings
+from tuisim.settings.options import Settings
 from tuisim.settings.robots import ROBOTS
 from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.goals.live import LiveGoals, check_goals
@@ -83,10 +83,10 @@ class Lab:
             check_goals(task.goals)
             self._goals = task.goals
             in_world = task.settings if world is None else in_world
-        settings = merge_settings(in_world, chosen)
+        settings = Settings.merge(in_world, chosen)
         spec = build_run_spec(settings)
         if spec.robot.hub and settings.given.get("profile") is None:
-            spec = build_run_spec(merge_settings(_OF_HUB, in_world, chosen))
+            spec = build_run_spec(Settings.merge(_OF_HUB, in_world, chosen))
         warn_all(list_ineffective(spec), depth=4)
         self._open(spec, columns)
 

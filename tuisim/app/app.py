@@ -74,7 +74,7 @@ from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.programs.program_settings import Decided
 from tuisim.settings.options import DEFAULT_FPS, Settings
-from tuisim.settings.user_config import FILE, UserConfig, load_config
+from tuisim.settings.user_config import FILE, UserConfig
 from tuisim.terminal.pacer import PAGE_QUEUED_S, Pacer
 from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import AUTO
@@ -171,7 +171,7 @@ class LabApp(PanelMessages):
     def __init__(self, settings: AppSettings, picture_mode: PictureMode | None = None) -> None:
         super().__init__(picture_mode)
         self.settings = settings
-        self._config_problems = self._take_config(load_config())
+        self._config_problems = self._take_config(UserConfig.load())
         self.pixels = settings.pixels
         first = plans.build_first_plan(
             settings.spec, settings.settings, settings.decided, settings.program

@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tuisim.app.kept_breaks import StoredBreaks, choose_sign, follow_edit, keep, load_kept
+from tuisim.app.kept_breaks import (
+    StoredBreaks,
+    break_lines,
+    choose_sign,
+    follow_edit,
+    keep,
+    load_kept,
+)
 from tuisim.app.snapshot import PauseView
 from tuisim.base.errors import TuisimError, counted
 from tuisim.base.source import find_code_line, source_lines
@@ -29,16 +36,6 @@ SHOWS_PANELS = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.BREAK}
 
 _GOES_ON = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.INSTANT})
 """Pause reasons with which a step, or the start for one, ends: the next of the waiting steps follows."""
-
-
-def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
-    """Return the breakpoints that are on lines, by line; if a line has several, an enabled one is preferred."""
-    by_line: dict[int, Breakpoint] = {}
-    for point in sorted(breaks, key=lambda point: not point.disabled):
-        line = point.find_line()
-        if line:
-            by_line[line] = point
-    return by_line
 
 
 class DebugController:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 
 from tuisim.app.editor.text_file import find_program_data, write_json
 from tuisim.app.editor.text_lines import count_same_lines
@@ -58,6 +59,16 @@ def keep(program: str, stored: StoredBreaks) -> None:
         raise ConfigError(
             f"breakpoints cannot be saved: {error.strerror or error}", file=str(file)
         ) from None
+
+
+def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
+    """Return the breakpoints that are on lines, by line; if a line has several, an enabled one is preferred."""
+    by_line: dict[int, Breakpoint] = {}
+    for point in sorted(breaks, key=lambda point: not point.disabled):
+        line = point.find_line()
+        if line:
+            by_line[line] = point
+    return by_line
 
 
 def choose_sign(entry: Breakpoint) -> str:

@@ -24,7 +24,7 @@ from tuisim.engine.runs.run_folder import format_end, restore_program
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import drop_wrong_mat
 from tuisim.programs.program_settings import Decided, find_free_paths
-from tuisim.settings.options import START, Settings, merge_settings
+from tuisim.settings.options import START, Settings
 
 if TYPE_CHECKING:
     from tuisim.app.goals import GoalsController
@@ -557,7 +557,7 @@ def _plan_in_world(
 
     The user's choices for earlier runs have no effect on the plan.
     """
-    free = find_free_paths(merge_settings(magic, world))
+    free = find_free_paths(Settings.merge(magic, world))
     plan = plans.apply_choices(
         plans.apply_choices(plans.build_plan(Settings(), free), magic), world
     )

@@ -31,7 +31,7 @@ from tuisim.app.themes import (
 from tuisim.base.errors import ConfigError, TuisimError
 from tuisim.engine.files import Scalar
 from tuisim.pictures.charts.traces import TRACE_COLORS
-from tuisim.settings.user_config import CELL_SET, SETTINGS, THEME, load_config
+from tuisim.settings.user_config import CELL_SET, SETTINGS, THEME, UserConfig
 from tuisim.terminal.app import ActionAsked, BufferedApp, offer
 from tuisim.terminal.cells import PALETTE_256
 from tuisim.terminal.picture_mode import (
@@ -104,7 +104,7 @@ class TerminalApp(BufferedApp):
             self.register_theme(theme)
         for name in UNUSED_THEMES:
             self.unregister_theme(name)
-        if (chosen := str(load_config().value(THEME))) in self.available_themes:
+        if (chosen := str(UserConfig.load().value(THEME))) in self.available_themes:
             self.theme = chosen
         self._take_theme()
 
@@ -254,10 +254,9 @@ class TerminalApp(BufferedApp):
 
     def keep_setting(self, path: str, value: Scalar | None) -> None:
         """Write a setting, which the app has applied already, to `config.toml`; None stands for the default value."""
-        from tuisim.settings.user_config import save_setting
 
         try:
-            save_setting(SETTINGS[path], value)
+            SETTINGS[path].save(value)
         except ConfigError as error:
             self.notify(
                 f"The choice applies to this session only: {error}",
@@ -356,5 +355,5 @@ def picture_mode_at_start(cells: str | None, colors: str) -> PictureMode:
     """
     most_colors = choose_colors(colors)
     return replace(
-        choose_picture_mode(cells, str(load_config().value(CELL_SET))), most_colors=most_colors
+        choose_picture_mode(cells, str(UserConfig.load().value(CELL_SET))), most_colors=most_colors
     )

@@ -69,14 +69,14 @@ def read_opened(arguments: Arguments, *, can_begin: bool = False) -> Opened | No
     """
     from tuisim.commands.notebooks import find_listed, print_list
     from tuisim.commands.resolve import check_arguments, prepare_app, prepare_replay
-    from tuisim.settings.user_config import load_config
+    from tuisim.settings.user_config import UserConfig
 
     check_arguments(arguments.words, arguments)
     if listed := find_listed(arguments.words):
         print_list(arguments.words[0], listed)
         return None
     goals = _load_goals(arguments.goals)
-    config = load_config()
+    config = UserConfig.load()
     if arguments.run is not None:
         replay, prepared = prepare_replay(arguments.run, arguments.words, arguments, config)
         return Opened(prepared, goals, replay)
@@ -176,12 +176,12 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
     from tuisim.programs.program_file import read_program
     from tuisim.programs.program_settings import build_program_settings
     from tuisim.settings.build import build_run_spec
-    from tuisim.settings.user_config import Section, load_config
+    from tuisim.settings.user_config import Section, UserConfig
     from tuisim.tasks.lessons.progress import prepare_program
 
     source = read_program(prepare_program(lesson))
     effective = build_program_settings(
-        source, lesson.settings, below=load_config().layer(Section.APP)
+        source, lesson.settings, below=UserConfig.load().layer(Section.APP)
     )
     settings = effective.settings
     app_settings = AppSettings(

@@ -17,7 +17,7 @@ from tuisim.batch.parameters import SEED, Choice, check_seeds, parse_seeds, pars
 from tuisim.engine import files
 from tuisim.engine.core.values import quote
 from tuisim.engine.files import Location
-from tuisim.settings.worlds import BATCH_KEY, WorldFile, load_world, parse_world
+from tuisim.settings.worlds import BATCH_KEY, WorldFile, parse_world
 from tuisim.tasks.task import MAX_JOBS, Keep, Value
 
 MAX_PROGRAMS = 10_000
@@ -78,7 +78,7 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
                 f"cannot be combined with {', '.join(data)}", "give a world file, or its keys"
             )
         with files.errors_at(location.file, location.at("world").key):
-            world = load_world(folder / table.world, mats)
+            world = WorldFile.load(folder / table.world, mats)
     elif data:
         world = parse_world(data, path, mats)
     programs = [] if table.program is UNSET else table.program

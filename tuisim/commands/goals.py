@@ -29,7 +29,7 @@ from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec, extract_settings
 from tuisim.settings.command_line import Group, WordType, argument, command, option
-from tuisim.settings.options import START, merge_settings
+from tuisim.settings.options import START, Settings
 from tuisim.settings.presses import press_actions
 from tuisim.tasks.goals.files import GoalsFile, list_example_names, load_goals
 from tuisim.tasks.goals.judge import judge
@@ -110,7 +110,7 @@ def _iterate_names(word: str, store: RunStore) -> Iterator[str]:
 
 def _find_differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
     """Yield a note if the user changed the run while it ran, and a note if its start differs from the goals file's."""
-    presses = press_actions(merge_settings(file.settings)["press"], run.spec.profile.tick_hz)
+    presses = press_actions(Settings.merge(file.settings)["press"], run.spec.profile.tick_hz)
     if run.actions and run.actions != presses:
         yield f"run {run.number} was changed while it ran: {counted(len(run.actions), 'action')} of the user"
     try:
@@ -118,7 +118,7 @@ def _find_differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
         # The goals file may name a user's own mat by another path than the run, so mats are not compared. All other
         # settings of the run remain, as some of them move the start.
         elsewhere = {path: value for path, value in settings.items() if path not in _WHERE}
-        of_file = extract_settings(build_run_spec(merge_settings(elsewhere, file.settings)))
+        of_file = extract_settings(build_run_spec(Settings.merge(elsewhere, file.settings)))
     except ConfigError:
         # A mat no longer exists: the two worlds cannot be compared.
         return

@@ -175,7 +175,7 @@ def _format_size(image: Taken) -> str:
 )
 def robots(robot: str | None, program: str | None, out: str | None, as_json: bool) -> int:
     """List the robots; print one, or the one that a program talks about, in TOML as a starting point for your own."""
-    from tuisim.settings.robots import ROBOTS, format_robot_file, load_robot
+    from tuisim.settings.robots import ROBOTS, RobotChoice, format_robot_file
 
     if program is not None:
         if robot is not None:
@@ -185,7 +185,7 @@ def robots(robot: str | None, program: str | None, out: str | None, as_json: boo
         return _print_program_robot(program, out, as_json=as_json)
     if out is not None:
         raise ConfigError("needs a program", "tuisim robots --from PROGRAM --out FILE", key="--out")
-    chosen = None if robot is None else load_robot(robot)
+    chosen = None if robot is None else RobotChoice.load(robot).spec
     if as_json:
         echo_json([asdict(each) for each in ([chosen] if chosen else ROBOTS.values())])
     elif chosen:
@@ -240,9 +240,19 @@ def _print_robot_of_run(word: str, out: str | None, *, as_json: bool) -> int:
     return 0
 
 
-def _build_robot_row(robot: RobotSpec) -> tuple[str, ...]:
-    from tuisim.settings.robots import list_ports
+def list_ports(robot: RobotSpec) -> list[tuple[str, str]]:
+    """Return port and name of the part on each port of a robot, sorted by port."""
+    ports = [
+        (motor.port, wheel if motor.kind == "large" else f"{wheel} ({motor.kind} motor)")
+        for motor, wheel in zip(robot.wheel_motors, ("left wheel", "right wheel"), strict=True)
+        if robot.has_wheels
+    ]
+    ports += [(motor.port, f"{motor.kind} motor") for motor in robot.extra_motors]
+    ports += [(sensor.port, sensor.name) for sensor in robot.sensors]
+    return sorted(ports)
 
+
+def _build_robot_row(robot: RobotSpec) -> tuple[str, ...]:
     wheels = f"{robot.wheel_diameter_mm:g} mm, {robot.wheel_spacing_mm:g} mm apart"
     sensors = [f"{s.name} {s.x_mm:g}, {s.y_mm:g}, {s.diameter_mm}" for s in robot.color_sensors]
     on_ports = ", ".join(f"{port} {name}" for port, name in list_ports(robot))

@@ -34,10 +34,10 @@ from tuisim.programs.program_file import (
 from tuisim.programs.program_settings import Decided, build_program_settings, find_free_paths
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.command_line import ARGUMENTS_FOLLOW, Arguments
-from tuisim.settings.options import APP_PATHS, Settings, merge_settings
-from tuisim.settings.robots import RobotChoice, choose_robot
+from tuisim.settings.options import APP_PATHS, Settings
+from tuisim.settings.robots import RobotChoice
 from tuisim.settings.user_config import Section, UserConfig
-from tuisim.settings.worlds import WorldFile, is_world_name, load_world
+from tuisim.settings.worlds import WorldFile, is_world_name
 
 NO_CONFIG = UserConfig(Path())
 """No defaults of the user."""
@@ -102,7 +102,7 @@ def _load_named_world(words: Sequence[str], arguments: Arguments) -> WorldFile |
         raise ConfigError(
             f"two worlds: {named[0]} and {named[1]}", "give only one world", key="--world"
         )
-    return load_world(find_program(named[0]), arguments.settings.get("mats")) if named else None
+    return WorldFile.load(find_program(named[0]), arguments.settings.get("mats")) if named else None
 
 
 def _prepare_word(
@@ -117,9 +117,9 @@ def _prepare_word(
                 f"tuisim PROGRAM {named} -- ARGUMENTS",
                 key=ARGUMENTS_FOLLOW,
             )
-        settings = merge_settings(_select_defaults(world, config), in_world, arguments.settings)
+        settings = Settings.merge(_select_defaults(world, config), in_world, arguments.settings)
         spec = _build_spec(settings)
-        plain = merge_settings(arguments.settings)
+        plain = Settings.merge(arguments.settings)
         remarks = _find_effective_defaults(spec, world, config, plain, arguments.settings)
         decided = Decided(free=find_free_paths(settings))
         return Prepared(None, settings, spec, world, from_config=remarks, decided=decided)
@@ -179,7 +179,7 @@ def _build_spec(settings: Settings) -> RunSpec:
     robot = (
         settings["robot"]
         if isinstance(settings["robot"], RobotChoice)
-        else choose_robot(settings["robot"], "-r")
+        else RobotChoice.load(settings["robot"], "-r")
     )
     for note in robot.notes:
         echo_error(f"note: {note}")
@@ -230,7 +230,7 @@ def prepare_app(
         can_begin and path.suffix == ".py" and not os.path.lexists(path) and path.parent.is_dir()
     )
     source = build_program("", path, path.name) if is_new else read_program(path)
-    mats = merge_settings(_select_defaults(world, config), source.options, arguments.settings)[
+    mats = Settings.merge(_select_defaults(world, config), source.options, arguments.settings)[
         "mats"
     ]
     return _prepare_source(drop_wrong_mat(source, mats), world, arguments, config)
@@ -259,7 +259,7 @@ def prepare_replay(
         )
     stored = RunStore().load_run(run)
     opened = replace(stored.program, python_path=(), working_directory="")
-    return stored, Prepared(opened, merge_settings(config.layer(Section.APP), chosen), stored.spec)
+    return stored, Prepared(opened, Settings.merge(config.layer(Section.APP), chosen), stored.spec)
 
 
 def prepare_runs(
@@ -308,7 +308,7 @@ def _prepare_folder(
     word: str, world: WorldFile | None, arguments: Arguments, config: UserConfig
 ) -> list[Prepared | NotRun]:
     # Errors of the command line are raised here once, instead of once for each cell.
-    build_run_spec(merge_settings(world.settings if world else {}, arguments.settings))
+    build_run_spec(Settings.merge(world.settings if world else {}, arguments.settings))
     prepared: list[Prepared | NotRun] = []
     for path in check_folder(word, run_all=arguments.all):
         label = os.path.relpath(path, word)

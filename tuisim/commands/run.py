@@ -37,7 +37,7 @@ from tuisim.settings.command_line import Arguments, WordType, argument, choice, 
 from tuisim.settings.options import APP, PANEL
 from tuisim.settings.presses import press_actions
 from tuisim.settings.shared_options import build_shared_options
-from tuisim.settings.user_config import FILE, Section, load_config
+from tuisim.settings.user_config import FILE, Section, UserConfig
 
 MAX_CHARACTERS = 200
 GO = "go"
@@ -146,7 +146,7 @@ def run(**given: Any) -> int:
     prepared = prepare_runs(
         arguments.programs,
         arguments,
-        config=load_config().checked().keep_section(Section.SIMULATION),
+        config=UserConfig.load().checked().keep_section(Section.SIMULATION),
     )
     for remark in dict.fromkeys(
         candidate.from_config

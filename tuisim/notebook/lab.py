@@ -197,9 +197,9 @@ class Lab:
     def spec(self) -> RunSpec:
         """The robot, world, profile and seed that the cells have set."""
         from tuisim.settings.build import build_run_spec
-        from tuisim.settings.options import merge_settings
+        from tuisim.settings.options import Settings
 
-        return self._spec or build_run_spec(merge_settings(self._persistent))
+        return self._spec or build_run_spec(Settings.merge(self._persistent))
 
     @property
     def state(self) -> dict[str, Any]:
@@ -316,11 +316,11 @@ class Lab:
         from tuisim.programs.program_settings import build_program_settings
         from tuisim.settings.build import build_run_spec, list_ineffective
         from tuisim.settings.magic_line import update_persistent
-        from tuisim.settings.options import merge_settings
-        from tuisim.settings.robots import choose_robot
+        from tuisim.settings.options import Settings
+        from tuisim.settings.robots import RobotChoice
 
         if isinstance(robot := words.settings.get("robot"), str):
-            for note in choose_robot(robot, "-r").notes:
+            for note in RobotChoice.load(robot, "-r").notes:
                 print(f"tuisim: note: {note}", file=sys.stderr)
         persistent = update_persistent(self._persistent, words.settings)
         program = self._program
@@ -329,7 +329,7 @@ class Lab:
             preload = str(words.settings.get("preload", prelude))
             program = Program("cell", "\n" + text, preload)
         layers = persistent, {"press": self._presses if text is None else ()}, words.settings
-        settings = merge_settings(*layers)
+        settings = Settings.merge(*layers)
         if program is not None:
             source = ProgramSource(program, has_magic=True)
             # A magic line sets the world for later cells, so it need not fit the program above, which has run already.
@@ -463,10 +463,10 @@ class Lab:
 
 def _select_given(plan: _CellPlan, words: Arguments) -> Mapping[str, Any]:
     """Return the settings, by path, that cells have set and that the app is to use as well."""
-    from tuisim.settings.options import merge_settings
+    from tuisim.settings.options import Settings
 
     presses = {"press": plan.settings["press"]}
-    values = merge_settings(plan.persistent, words.settings, presses).given
+    values = Settings.merge(plan.persistent, words.settings, presses).given
     return {path: value for path, value in values.items() if path not in ("autorun", "speed")}
 
 

@@ -28,7 +28,7 @@ from tuisim.programs.robot.source import (
     is_for_other_hub,
     read_modules,
 )
-from tuisim.settings.options import Settings, merge_settings
+from tuisim.settings.options import Settings
 from tuisim.settings.profiles import DEFAULT_PROFILE, load_profile
 from tuisim.settings.robots import RobotChoice
 
@@ -269,13 +269,13 @@ def build_program_settings(
         ProfileError: the chosen profile or the prelude is for another library than the program's.
     """
     layers = (below or {}, source.options, *above)
-    settings = merge_settings(*layers)
+    settings = Settings.merge(*layers)
     if insists and (settings["preload"] or source.program.prelude) != _NO_PRELUDE:
         _check_prelude(source.program)
     # A profile in the user's defaults was not chosen for this program.
     is_chosen = any(layer.get("profile") is not None for layer in (source.options, *above))
     decided = decide(source, settings, find_free_paths(settings), insists=insists and is_chosen)
-    return ProgramSettings(merge_settings(*layers, decided.layer), decided)
+    return ProgramSettings(Settings.merge(*layers, decided.layer), decided)
 
 
 def find_free_paths(settings: Settings) -> frozenset[str]:

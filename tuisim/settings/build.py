@@ -28,7 +28,7 @@ from tuisim.engine.mats import Background, find_mat, mat_of_spec
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles
 from tuisim.settings.options import RUN_VALUES, START, Settings
 from tuisim.settings.profiles import load_profile
-from tuisim.settings.robots import DEFAULT_ROBOT, ROBOTS, RobotChoice, choose_robot
+from tuisim.settings.robots import DEFAULT_ROBOT, ROBOTS, RobotChoice
 
 _NEEDS_MEASURED = {"weight": False, "mass_kg": True, "battery_v": True}
 """Values of a robot that only some profiles use, and whether those are the ones with motors as measured on bricks."""
@@ -116,7 +116,7 @@ def build_run_spec(settings: Settings) -> RunSpec:
     with errors_at("", "-b"):
         mat = find_mat(os.path.expanduser(settings["background"]), settings["mats"])
     chosen = settings["robot"]
-    choice = chosen if isinstance(chosen, RobotChoice) else choose_robot(chosen, "-r")
+    choice = chosen if isinstance(chosen, RobotChoice) else RobotChoice.load(chosen, "-r")
     named = settings["profile"]
     profile = named if isinstance(named, ProfileSpec) else load_profile(named, "--profile")
     world = WorldSpec(

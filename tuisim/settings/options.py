@@ -454,23 +454,23 @@ class Settings:
         """
         return Settings({**self.given, **values})
 
+    @classmethod
+    def merge(cls, *layers: Mapping[str, Any]) -> Settings:
+        """Return the settings of several layers together; a later layer replaces the values of earlier ones.
+
+        The two lists of panels, `panels_on` and `panels_off`, are not replaced: they have the panels of all layers.
+        """
+        merged: dict[str, Any] = {}
+        for layer in layers:
+            panels = {
+                path: tuple(dict.fromkeys((*merged.get(path, ()), *layer[path])))
+                for path in _PANEL_LISTS
+                if path in layer
+            }
+            merged |= {**layer, **panels}
+        return cls(merged)
+
 
 def has_world_values(settings: Mapping[str, Any]) -> bool:
     """Return whether settings contain anything besides `press`, the presses by hand, which do not describe a world."""
     return bool(settings.keys() - {"press"})
-
-
-def merge_settings(*layers: Mapping[str, Any]) -> Settings:
-    """Return the settings of several layers together; a later layer replaces the values of earlier ones.
-
-    The two lists of panels, `panels_on` and `panels_off`, are not replaced: they have the panels of all layers.
-    """
-    merged: dict[str, Any] = {}
-    for layer in layers:
-        panels = {
-            path: tuple(dict.fromkeys((*merged.get(path, ()), *layer[path])))
-            for path in _PANEL_LISTS
-            if path in layer
-        }
-        merged |= {**layer, **panels}
-    return Settings(merged)

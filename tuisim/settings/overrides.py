@@ -14,7 +14,7 @@ from tuisim.engine.core.values import NamedPart
 from tuisim.engine.files import Location, read_part
 from tuisim.settings.options import RUN_VALUES, Settings
 from tuisim.settings.profiles import load_profile, parse_profile
-from tuisim.settings.robots import RobotChoice, choose_robot, parse_robot
+from tuisim.settings.robots import RobotChoice
 from tuisim.settings.worlds import parse_world
 
 _NOT_VARIED = (
@@ -116,8 +116,8 @@ def _split_words(value: object, location: Location) -> list[str]:
 
 
 def _change_robot(table: object, chosen: str | RobotChoice, location: Location) -> RobotChoice:
-    base = chosen if isinstance(chosen, RobotChoice) else choose_robot(chosen, "-r")
-    robot = parse_robot(table, base.spec.name, location, base.spec)
+    base = chosen if isinstance(chosen, RobotChoice) else RobotChoice.load(chosen, "-r")
+    robot = RobotChoice.parse(table, base.spec.name, location, base.spec)
     return replace(base, spec=robot.spec, own_places=base.own_places or robot.own_places)
 
 

@@ -51,6 +51,60 @@ class RobotChoice:
     notes: tuple[str, ...] = ()
     """Warnings about the file, to be shown to the user."""
 
+    @classmethod
+    def load(cls, word: str, key: str = "") -> RobotChoice:
+        """Return the robot that a word names: one of tuisim's, or the one in a TOML or JSON file.
+
+        Args:
+            word: The name of the robot, or the path of the file.
+            key: The option that gives the word, for errors.
+
+        Raises:
+            RobotError: the name is unknown, or the file is wrong.
+        """
+        if word in ROBOTS:
+            return cls(ROBOTS[word], own_places=False)
+        data, name, location = files.read_named(word, "robot", ROBOTS, RobotError, key)
+        return (parse_json_robot if word.lower().endswith(".json") else cls.parse)(
+            data, name, location
+        )
+
+    @classmethod
+    def parse(
+        cls, data: object, name: str, location: Location, changes_to: RobotSpec | None = None
+    ) -> RobotChoice:
+        """Return the robot in a table of a robot or world file.
+
+        Args:
+            data: The table.
+            name: The name of the robot, unless the table gives one.
+            location: The place of the table, for errors.
+            changes_to: The robot that provides keys missing in the table, unless the table names its base.
+
+        Raises:
+            RobotError: a key or a value is wrong.
+        """
+        table = files.table(data, location, _TOP_KEYS)
+        named = ROBOTS[files.one_of(table.get("base", DEFAULT_ROBOT), location.at("base"), ROBOTS)]
+        base = named if changes_to is None or "base" in table else changes_to
+        changes: dict[str, Any] = {"name": name}
+        changes |= {
+            key: files.read_value(table[key], _VALUES[key], location.at(key))
+            for key in _BODY_KEYS
+            if key in table
+        }
+        if "pen" in table:
+            changes["pen"] = files.read_part(table["pen"], base.pen, location.at("pen"))
+        if "motors" in table:
+            changes |= _parse_motors(table, base, location)
+        for mount in MOUNTS:
+            if mount.key in table:
+                read = _parse_named if mount.many else _parse_single
+                changes[mount.field] = read(table[mount.key], mount, base, location.at(mount.key))
+        sensors = table.get("color_sensors", {}).values()
+        own_places = any(isinstance(sensor, dict) and "x_mm" in sensor for sensor in sensors)
+        return cls(files.with_values(base, changes, location), own_places=own_places)
+
 
 def _build_sensor_pair(
     x_mm: float, y_mm: float, left_diameter_mm: int, right_diameter_mm: int
@@ -147,69 +201,6 @@ _HEAD = (
     "# A robot for tuisim. Lengths in mm, angles in degrees; x to the right of the midpoint between the wheels,",
     "# y forward of it.",
 )
-
-
-def load_robot(word: str, key: str = "") -> RobotSpec:
-    """Return the robot that a word names: one of tuisim's robots, or the robot in a TOML or JSON file.
-
-    Args:
-        word: The name of the robot, or the path of the file.
-        key: The option that gives the word, for errors.
-
-    Raises:
-        RobotError: the name is unknown, or the file is wrong.
-    """
-    return choose_robot(word, key).spec
-
-
-def choose_robot(word: str, key: str = "") -> RobotChoice:
-    """Return a robot together with the other settings in its file; arguments as for `load_robot`.
-
-    Raises:
-        RobotError: the name is unknown, or the file is wrong.
-    """
-    if word in ROBOTS:
-        return RobotChoice(ROBOTS[word], own_places=False)
-    data, name, location = files.read_named(word, "robot", ROBOTS, RobotError, key)
-    return (parse_json_robot if word.lower().endswith(".json") else parse_robot)(
-        data, name, location
-    )
-
-
-def parse_robot(
-    data: object, name: str, location: Location, changes_to: RobotSpec | None = None
-) -> RobotChoice:
-    """Return the robot in a table of a robot or world file.
-
-    Args:
-        data: The table.
-        name: The name of the robot, unless the table gives one.
-        location: The place of the table, for errors.
-        changes_to: The robot that provides keys missing in the table, unless the table names its base.
-
-    Raises:
-        RobotError: a key or a value is wrong.
-    """
-    table = files.table(data, location, _TOP_KEYS)
-    named = ROBOTS[files.one_of(table.get("base", DEFAULT_ROBOT), location.at("base"), ROBOTS)]
-    base = named if changes_to is None or "base" in table else changes_to
-    changes: dict[str, Any] = {"name": name}
-    changes |= {
-        key: files.read_value(table[key], _VALUES[key], location.at(key))
-        for key in _BODY_KEYS
-        if key in table
-    }
-    if "pen" in table:
-        changes["pen"] = files.read_part(table["pen"], base.pen, location.at("pen"))
-    if "motors" in table:
-        changes |= _parse_motors(table, base, location)
-    for mount in MOUNTS:
-        if mount.key in table:
-            read = _parse_named if mount.many else _parse_single
-            changes[mount.field] = read(table[mount.key], mount, base, location.at(mount.key))
-    sensors = table.get("color_sensors", {}).values()
-    own_places = any(isinstance(sensor, dict) and "x_mm" in sensor for sensor in sensors)
-    return RobotChoice(files.with_values(base, changes, location), own_places=own_places)
 
 
 def _parse_motors(robot: Mapping[str, Any], base: RobotSpec, location: Location) -> dict[str, Any]:
@@ -387,7 +378,7 @@ def parse_json_robot(data: object, name: str, location: Location) -> RobotChoice
     motor = _parse_json_noise(table, _WHEEL_NOISE, "motor", location)
     light = _parse_json_noise(table, _SENSOR_NOISE, "light", location)
     try:
-        choice = parse_robot(ours, name, location)
+        choice = RobotChoice.parse(ours, name, location)
     except ConfigError as error:
         raise files.with_location(error, location.file, theirs.get(error.key, error.key)) from None
     notes = (f"{location.file}: ignored unknown keys: {shorten_keys(unknown)}",) if unknown else ()
@@ -440,20 +431,8 @@ def shorten_keys(keys: Sequence[str]) -> str:
     )
 
 
-def list_ports(robot: RobotSpec) -> list[tuple[str, str]]:
-    """Return port and name of the part on each port of a robot, sorted by port."""
-    ports = [
-        (motor.port, wheel if motor.kind == "large" else f"{wheel} ({motor.kind} motor)")
-        for motor, wheel in zip(robot.wheel_motors, ("left wheel", "right wheel"), strict=True)
-        if robot.has_wheels
-    ]
-    ports += [(motor.port, f"{motor.kind} motor") for motor in robot.extra_motors]
-    ports += [(sensor.port, sensor.name) for sensor in robot.sensors]
-    return sorted(ports)
-
-
 def save_robot(spec: RobotSpec, path: Path | str) -> None:
-    """Write a robot atomically to a TOML file; `load_robot` returns an equal one. Comments in the file are kept.
+    """Write a robot atomically to a TOML file; `RobotChoice.load` returns an equal one. Comments in the file are kept.
 
     Raises:
         RobotError: the file cannot be written, or cannot represent the robot, such as a name of two lines.
@@ -464,7 +443,7 @@ def save_robot(spec: RobotSpec, path: Path | str) -> None:
         path,
         format_robot_file(spec),
         location,
-        lambda data: parse_robot(data, files.name_of(path), location).spec,
+        lambda data: RobotChoice.parse(data, files.name_of(path), location).spec,
         spec,
     )
 

@@ -86,6 +86,25 @@ class Setting:
         """Whether the app applies a change of the setting immediately; otherwise at its next start."""
         return self.section is not Section.SIMULATION and self.at_once
 
+    def save(self, value: Scalar | None) -> None:
+        """Change the setting in `config.toml`, which is created if necessary; comments and all else in it are kept.
+
+        Args:
+            value: Its new value; None to remove it.
+
+        Raises:
+            ConfigError: the value is wrong, or the file is no TOML or cannot be read or written. The file is unchanged.
+        """
+        path = find_config_file()
+        text = read_config_text(path)
+        # If the file is not TOML, this raises an error, so that its contents are not overwritten.
+        parse_config(text, path)
+        changed = _change(text, self, value)
+        wrong = [error for error in parse_config(changed, path).problems if error.key == self.path]
+        if wrong:
+            raise ConfigError(wrong[0].message.removeprefix(f"{path}: "), wrong[0].hint)
+        _write(path, changed)
+
 
 def _build_option_settings() -> Iterator[Setting]:
     for option in OPTIONS:
@@ -175,20 +194,20 @@ class UserConfig:
             and not any(setting.sets in layer for layer in above)
         ]
 
+    @classmethod
+    def load(cls) -> UserConfig:
+        """Return the configuration in `config.toml`, with its faults in `problems`; defaults if it is missing."""
+        path = find_config_file()
+        try:
+            stamp = path.stat()
+        except OSError:
+            return cls(path)
+        return _load(path, stamp.st_mtime_ns, stamp.st_size)
+
 
 def find_config_file() -> Path:
     """Return the path of `config.toml`; the file may not exist."""
     return config_folder() / FILE
-
-
-def load_config() -> UserConfig:
-    """Return the configuration in `config.toml`, with its faults in `problems`; defaults if it is missing or empty."""
-    path = find_config_file()
-    try:
-        stamp = path.stat()
-    except OSError:
-        return UserConfig(path)
-    return _load(path, stamp.st_mtime_ns, stamp.st_size)
 
 
 @lru_cache(maxsize=1)
@@ -390,27 +409,6 @@ def write_template() -> Path:
         raise ConfigError("exists already", "to start again, delete it first", file=str(path))
     _write(path, build_template())
     return path
-
-
-def save_setting(setting: Setting, value: Scalar | None) -> None:
-    """Change a setting in `config.toml`, which is created if necessary; comments and everything else in it are kept.
-
-    Args:
-        setting: The setting.
-        value: Its new value; None to remove it.
-
-    Raises:
-        ConfigError: the value is wrong, or the file is no TOML or cannot be read or written. The file is unchanged.
-    """
-    path = find_config_file()
-    text = read_config_text(path)
-    # If the file is not TOML, this raises an error, so that its contents are not overwritten.
-    parse_config(text, path)
-    changed = _change(text, setting, value)
-    wrong = [error for error in parse_config(changed, path).problems if error.key == setting.path]
-    if wrong:
-        raise ConfigError(wrong[0].message.removeprefix(f"{path}: "), wrong[0].hint)
-    _write(path, changed)
 
 
 def _change(text: str, setting: Setting, value: Scalar | None) -> str:

@@ -23,16 +23,10 @@ from tuisim.engine.files import Location, Scalar
 from tuisim.engine.mats import find_mat
 from tuisim.engine.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
 from tuisim.settings.build import build_run_spec, extract_settings
-from tuisim.settings.options import (
-    OPTION_PANELS,
-    PRESSES,
-    RUN_VALUES,
-    has_world_values,
-    merge_settings,
-)
+from tuisim.settings.options import OPTION_PANELS, PRESSES, RUN_VALUES, Settings, has_world_values
 from tuisim.settings.presses import MAX_PRESSES
 from tuisim.settings.profiles import format_profile, load_profile, parse_profile
-from tuisim.settings.robots import RobotChoice, format_robot, load_robot, parse_robot
+from tuisim.settings.robots import RobotChoice, format_robot
 
 WORLD_SUFFIX = ".toml"
 BATCH_KEY = "batch"
@@ -104,34 +98,33 @@ class WorldFile:
     inputs: tuple[str, ...] = ()
     """The answers to `input()` in a run."""
 
+    @classmethod
+    def load(
+        cls, path: Path | str, mats: str | None = None, above: tuple[Path, ...] = ()
+    ) -> WorldFile:
+        """Return the contents of a world file. Paths in it are relative to its folder.
 
-def is_world_name(word: str) -> bool:
-    """Return whether a word of the command line names a world file, not a program."""
-    return Path(word).suffix.lower() == WORLD_SUFFIX
+        Args:
+            path: The file.
+            mats: A folder of mats that is used if the file names none; None for none.
+            above: The world files that are based on this one.
 
-
-def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
-    """Return the contents of a world file. Paths in it are relative to its folder.
-
-    Args:
-        path: The file.
-        mats: A folder of mats that is used if the file names none; None for none.
-
-    Raises:
-        ConfigError: the file, or a file that it refers to, cannot be read or is wrong.
-    """
-    return _load_world(user_path(path), mats, ())
-
-
-def _load_world(path: Path, mats: str | None, above: tuple[Path, ...]) -> WorldFile:
-    if not is_world_name(path.name):
-        raise ConfigError(f"is not a {WORLD_SUFFIX} file", "a world file is TOML", file=str(path))
-    data = files.read_file(path, ConfigError)
-    if BATCH_KEY in data:
-        raise ConfigError(
-            "is a batch file, not a world", f"start it with: tuisim batch {path}", file=str(path)
-        )
-    return parse_world(data, path, mats, above)
+        Raises:
+            ConfigError: the file, or a file that it refers to, cannot be read or is wrong.
+        """
+        path = user_path(path)
+        if not is_world_name(path.name):
+            raise ConfigError(
+                f"is not a {WORLD_SUFFIX} file", "a world file is TOML", file=str(path)
+            )
+        data = files.read_file(path, ConfigError)
+        if BATCH_KEY in data:
+            raise ConfigError(
+                "is a batch file, not a world",
+                f"start it with: tuisim batch {path}",
+                file=str(path),
+            )
+        return parse_world(data, path, mats, above)
 
 
 def parse_world(
@@ -147,10 +140,10 @@ def parse_world(
     Args:
         data: The table.
         path: The path of the file, which may not exist yet.
-        mats: As for `load_world`.
+        mats: A folder of mats that is used if the file names none; None for none.
         above: The world files that are based on this one.
-        changes: Whether the table only changes another world; otherwise the world has no floor unless the table sets
-            it.
+        changes: Whether the table only changes another world; otherwise the world has no floor unless the table
+            sets it.
 
     Raises:
         ConfigError: a key or a value is wrong.
@@ -163,7 +156,7 @@ def parse_world(
         world, location, resolve, mats
     )
     for key, load, read, error in (
-        ("robot", load_robot, parse_robot, RobotError),
+        ("robot", RobotChoice.load, RobotChoice.parse, RobotError),
         ("obstacles", load_obstacles, None, ObstacleError),
         ("profile", load_profile, parse_profile, ProfileError),
     ):
@@ -188,9 +181,9 @@ def parse_world(
                 files.one_of(panel, place, OPTION_PANELS) for panel, place in listed
             )
     if "arguments" in world:
-        words = enumerate(world["arguments"], start=1)
         values["arguments"] = tuple(
-            _parse_argument(word, location.at(f"arguments[{number}]")) for number, word in words
+            _parse_argument(word, location.at(f"arguments[{number}]"))
+            for number, word in enumerate(world["arguments"], 1)
         )
     program = _find_program(world["program"], path.parent, resolve) if "program" in world else None
     if "press" in world:
@@ -207,6 +200,11 @@ def parse_world(
         (path, *referred, *base.files),
         inputs or base.inputs,
     )
+
+
+def is_world_name(word: str) -> bool:
+    """Return whether a word of the command line names a world file, not a program."""
+    return Path(word).suffix.lower() == WORLD_SUFFIX
 
 
 def _parse_inputs(world: Mapping[str, Any], location: Location) -> tuple[str, ...]:
@@ -235,7 +233,7 @@ def _load_base(
     if not os.path.exists(path):
         # The error names this file and the key, because the user may not know that the file is based on another one.
         raise location.wrong(f"there is no such file: {path}")
-    return _load_world(path, mats, above)
+    return WorldFile.load(path, mats, above)
 
 
 def _split_table(data: object, location: Location) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -397,7 +395,7 @@ def save_world(
     location = Location(str(path))
 
     def read(data: object) -> RunSpec:
-        return build_run_spec(merge_settings(parse_world(data, path).settings))
+        return build_run_spec(Settings.merge(parse_world(data, path).settings))
 
     def check(data: object) -> None:
         _, world = _split_table(data, location)

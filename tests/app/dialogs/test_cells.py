@@ -8,7 +8,7 @@ from textual.widgets import OptionList
 from tests.app.app_help import LOGS, ready, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.cells import CellsCard
-from tuisim.settings.user_config import CELL_SET, load_config
+from tuisim.settings.user_config import CELL_SET, UserConfig
 from tuisim.terminal import picture_mode as modes
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.glyphs import GLYPHS
@@ -23,7 +23,7 @@ def known_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def started(cells: str | None) -> PictureMode:
     """How an app that starts draws pictures."""
-    return choose_picture_mode(cells, str(load_config().value(CELL_SET)))
+    return choose_picture_mode(cells, str(UserConfig.load().value(CELL_SET)))
 
 
 def glyphs(view: PixelView) -> set[str]:

@@ -16,7 +16,7 @@ from tests.app.app_help import LOGS, open_lab, screen_text, until
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.settings import SettingsScreen
 from tuisim.app.panels.world import World
-from tuisim.settings.user_config import SETTINGS, load_config
+from tuisim.settings.user_config import SETTINGS, UserConfig
 from tuisim.terminal.picture_options import CellSet
 
 
@@ -66,11 +66,11 @@ async def change(pilot: Pilot[Any], app: LabApp, path: str) -> None:
             )
         else:
             await pilot.press(key)
-    await until(pilot, lambda: load_config().written.get(path) == value, path)
+    await until(pilot, lambda: UserConfig.load().written.get(path) == value, path)
     await until(pilot, lambda: applies(app), path)
     await until(pilot, lambda: app.screen is screen)
     await pilot.press("delete")
-    await until(pilot, lambda: path not in load_config().written)
+    await until(pilot, lambda: path not in UserConfig.load().written)
 
 
 @pytest.mark.slow
@@ -94,9 +94,9 @@ async def test_a_wrong_value_in_the_settings_dialog_is_told_and_can_be_corrected
             pilot,
             lambda: "must be a whole number from 1 to 60" in " ".join(screen_text(app).split()),
         )
-        assert not load_config().path.exists()
+        assert not UserConfig.load().path.exists()
         await pilot.press("9", "enter")
-        await until(pilot, lambda: load_config().written == {"app.fps": 9})
+        await until(pilot, lambda: UserConfig.load().written == {"app.fps": 9})
 
 
 @pytest.mark.slow

@@ -26,7 +26,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.form import Choice, Row
 from tuisim.app.setup.next_run import change_robot
 from tuisim.app.snapshot import RunPhase
-from tuisim.settings.robots import ROBOTS, load_robot
+from tuisim.settings.robots import ROBOTS, RobotChoice
 
 
 @asynccontextmanager
@@ -154,7 +154,7 @@ async def test_a_robot_is_saved_edited_and_loaded_again(
         app.screen.query_one(Input).value = "mine.toml"
         await pilot.press("enter")
         await until(pilot, lambda: len(app.screen_stack) == 1)
-        assert load_robot("mine.toml").wheel_diameter_mm == 77
+        assert RobotChoice.load("mine.toml").spec.wheel_diameter_mm == 77
         await pilot.press("escape", "r")
         robots = app.screen.query_one(OptionList)
         robots.highlighted = robots.get_option_index("Small_Robot")

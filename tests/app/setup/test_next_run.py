@@ -17,7 +17,7 @@ from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import NO_PORT, NoiseSpec, Obstacle, RobotSpec
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
-from tuisim.settings.robots import ROBOTS, load_robot, save_robot
+from tuisim.settings.robots import ROBOTS, RobotChoice, save_robot
 
 BOX = (Obstacle(1, 2, 3, 4),)
 
@@ -154,7 +154,7 @@ def test_changing_the_mat_does_not_read_the_robots_file_again(tmp_path: Path) ->
 def test_a_robot_is_saved_without_the_changes_that_the_mat_made(tmp_path: Path) -> None:
     plan = plans.change_mat(build_plan(Settings({"pen.color": "teal"})), "Radial_grey")
     save_robot(plans.build_saved_robot(plan), tmp_path / "mine.toml")
-    saved = load_robot(str(tmp_path / "mine.toml"))
+    saved = RobotChoice.load(str(tmp_path / "mine.toml")).spec
     assert saved == replace(RobotSpec(), pen=replace(RobotSpec().pen, color="teal"))
 
 

@@ -13,6 +13,8 @@ import pytest
 
 from tests.cases import cases
 from tests.running import Run
+from tuisim.engine.core.profile import ProfileSpec
+from tuisim.engine.core.values import list_values
 
 TURN_MM = math.pi * 56
 MM_PER_DEG = TURN_MM / 360
@@ -193,3 +195,8 @@ def test_a_program_sees_its_pens_line_only_if_the_world_says_so(run: Run, pen_ma
     pen = PenSpec(x_mm=-20.0, y_mm=0.0, color="black", width_mm=30.0, down=True)
     done = run(text, background="Empty_Map", pose=(500.0, 500.0, 0.0), pen=pen, pen_marks=pen_marks)
     assert done.lines == [str(pen_marks)]
+
+
+def test_every_number_of_a_profile_says_where_it_comes_from() -> None:
+    lacking = {name for name, value in list_values(ProfileSpec).items() if not value.source}
+    assert lacking == {"name", "title"}

@@ -27,7 +27,7 @@ from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.engine.shim.sensors import DEVICES
-from tuisim.settings.robots import load_robot, save_robot
+from tuisim.settings.robots import RobotChoice, save_robot
 
 each_kind = cases("kind", SENSORS)
 each_mount = pytest.mark.parametrize("mount", MOUNTS, ids=lambda mount: mount.field)
@@ -89,10 +89,10 @@ def test_a_robot_file_stores_each_sensor_and_can_leave_it_out(mount: Mount, tmp_
     }
     robot = robot_with(mount, replace(sensor, **moved))
     save_robot(robot, tmp_path / "robot.toml")
-    assert load_robot(str(tmp_path / "robot.toml")) == robot
+    assert RobotChoice.load(str(tmp_path / "robot.toml")).spec == robot
     word = f"[{mount.key}]\n{sensor.name} = false" if mount.many else f"{mount.key} = false"
     (tmp_path / "less.toml").write_text(f"{word}\n")
-    left = load_robot(str(tmp_path / "less.toml")).list_sensors(mount)
+    left = RobotChoice.load(str(tmp_path / "less.toml")).spec.list_sensors(mount)
     assert sensor.name not in [other.name for other in left]
 
 

@@ -10,13 +10,13 @@ from tests.running import Done, over
 from tuisim.base.source import Program
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import merge_settings
+from tuisim.settings.options import Settings
 
 pytestmark = pytest.mark.usefixtures("home")
 
 
 def _run(folder: Path, text: str, profile: str = "ev3") -> Done:
-    spec = build_run_spec(merge_settings({"profile": profile}))
+    spec = build_run_spec(Settings.merge({"profile": profile}))
     program = Program(
         "p.py", f"import os\nfrom pathlib import Path\n{text}", path=str(folder / "p.py")
     )

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from tuisim.base.source import Program
+from tuisim.commands.listings import list_ports
 from tuisim.programs.program_settings import read_source_facts
 from tuisim.programs.robot.assembly import BuiltRobot
-from tuisim.settings.robots import ROBOTS, list_ports
+from tuisim.settings.robots import ROBOTS
 
 USUAL = ROBOTS["Default_Robot"]
 HEAD = """\

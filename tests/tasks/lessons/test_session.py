@@ -13,7 +13,7 @@ import pytest
 from tuisim.base.errors import TuisimError
 from tuisim.engine.core.geometry import Pose
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import merge_settings
+from tuisim.settings.options import Settings
 from tuisim.tasks.goals.judgement import Change as Moment
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.goals.spec import FinishCondition, Goal
@@ -45,7 +45,7 @@ def _session(
 
 def _run(run_id: str, **world: float) -> Any:
     """A run in the world of the lesson, or in another one."""
-    spec = build_run_spec(merge_settings({**WORLD, **world}))
+    spec = build_run_spec(Settings.merge({**WORLD, **world}))
     return SimpleNamespace(run_id=run_id, spec=spec, folder=Path(run_id))
 
 

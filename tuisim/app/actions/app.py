@@ -11,7 +11,7 @@ from tuisim.app.action import KeyWord, group_keys
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
 from tuisim.engine.files import Scalar
-from tuisim.settings.user_config import CELL_SET, THEME, Setting, load_config
+from tuisim.settings.user_config import CELL_SET, THEME, Setting, UserConfig
 from tuisim.terminal.picture_options import AUTO
 
 if TYPE_CHECKING:
@@ -184,11 +184,10 @@ def change_setting(context: ActionContext, setting: Setting, value: Scalar | Non
     Raises:
         ConfigError: the value is wrong, or the file cannot be written.
     """
-    from tuisim.settings.user_config import save_setting
 
-    save_setting(setting, value)
+    setting.save(value)
     if apply := _APPLY.get(setting.path):
-        apply(context, load_config().values.get(setting.path, setting.default))
+        apply(context, UserConfig.load().values.get(setting.path, setting.default))
         context.app.handle_situation_change()
         context.app.draw(force=True)
 

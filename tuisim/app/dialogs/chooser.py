@@ -317,7 +317,7 @@ def find_best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
 def build_program_chooser() -> Chooser:
     """Return the dialog with the programs, worlds, goals and logs in the current folder, and the examples."""
     from tuisim.programs.program_file import list_programs
-    from tuisim.settings.worlds import load_world
+    from tuisim.settings.worlds import WorldFile
     from tuisim.tasks.goals.files import list_examples as goals_examples
     from tuisim.tasks.goals.files import read_title
 
@@ -326,7 +326,9 @@ def build_program_chooser() -> Chooser:
     known = {str(path.resolve()) for path in (*(path for _, path, _ in examples), *goals)}
     here = list_files([".py"])
     own = ChoiceGroup(here.title, [entry for entry in here.entries if entry[0] not in known])
-    worlds = [entry for entry in list_files([".toml"], load_world).entries if entry[0] not in known]
+    worlds = [
+        entry for entry in list_files([".toml"], WorldFile.load).entries if entry[0] not in known
+    ]
     groups = [
         own,
         ChoiceGroup(

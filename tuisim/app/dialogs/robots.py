@@ -18,7 +18,7 @@ from tuisim.base import palette
 from tuisim.base.errors import TuisimError
 from tuisim.engine.core.spec import ColorSensorSpec, RobotSpec, SensorSpec
 from tuisim.pictures.scene.portrait import draw_portrait, find_part_rgb
-from tuisim.settings.robots import ROBOTS, choose_robot, load_robot
+from tuisim.settings.robots import ROBOTS, RobotChoice
 from tuisim.terminal import cells
 from tuisim.terminal.cell_view import LinesPanel, PixelView
 from tuisim.terminal.pixels import Rgb
@@ -39,7 +39,7 @@ _MIN_ROWS, _MAX_ROWS = 6, 16
 def build_robot_picker(plan: NextRun) -> RobotPicker:
     """Return the dialog with the robots to choose from: the program's own, those known by name, and those in files."""
     built = plan.program_robot
-    files = list_files([".toml", ".json"], lambda path: load_robot(str(path)))
+    files = list_files([".toml", ".json"], lambda path: RobotChoice.load(str(path)).spec)
     groups = [
         ChoiceGroup(
             "Built from the program", [(PROGRAM_ROBOT, built.spec.name, "")] if built else []
@@ -73,7 +73,12 @@ class RobotPicker(Chooser):
         self, groups: Sequence[ChoiceGroup], current: str, robots: Mapping[str, RobotSpec]
     ) -> None:
         super().__init__(
-            "Robots", groups, current, "path of a robot's .toml or .json file", choose_robot, TABLES
+            "Robots",
+            groups,
+            current,
+            "path of a robot's .toml or .json file",
+            RobotChoice.load,
+            TABLES,
         )
         self._robots = dict(robots)
 
@@ -108,7 +113,7 @@ class RobotPicker(Chooser):
         """Return the robot with a name or a path; None for a file that has changed since it was listed."""
         if name and name not in self._robots:
             try:
-                self._robots[name] = load_robot(name)
+                self._robots[name] = RobotChoice.load(name).spec
             except TuisimError:
                 return None
         return self._robots.get(name)

@@ -18,15 +18,7 @@ from tuisim.app.dialogs.dialog import Dialog, name_and_title
 from tuisim.app.dialogs.question import LinePrompt
 from tuisim.base.errors import TuisimError
 from tuisim.engine.files import Scalar
-from tuisim.settings.user_config import (
-    FILE,
-    SETTINGS,
-    THEME,
-    Section,
-    Setting,
-    UserConfig,
-    load_config,
-)
+from tuisim.settings.user_config import FILE, SETTINGS, THEME, Section, Setting, UserConfig
 
 Change = Callable[[Setting, Scalar | None], None]
 """Writes a setting and applies it; None for the usual value. Raises TuisimError."""
@@ -83,7 +75,7 @@ class SettingsScreen(Dialog[None]):
         self._themes = themes
 
     def compose_content(self) -> ComposeResult:
-        config = load_config()
+        config = UserConfig.load()
         yield Static(str(config.path), id="where", markup=False)
         yield OptionList(*self._build_options(config), markup=False)
         yield Static(id="about", markup=False)
@@ -94,7 +86,7 @@ class SettingsScreen(Dialog[None]):
         # The first line is a heading, which cannot be chosen.
         listed.highlighted = 1
         listed.focus()
-        for error in load_config().problems[:1]:
+        for error in UserConfig.load().problems[:1]:
             self._report_error(error)
 
     def _build_options(self, config: UserConfig) -> list[Option]:
@@ -131,7 +123,7 @@ class SettingsScreen(Dialog[None]):
     @on(OptionList.OptionSelected)
     def _edit(self) -> None:
         setting = self._selected_setting
-        value = load_config().value(self._selected_setting.path)
+        value = UserConfig.load().value(self._selected_setting.path)
         if isinstance(value, bool):
             self._choose(setting, not value)
             return
@@ -183,10 +175,10 @@ class SettingsScreen(Dialog[None]):
 
     def _report_error(self, error: TuisimError) -> None:
         # The path of the file stands above the list, so the message need not repeat it.
-        self.say(str(error).removeprefix(f"{load_config().path}: "), wrong=True)
+        self.say(str(error).removeprefix(f"{UserConfig.load().path}: "), wrong=True)
 
     def _show_change(self, setting: Setting) -> None:
-        config = load_config()
+        config = UserConfig.load()
         self.query_one(OptionList).replace_option_prompt(setting.path, _build_line(setting, config))
         if config.problems:
             self._report_error(config.problems[0])

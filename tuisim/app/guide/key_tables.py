@@ -17,7 +17,7 @@ from tuisim.app.keymap import apply_keys
 from tuisim.app.panels import PANELS
 from tuisim.base.errors import ConfigError
 from tuisim.guide.tables import Table, code
-from tuisim.settings.user_config import load_config
+from tuisim.settings.user_config import UserConfig
 
 EVERYWHERE = (("tab", "Next panel or field"), ("Escape", "Leave a field"))
 """Keys that are no lines of the app's table."""
@@ -60,7 +60,7 @@ def list_app_keys() -> Table:
     actions = _load_actions("tuisim.app.actions.keys")
     # The app and `tuisim config` report wrong keys, so the guide need not.
     with suppress(ConfigError):
-        actions = apply_keys(actions, load_config())
+        actions = apply_keys(actions, UserConfig.load())
     rows = [
         (*row, code(name)) for row, name in zip(_list_keys(actions.values()), actions, strict=True)
     ]

@@ -28,17 +28,10 @@ from tuisim.programs.program_settings import (
     has_brick_rules,
 )
 from tuisim.settings.build import build_run_spec, extract_settings, list_ineffective
-from tuisim.settings.options import (
-    RESET_BY_MAT,
-    RESET_BY_PROFILE,
-    RUN_VALUES,
-    START,
-    Settings,
-    merge_settings,
-)
+from tuisim.settings.options import RESET_BY_MAT, RESET_BY_PROFILE, RUN_VALUES, START, Settings
 from tuisim.settings.presses import press_actions
 from tuisim.settings.profiles import load_profile
-from tuisim.settings.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
+from tuisim.settings.robots import DEFAULT_ROBOT, RobotChoice
 
 WORLD_PATHS = frozenset(
     {
@@ -134,7 +127,7 @@ def build_first_plan(
 
 def plan_spec(spec: RunSpec) -> NextRun:
     """Return the plan of a run of which only the specification is known, but not the settings that led to it."""
-    return replace(build_plan(merge_settings(extract_settings(spec))), spec=spec)
+    return replace(build_plan(Settings.merge(extract_settings(spec))), spec=spec)
 
 
 def plan_rerun(spec: RunSpec, program: Program | None = None) -> NextRun:
@@ -168,7 +161,7 @@ def _resolve_choices(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[s
     resolved = dict(choices)
     words = {}
     for key, load in (
-        ("robot", choose_robot),
+        ("robot", RobotChoice.load),
         ("obstacles", load_obstacles),
         ("profile", load_profile),
     ):
@@ -268,7 +261,7 @@ def free_settings(plan: NextRun, keys: Iterable[str]) -> NextRun:
 
 def follow_program_robot(plan: NextRun) -> NextRun:
     """Return a plan with the robot that the program needs, instead of a chosen one; later programs may change it."""
-    chosen = plan.program_robot or choose_robot(DEFAULT_ROBOT)
+    chosen = plan.program_robot or RobotChoice.load(DEFAULT_ROBOT)
     words = {key: word for key, word in plan.words.items() if key != "robot"}
     following = {**plan.from_program, "robot": chosen}
     return replace(

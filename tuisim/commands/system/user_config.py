@@ -6,7 +6,7 @@ from tuisim.base.errors import ConfigError
 from tuisim.commands.echo import AS_JSON, draw_table, echo, echo_json, echo_lines
 from tuisim.programs.program_settings import PROGRAM_PATHS
 from tuisim.settings.command_line import command, option
-from tuisim.settings.user_config import FILE, SETTINGS, load_config, write_template
+from tuisim.settings.user_config import FILE, SETTINGS, UserConfig, write_template
 
 
 @command(
@@ -36,7 +36,7 @@ def config(as_json: bool, init: bool) -> int:
             )
         echo(f"written: {write_template()}")
         return 0
-    settings = load_config().checked()
+    settings = UserConfig.load().checked()
     from tuisim.app.actions.keys import check_config
 
     check_config(settings)

@@ -20,9 +20,9 @@ from tuisim.programs.robot.mentions import Mentions
 from tuisim.settings.robots import (
     DEFAULT_ROBOT,
     ROBOTS,
+    RobotChoice,
     format_robot,
     list_table_values,
-    parse_robot,
 )
 
 HUB_ROBOT = "Prime_Robot"
@@ -117,7 +117,7 @@ class ProgramRobot:
             path,
             self.list_lines(),
             location,
-            lambda data: parse_robot(data, name, location).spec,
+            lambda data: RobotChoice.parse(data, name, location).spec,
             self.spec,
         )
 

@@ -23,7 +23,7 @@ from tuisim.engine.core.spec import RunSpec, WorldSpec
 from tuisim.engine.core.values import quote
 from tuisim.engine.files import Location
 from tuisim.settings.options import has_world_values
-from tuisim.settings.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
+from tuisim.settings.robots import DEFAULT_ROBOT, RobotChoice
 from tuisim.settings.worlds import WorldFile, is_world_name, parse_world
 from tuisim.tasks.goals.brick import resolve_column
 from tuisim.tasks.goals.comparisons import CountCondition, KeepCondition, WhenCondition
@@ -530,7 +530,7 @@ def build_runs(worlds: Sequence[TrialWorld]) -> list[RunSpec]:
     """Return a run specification for each world, with the world's robot and the profile that has the most columns."""
     chosen = [world.settings.get("robot", DEFAULT_ROBOT) for world in worlds]
     robots = [
-        chosen_robot if isinstance(chosen_robot, RobotChoice) else choose_robot(chosen_robot)
+        chosen_robot if isinstance(chosen_robot, RobotChoice) else RobotChoice.load(chosen_robot)
         for chosen_robot in chosen
     ]
     # A run may have another profile; this one has the most columns.

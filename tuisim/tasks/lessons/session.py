@@ -17,7 +17,7 @@ from tuisim.engine.core.values import list_values
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.store import load_run
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import merge_settings
+from tuisim.settings.options import Settings
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.goals.spec import LogCondition, PrintCondition
 from tuisim.tasks.goals.trial_world import TrialWorld
@@ -251,7 +251,7 @@ class LessonSession:
         return "This run began elsewhere: m moves the robot to its start, then R."
 
     def _build_spec(self) -> RunSpec:
-        return build_run_spec(merge_settings(self.lesson.settings))
+        return build_run_spec(Settings.merge(self.lesson.settings))
 
     # What the student does
 

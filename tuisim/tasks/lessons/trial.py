@@ -14,7 +14,7 @@ from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.programs.program_file import parse_program
 from tuisim.programs.program_settings import build_program_settings
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import merge_settings
+from tuisim.settings.options import Settings
 from tuisim.settings.presses import press_actions
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.goals.trial_world import TrialWorld
@@ -49,7 +49,7 @@ def list_trials(lesson: Lesson) -> list[Trial]:
     Each model answer is tried as often as its step requires runs, with different seeds; each wrong program once.
     """
     trials_to_run = []
-    seed = build_run_spec(merge_settings(lesson.settings)).seed
+    seed = build_run_spec(Settings.merge(lesson.settings)).seed
     for step in lesson.steps:
         if isinstance(step.check, RunCheck):
             trials_to_run += [
@@ -114,7 +114,7 @@ def run_model(lesson: Lesson, step: LessonStep | None) -> Recording:
         TuisimError: the program cannot run.
     """
     text = (step.answer if step else "") or lesson.model_answer
-    task = build_task(lesson, text, build_run_spec(merge_settings(lesson.settings)).seed)
+    task = build_task(lesson, text, build_run_spec(Settings.merge(lesson.settings)).seed)
     with create_temporary_home() as home:
         handle = start_run(task.program, task.spec, task.options, RunStore(home))
         try:

@@ -16,7 +16,7 @@ from tuisim.engine.mats import background
 from tuisim.programs.program_file import ProgramSource
 from tuisim.programs.program_settings import ProgramSettings, build_program_settings
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import has_world_values, merge_settings
+from tuisim.settings.options import Settings, has_world_values
 from tuisim.tasks.execute import has_machine_cause
 from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.goals.trial_world import TrialWorld
@@ -38,7 +38,7 @@ def build_entries(
         ConfigError: the task's world, or an option, is wrong, or the profile fits none of the programs.
     """
     for world in task.worlds:
-        build_run_spec(merge_settings(world.settings, options))
+        build_run_spec(Settings.merge(world.settings, options))
     names_profile = "profile" in {**task.settings, **options}
     entries = []
     students = []

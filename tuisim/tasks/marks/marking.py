@@ -18,7 +18,7 @@ from tuisim.engine.runs.child.isolation import MOST_BYTES
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.logs.export import EXPORTERS
-from tuisim.settings.options import merge_settings
+from tuisim.settings.options import Settings
 from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.goals.judgement import sum_points
 from tuisim.tasks.goals.spec import Goal
@@ -228,7 +228,7 @@ class Marking:
             keep=request.keep,
             jobs=request.jobs,
             version=request.version,
-            arguments=merge_settings(task.settings)["arguments"],
+            arguments=Settings.merge(task.settings)["arguments"],
         )
 
     def read_programs(self) -> None:

@@ -18,7 +18,7 @@ from tuisim.engine.core.conditions import Operator, ValueCondition, ValueSource
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.programs.program_file import find_program
-from tuisim.settings.options import merge_settings
+from tuisim.settings.options import Settings
 from tuisim.tasks.goals.comparisons import CountCondition, WhenCondition
 from tuisim.tasks.goals.condition import Condition, ConditionKind, UnjudgedError
 from tuisim.tasks.goals.files import GoalsFile
@@ -244,7 +244,7 @@ def run_trial(
         options=RunOptions(time_limit_s=time_limit_s, stall_limit_s=STALL_LIMIT_S),
         keep=Keep.NONE,
         jobs=jobs,
-        arguments=merge_settings(task.settings)["arguments"],
+        arguments=Settings.merge(task.settings)["arguments"],
     )
     with create_temporary_home("tuisim-try-") as home:
         tried = [*_write_fakes(task, home), *_list_author_programs(task, wrong)]
