@@ -332,7 +332,7 @@ def decide(
 
 
 def has_brick_rules(profile: str | ProfileSpec) -> bool:
-    """Return whether a profile, or the profile of a name, has the rules of a real brick."""
+    """Return whether a profile, given as a specification or by its name, has the rules of a real brick."""
     return profile in BRICK_PROFILES or profile in [PROFILES[name] for name in BRICK_PROFILES]
 
 
