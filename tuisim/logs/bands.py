@@ -90,7 +90,7 @@ class BandReport:
 
     @cached_property
     def has_true_levels(self) -> bool:
-        """Whether some true levels differ from the levels, because noise was clamped at an end of the scale."""
+        """Whether some true levels differ from the measured levels, as noise was clamped at an end of the scale."""
         return bool(np.any(self.columns["true_level"] != self.columns["level"]))
 
     @cached_property
@@ -178,7 +178,8 @@ def _measure_places(
 def describe_width(band: Band) -> str:
     """Return the width of a band in mm as text.
 
-    The text is `CUT_OFF` or `–` if the width is unknown, and empty for a log without positions.
+    If the width is unknown, the text is `CUT_OFF` for a band at an end of the log, and `–` for any other band. It is
+    empty for a log without positions.
     """
     if not isfinite(band.start_mm):
         return ""
@@ -211,7 +212,7 @@ def compute_driven_mm(log: Log, series: Series) -> FloatArray | None:
 
 
 def describe_levels(report: BandReport) -> str:
-    """Return the levels of a report's bands as text."""
+    """Return the levels of a variable's bands as a text of one line, each with its grey and how often it came."""
     if not report.count:
         return f"{report.variable}: no level: its values stand still nowhere"
     levels = _group_levels(report)

@@ -150,7 +150,7 @@ class Readable(Protocol):
     """A stream from which bytes can be read."""
 
     def read(self, count: int, /) -> bytes | None:
-        """Return up to `count` bytes; empty bytes at the end."""
+        """Return up to `count` bytes; empty bytes at the end, and None if the stream has none at the moment."""
 
 
 _UNPACKED_BYTES = 1 << 12

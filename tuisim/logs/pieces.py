@@ -101,8 +101,8 @@ def _join_seams(signal: Signal, pieces: Pieces, seams: IntArray, min_samples: in
     Args:
         signal: The log.
         pieces: Its pieces.
-        seams: Shape (n, 2): for each seam the index of the piece after the left piece, and the index of the right
-            piece. They are equal if the two pieces are neighbours, and differ if strays are between them.
+        seams: Shape (n, 2): for each seam the index of the left piece plus 1, and the index of the right piece. They
+            are equal if the two pieces are neighbours, and differ if strays are between them.
         min_samples: Fewest samples on either side.
     """
     left, right = pieces[seams[:, 0] - 1], pieces[seams[:, 1]]
@@ -239,7 +239,7 @@ def find_strays(part: FloatArray, sigma: float) -> BoolArray:
 
 
 def compute_medians(part: FloatArray) -> FloatArray:
-    """Return the median of each row; numpy's own takes ten times longer for short rows."""
+    """Return the median of each row of an array, shape (m,); numpy's own takes ten times longer for short rows."""
     ordered = np.sort(part, axis=1)
     middle = part.shape[1] // 2
     return (

@@ -166,7 +166,10 @@ def _join_pieces(signal: Signal, pieces: Pieces, *, has_strays: bool) -> Pieces:
 
 
 def _drop_short(signal: Signal, plateaus: PlateauArray, min_samples: int) -> PlateauArray:
-    """Return plateaus without those that are ramps, edges between two others, or too short inside of the log."""
+    """Return plateaus without ramps, edges between two others, and those of fewer than `min_samples` samples.
+
+    A short plateau at an end of the log is kept, as the log may have cut it off.
+    """
     plateaus = plateaus[~_find_ramps(signal, plateaus)]
     plateaus = plateaus[~_find_edges(plateaus)]
     at_an_end = (plateaus["start"] == 0) | (plateaus["stop"] == len(signal.values))
@@ -197,7 +200,12 @@ def _find_extremes(values: FloatArray) -> tuple[float, float]:
 
 
 def _cut(values: FloatArray, sigma: float) -> Pieces:
-    """Return the pieces of a log, each of about one level."""
+    """Return a log cut into pieces at the steps between levels, so that each piece has about one level.
+
+    Args:
+        values: The log.
+        sigma: Standard deviation of the noise.
+    """
     pieces = []
     for first in range(0, len(values), _BLOCK):
         block = values[first : first + _BLOCK]
@@ -328,7 +336,7 @@ def _find_ramps(signal: Signal, plateaus: PlateauArray) -> BoolArray:
 def _add_ends(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
     """Return plateaus in order; the first and the last sample of the log also become plateaus if they are a step away.
 
-    They are so for a program that logs until it meets a value: its log ends at the first sample of that level.
+    A program that logs until it meets a value ends its log at the first sample of that level.
     """
     if not len(plateaus):
         return plateaus
@@ -391,7 +399,12 @@ def _extend_starts(values: FloatArray, pieces: Pieces, limits: IntArray, near: f
 
 
 def _measure_levels(values: FloatArray, starts: IntArray, stops: IntArray) -> FloatArray:
-    """Return the median of each span of a log."""
+    """Return the median of each span of a log, shape (n,).
+
+    Args:
+        values: The log.
+        starts, stops: The first sample of each span, and the sample after its last one, shape (n,).
+    """
     levels = np.empty(len(starts))
     for some, part in group_by_length(values, np.stack((starts, stops), axis=1)):
         levels[some] = compute_medians(part)

@@ -84,7 +84,8 @@ def estimate_noise(differences: FloatArray, variance: float) -> float:
     if not len(differences):
         return 0.0
     by_median = 1.4826 * float(np.median(differences)) / np.sqrt(variance)
-    # If values jump between two steps of a coarse scale, the median difference may be 0: the calm ones are used, too.
+    # If values jump between two steps of a coarse scale, the median difference may be 0: then the mean square of the
+    # smaller differences is the better estimate.
     calm = np.sort(differences)[: max(1, int(0.8 * len(differences)))]
     return max(float(by_median), float(np.sqrt(np.mean(calm**2) / variance)))
 
@@ -132,14 +133,14 @@ def _measure_levels(plateaus: PlateauArray, part: FloatArray, keep: BoolArray) -
 
 
 def go_one_way(part: FloatArray) -> BoolArray:
-    """Return for each row whether it rises, or falls, from each sample to the next."""
+    """Return for each row of samples, shape (m, length), whether it rises, or falls, from each sample to the next."""
     steps = np.diff(part, axis=1)
     one_way: BoolArray = np.logical_or((steps > 0.0).all(axis=1), (steps < 0.0).all(axis=1))
     return one_way
 
 
 def find_moving(signal: Signal, plateaus: PlateauArray) -> BoolArray:
-    """Return for each plateau whether it has no level: it rises, falls or bends, or is a few samples far apart."""
+    """Return for each plateau whether it has no level: it rises, falls or bends, or is a few very different samples."""
     lengths = count_samples(read_spans(plateaus))
     moving: BoolArray = plateaus["strays"] > _MAX_STRAYS * lengths
     spread = plateaus["spread"]
@@ -187,7 +188,12 @@ def _find_swinging(part: FloatArray) -> BoolArray:
 
 
 def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
-    """Return the variance of each row, shape (m, length), estimated from differences of neighbours, without strays."""
+    """Return the variance of the noise in each row of samples, shape (m,), from differences of neighbours.
+
+    Args:
+        part: The rows, shape (m, length); strays in them are ignored.
+        sigma: Standard deviation of the noise, by which strays are found.
+    """
     keep = ~find_strays(part, sigma)
     pairs = keep[:, 1:] & keep[:, :-1]
     squares = (np.diff(part, axis=1) ** 2 * pairs).sum(axis=1)
@@ -196,12 +202,12 @@ def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
 
 
 def find_still_parts(signal: Signal, moving: PlateauArray, cut: Pieces) -> PlateauArray:
-    """Return, from pieces without a level, those parts that have one, such as the top between two slopes.
+    """Return those parts of pieces without a level that have a level themselves, such as the top between two slopes.
 
     Args:
         signal: The log.
         moving: The pieces without a level.
-        cut: The pieces from which they were joined, without gaps between them.
+        cut: The pieces from which those were joined, without gaps between them.
     """
     if not len(moving):
         return moving
