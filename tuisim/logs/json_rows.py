@@ -233,7 +233,7 @@ def _list_rows(columns: Mapping[str, Any]) -> list[Any]:
     """Return columns, lists by name, as rows.
 
     Raises:
-        LogError: their lengths differ.
+        LogError: the lists differ in length.
     """
     import pandas as pd
 

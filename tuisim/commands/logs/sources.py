@@ -27,7 +27,7 @@ from tuisim.settings.command_line import Arguments
 def is_file(word: str) -> bool:
     """Return whether a word names a file, not a stored run: the file exists, or the word has a suffix or is `-`."""
     path = Path(word)
-    # `is_file` raises if the name is too long for the file system.
+    # `is_fifo` raises if the name is too long for the file system.
     with suppress(OSError):
         if os.path.isfile(path) or path.is_fifo():
             return True
