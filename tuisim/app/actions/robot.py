@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 def switch_pen(context: ActionContext) -> None:
     """Lift the pen if it is down; else put it down."""
     runs = context.runs
-    runs.set_pen(not runs.pen_down)
+    # A live run obeys later, so that its pen is still the former one here.
+    down = not runs.pen_down
+    runs.set_pen(down)
     if not context.debugger.is_away:
         kind = runs.spec.robot.pen
-        context.app.say(
-            f"Pen down: {kind.color}, {kind.width_mm:g} mm" if runs.pen_down else "Pen up"
-        )
+        context.app.say(f"Pen down: {kind.color}, {kind.width_mm:g} mm" if down else "Pen up")
 
 
 def home(context: ActionContext) -> None:
