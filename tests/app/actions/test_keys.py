@@ -21,10 +21,11 @@ async def test_a_key_that_does_nothing_says_why() -> None:
     async with open_lab() as (pilot, app):
         for key, reason in (
             ("R", "No program yet: o opens one"),
-            ("S", "Nothing is running: R runs the program"),
-            ("space", "Nothing is running: R runs the program"),
-            ("full_stop", "Nothing is running: R runs the program"),
-            ("e", "No log yet: R runs the program"),
+            ("S", "Nothing is running: o opens a program, R runs it"),
+            ("space", "Nothing is running: o opens a program, R runs it"),
+            ("full_stop", "Nothing is running: o opens a program, R runs it"),
+            ("comma", "No run yet: o opens a program, R runs it"),
+            ("e", "No log yet: o opens a program, R runs it"),
         ):
             app.clear_notifications()
             await pilot.press(key)

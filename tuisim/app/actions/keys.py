@@ -43,8 +43,12 @@ def _can_run(now: Situation) -> str:
     return "The program is already running: {stop} stops it" if now.state in IN_RUN else ""
 
 
+def _describe_run_key(now: Situation) -> str:
+    return "{run} runs the program" if now.has_program else "{open} opens a program, {run} runs it"
+
+
 def _can_stop(now: Situation) -> str:
-    return "" if now.state in IN_RUN else "Nothing is running: {run} runs the program"
+    return "" if now.state in IN_RUN else f"Nothing is running: {_describe_run_key(now)}"
 
 
 def _can_pause(now: Situation) -> str:
@@ -60,7 +64,7 @@ def _can_step(now: Situation) -> str:
 
 
 def _can_look_back(now: Situation) -> str:
-    return "" if now.has_run else "No run yet: {run} runs the program"
+    return "" if now.has_run else f"No run yet: {_describe_run_key(now)}"
 
 
 def _can_ask_why(now: Situation) -> str:
@@ -81,7 +85,7 @@ def _can_change_world(now: Situation) -> str:
 
 
 def _can_export(now: Situation) -> str:
-    return "" if now.has_run else "No log yet: {run} runs the program"
+    return "" if now.has_run else f"No log yet: {_describe_run_key(now)}"
 
 
 def _can_undo(now: Situation) -> str:
