@@ -320,7 +320,7 @@ def _find_key(x: int, words: Iterable[KeyWord]) -> str:
     return ""
 
 
-_KEYS_OF_FIELDS = {"esc": "escape"}
+_KEYS_OF_FIELDS = {"esc": "escape", "↑": "up"}
 
 
 class KeyFooter(ActionWords):

@@ -595,7 +595,8 @@ class LabApp(PanelMessages):
         if self.panel_area.is_single:
             names = ("panel-next", *names)
         actions = list_footer_actions(self.ACTIONS, names, state.situation, state.playing)
-        if (keys := self._field_keys()) in (FIELD_KEYS, TYPING_KEYS, CLICKED_KEYS):
+        if "esc" in dict(keys := self._field_keys()):
+            # Letters are text.
             actions = []
         self.key_footer.show(actions, state.status, keys, state.failed)
 
@@ -604,14 +605,13 @@ class LabApp(PanelMessages):
         # The focus may already be gone while the app ends.
         focused = self.focused if self.screen_stack else None
         if isinstance(focused, Input):
-            return FIELD_KEYS
-        code = self.panel_area.code
-        typing = (
-            code is not None and code.typing and focused is not None and code in focused.ancestors
-        )
-        if code is not None and code.awaits_letters:
-            return CLICKED_KEYS
-        return TYPING_KEYS if typing else find_panel_keys(focused)
+            return getattr(focused.parent, "field_keys", FIELD_KEYS)
+        if code := self.panel_area.code:
+            if code.awaits_letters:
+                return CLICKED_KEYS
+            if code.typing and focused and code in focused.ancestors:
+                return TYPING_KEYS
+        return find_panel_keys(focused)
 
     # Panels
 

@@ -192,3 +192,12 @@ async def test_letters_are_no_keys_of_a_dialog_while_its_field_has_the_focus() -
         assert "on or off" not in last_line(pilot)
         pilot.app.screen.query_one(OptionList).focus()
         await until(pilot, lambda: "on or off" in last_line(pilot))
+
+
+async def test_the_footer_of_the_find_bar_says_that_enter_goes_to_the_next_match() -> None:
+    async with open_lab(LOGS) as (pilot, app):
+        app.panel_area.bring("code")
+        await pilot.press("d", "ctrl+f")
+        await until(pilot, lambda: last_line(pilot).startswith(" enter next ↑ before esc close"))
+        await pilot.press("escape", "ctrl+g")
+        await until(pilot, lambda: last_line(pilot).startswith(" enter go esc close"))

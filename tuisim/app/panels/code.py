@@ -16,7 +16,7 @@ from textual.message import Message
 from textual.widgets import Input, Static, TextArea
 from textual.widgets.text_area import Selection
 
-from tuisim.app.action import fill_keys
+from tuisim.app.action import KeyWord, fill_keys
 from tuisim.app.clipboard import Copied
 from tuisim.app.editor.area import CodeArea, EditorCommand
 from tuisim.app.editor.assistant import Assistant
@@ -67,6 +67,12 @@ class FindBar(Horizontal):
         self.wanted = ""
         """The last search text."""
         self.display = False
+
+    @property
+    def field_keys(self) -> tuple[KeyWord, ...]:
+        """The keys of the field, for the footer."""
+        goes = (("enter", "next"), ("↑", "before")) if self.mode == FIND else (("enter", "go"),)
+        return (*goes, ("esc", "close"))
 
     def compose(self) -> ComposeResult:
         yield Static(id="label", markup=False)
