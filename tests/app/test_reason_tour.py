@@ -29,6 +29,16 @@ def test_the_key_for_errors_shows_each_reason_in_turn_and_then_the_end() -> None
     assert tour.advance() == REASONS[0]
 
 
+def test_after_going_to_the_end_the_first_reason_comes_again() -> None:
+    tour = ReasonTour()
+    run: Any = SimpleNamespace(newest=100)
+    tour.begin(run, has_ended=True)
+    tour.take(run, REASONS, None)
+    tour.advance()
+    tour.restart()
+    assert tour.advance() == REASONS[0]
+
+
 def test_a_run_that_has_gone_on_shows_its_first_reason_again() -> None:
     tour = ReasonTour()
     run: Any = SimpleNamespace(newest=100)

@@ -74,6 +74,10 @@ class ReasonTour:
             self.reasons = reasons
             self.earlier = earlier
 
+    def restart(self) -> None:
+        """Begin again with the first reason."""
+        self._at = None
+
     def advance(self) -> Reason | None:
         """Go to the next reason, and return it; None after the last one."""
         number = 0 if self._at is None else self._at + 1

@@ -18,7 +18,7 @@ def test_what_a_standing_robot_waits_for_is_told_once_in_the_app(record: Record)
     poll(recorder, "in1", "TOUCH")
     recording = Recording(recorder.end(End.TIME_LIMIT))
     assert describe_so_far(recording) == (
-        "Nothing wrong until 7.00 s: the robot stands still in line 5. {pause} resumes"
+        "Nothing found until 7.00 s: the robot stands still in line 5. {pause} resumes"
     )
     assert watch.look(recording, None, False, lambda _: None) == []
     assert watch.look(recording, None, True, lambda _: None) == [SENTENCE]

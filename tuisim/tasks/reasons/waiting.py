@@ -83,7 +83,7 @@ def _build_recorded(recording: Recording, open_mat: Callable[[RunSpec], Field | 
 
 
 def describe_so_far(recording: Recording) -> str:
-    """Return a sentence which says that nothing is wrong so far with a paused run, its time, and the program's lines.
+    """Return a sentence which says that nothing wrong was found yet in a paused run, its time, and the program's lines.
 
     An action id in braces stands for the action's key.
     """
@@ -99,4 +99,4 @@ def describe_so_far(recording: Recording) -> str:
         if is_standing(recording.telemetry, recording.spec)
         else "it is in"
     )
-    return f"Nothing wrong until {last / hz:.2f} s: {robot} {where}. {{pause}} resumes"
+    return f"Nothing found until {last / hz:.2f} s: {robot} {where}. {{pause}} resumes"
