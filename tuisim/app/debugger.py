@@ -210,19 +210,15 @@ class DebugController:
     def run_changed(self) -> None:
         """Reset the debugger after the app has switched to another run, or to none."""
         self._app.notices.release()
-        self._paused = self.position = self.view = self._run_controller.shown_pause = None
-        self._run_controller.chosen_line = None
+        runs = self._run_controller
+        self._paused = self.position = self._wanted = self.view = None
+        runs.shown_pause = runs.chosen_line = None
         self._frame = 0
         self._thread = ""
-        self._wanted = None
-        self._seeks_raise = False
-        self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
+        self._seeks_raise = self._panels_opened = False
+        self._breakpoints_unsent = bool(self.breaks)
         self._forget_steps()
-        if (
-            self._run_controller.in_run
-            and self._count_words
-            and not self._panel_area.is_shown("code")
-        ):
+        if runs.in_run and self._count_words and not self._panel_area.is_shown("code"):
             self._app.say(self._count_words)
         self.replay.close()
         self.show()
@@ -439,9 +435,12 @@ class DebugController:
             # The replay has arrived at the chosen line.
             self.position = here
         chosen = self._run_controller.chosen_line
-        if chosen and chosen[0] == paused.tick:
+        record = timeline.record()
+        if record and chosen == (paused.tick, record.line):
             # The program may have gone on to another line within this tick.
-            paused = replace(paused, line=chosen[1], file="")
+            paused = replace(paused, line=record.line, file="")
+        if chosen != (paused.tick, paused.line):
+            self._run_controller.chosen_line = None
         self._set_paused(PauseView(self._set_tick_time(paused), inspected, True))
         self._app.handle_situation_change()
         self._take_step()

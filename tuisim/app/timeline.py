@@ -212,6 +212,9 @@ _HINT = (
 )
 _IN_FRONT = re.compile(r"^(back|first)\s+(.+)$", re.IGNORECASE)
 """A direction in front of the other words."""
+_LINE = re.compile(
+    r"(?:(?:back|first)\s+)?line\s+([0-9]+)(?:\s+(?:back|first))*", re.IGNORECASE | re.ASCII
+)
 _MAX_DESCRIBED = 3
 """Maximum number of commands of one instant that are described."""
 _SECONDS = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+)\s*s?")
@@ -293,14 +296,20 @@ def find(
         if first or (at_end and not backwards)
         else _Search(recording, timeline.tick, backwards)
     )
-    if word == "line" and rest.isdecimal():
-        return _find_line(search, int(rest))
+    if (line := parse_line(text)) is not None:
+        return _find_line(search, line)
     condition = _parse_condition(word, rest, text)
     if condition is None and word == "command":
         return _find_command(search, rest)
     if condition is None:
         raise _refuse(text.strip(), recording)
     return _find_condition(search, condition, mat)
+
+
+def parse_line(text: str) -> int | None:
+    """Return the line of the program in words for an instant, such as `line 12 back`; None if they name no line."""
+    match = _LINE.fullmatch(text.strip())
+    return int(match[1]) if match else None
 
 
 def _find_condition(search: _Search, condition: ValueCondition, mat: Field | None) -> int:

@@ -288,3 +288,19 @@ async def test_go_to_is_empty_and_enter_alone_repeats_the_last_search() -> None:
         assert (field.value, field.placeholder) == ("", "Enter: tick 30")
         await pilot.press("enter")
         assert timeline.at == 30
+
+
+async def test_the_arrow_is_on_the_line_that_go_to_names() -> None:
+    text = "import time\nfor n in range(3):\n    print('A: 1')\n    time.sleep(0.1)\n"
+    async with open_lab(text, speed=0.0) as (pilot, app):
+        await pilot.press("R")
+        await until_state(pilot, RunPhase.ENDED)
+        for line in (3, 4):
+            await pilot.press("g", *f"line {line}", "enter")
+            await until(pilot, lambda: app.debugger.view is not None and not app.debugger.busy)
+            assert app.debugger.view is not None
+            assert (app.debugger.current_line, app.debugger.view.paused.line) == (line, line)
+        # A line that does not run in a tick gets no arrow there.
+        app.debugger.choose_line(5, 3)
+        go_to_tick(app.context, 5)
+        await until(pilot, lambda: app.debugger.current_line == 4)

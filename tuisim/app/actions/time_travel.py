@@ -9,7 +9,7 @@ from tuisim.app import reasons
 from tuisim.app.branch import Branch, action_words
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
-from tuisim.app.timeline import describe_commands, find, list_forms
+from tuisim.app.timeline import describe_commands, find, list_forms, parse_line
 from tuisim.base.errors import TuisimError, counted
 from tuisim.engine import protocol
 from tuisim.engine.core.sensors import list_column_names
@@ -43,6 +43,7 @@ def go_to_tick(context: ActionContext, tick: int | None) -> None:
         context.runs.pause()
     else:
         context.debugger.go_to_now()
+        context.reasons.restart()
     context.runs.timeline.go(tick)
     refresh(context)
 
@@ -159,7 +160,9 @@ def ask_instant(context: ActionContext) -> None:
 
     def go(text: str) -> None:
         text = text or timeline.searched
-        go_to_tick(context, find(text, timeline, field, first_at_end=True))
+        tick = find(text, timeline, field, first_at_end=True)
+        context.debugger.choose_line(tick, parse_line(text) or 0)
+        go_to_tick(context, tick if tick < timeline.newest else None)
         timeline.searched = text
         if words := describe_commands(text, timeline):
             context.app.say(words)
