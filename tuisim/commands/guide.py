@@ -139,9 +139,14 @@ def find_page(name: str) -> Page:
     """
     known = load_pages()
     if name not in known:
+        from tuisim.guide.search import search
+
         raise ConfigError(
             f"no such page {name!r}",
-            did_you_mean(closest(name, known)) or "`tuisim guide` lists the pages",
+            did_you_mean(
+                closest(name, known, 1, 0.7) or [result.name for result in search(name)[:1]]
+            )
+            or "`tuisim guide` lists the pages",
             key="guide",
         )
     return known[name]

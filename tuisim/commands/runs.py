@@ -383,6 +383,7 @@ runs = Group.of(
     (list_runs, show, export, movie, picture, rerun_runs, rm),
     default="list",
     instead={
+        **dict.fromkeys(("delete", "remove"), "did you mean `tuisim runs rm`?"),
         "report": "`tuisim log report RUN` writes it",
         "compact": "recordings are plain files; `tuisim runs rm` removes those you do not need",
     },

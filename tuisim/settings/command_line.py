@@ -195,6 +195,7 @@ def _convert_error(error: click.UsageError, ctx: click.Context) -> ConfigError:
     if isinstance(error, click.MissingParameter) and isinstance(error.param, click.Argument):
         return ConfigError(f"{error.param.make_metavar(ctx)} is missing", see)
     text = error.message.rstrip(".")
+    text = text.replace("not a valid float", "no number").replace("valid integer", "whole number")
     if isinstance(error, click.BadParameter) and error.param:
         return ConfigError(text, see, key=error.param.opts[0])
     return ConfigError(text[:1].lower() + text[1:], see)

@@ -43,7 +43,8 @@ def build_request(arguments: Arguments) -> LogRequest:
     words = arguments.words or ["last"]
     files = [word for word in words if is_file(word)]
     if files and len(words) > 1:
-        raise ConfigError("takes one file, or runs", f"got {' '.join(words)}", key="analyse")
+        hint = f"got {' '.join(words)}; the key R of the analyser compares a file with runs"
+        raise ConfigError("takes one file, or runs", hint, key="analyse")
     choices = build_choices(arguments)
     if files:
         return request_file(files[0], choices)

@@ -314,7 +314,7 @@ def add_hint(trace: Any, error: BaseException) -> None:
     elif type(error) is NameError:
         hint = _find_import(error.name, str(trace._str))
     elif type(error) is TypeError and _TEXT_AND_NUMBER.fullmatch(str(trace._str)):
-        hint = "`str(number)` makes text of a number"
+        hint = "`str(number)` makes text of a number, `float(text)` a number of text"
     elif type(error) is TypeError and _NO_FUNCTION.fullmatch(str(trace._str)) and trace.stack:
         names = _EMPTY_CALL.findall(trace.stack[-1].line or "")
         hint = f"{names[0]} is a value: leave out the ()" if len(names) == 1 else ""

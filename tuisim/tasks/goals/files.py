@@ -124,7 +124,9 @@ def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, Goa
     """
     path = _find_file(user_path(path))
     if not is_world_name(path.name):
-        raise ConfigError("is not a .toml file", "a world file is TOML", file=str(path))
+        what = "is not a .toml file" if os.path.exists(path) else "no such file"
+        hint = f"a file of a world or of goals is named NAME.toml; {see_page('goal-files')}"
+        raise ConfigError(what, hint, file=str(path))
     data = files.read_file(path, ConfigError)
     with add_line_to_errors(path):
         world = parse_world(data, path, mats)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from tuisim.base.atomic import replacing
-from tuisim.base.errors import ConfigError, nearest
+from tuisim.base.errors import ConfigError, closest, did_you_mean
 from tuisim.base.folders import user_path
 from tuisim.engine.core.profile import Library
 from tuisim.engine.files import FILE_SUFFIXES
@@ -213,7 +213,8 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
     if word not in paths:
         raise ConfigError(
             f"no such lesson {word!r}",
-            f"{nearest(word, [*paths, *others])} See `tuisim learn list`",
+            did_you_mean(closest(word, [*paths, *others], 3, 0.55))
+            or "`tuisim learn list` lists them",
         )
     return paths[word]
 

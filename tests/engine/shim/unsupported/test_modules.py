@@ -171,6 +171,15 @@ def test_a_missing_package_says_how_to_install_it(run: Run, name: str, package: 
 
 
 @pytest.mark.parametrize(
+    "name, meant", [("numpyy", "numpy"), ("ev3dev2.sensors", "ev3dev2.sensor")]
+)
+def test_a_mistyped_module_is_answered_with_the_one_that_exists(
+    run: Run, name: str, meant: str
+) -> None:
+    assert run(f"import {name}", prelude="none").errors[-1] == f"Did you mean {meant}?"
+
+
+@pytest.mark.parametrize(
     "name", ["'ev3dev2.sensor.pixy'", "'a b'", "3"], ids=["of the library", "no name", "no text"]
 )
 def test_other_import_errors_say_nothing_of_packages(run: Run, name: str) -> None:

@@ -13,10 +13,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from functools import wraps
 from importlib.machinery import ModuleSpec
+from pkgutil import iter_modules
 from typing import Any, NoReturn
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import NotSimulated
+from tuisim.base.errors import NotSimulated, closest
 from tuisim.base.repository import find_module_folder
 from tuisim.base.source import SPIKE_MODULES
 from tuisim.engine.core.profile import Library
@@ -381,6 +382,13 @@ def point_at_package(error: BaseException, folder: str) -> None:
     if not isinstance(error, ModuleNotFoundError) or not isinstance(error.name, str):
         return
     top = error.name.partition(".")[0]
+    folder_name, _, name = error.name.rpartition(".")
+    modules = iter_modules(getattr(sys.modules.get(folder_name), "__path__", None))
+    if close := closest(
+        name, [*sys.stdlib_module_names, *(module.name for module in modules)], 1, 0.85
+    ):
+        error.add_note(f"Did you mean {'.'.join(filter(None, (folder_name, *close)))}?")
+        return
     if not top.isidentifier() or top in sys.modules or top in sys.stdlib_module_names:
         return
     if place := find_module_folder(top, folder):
