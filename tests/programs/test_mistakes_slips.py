@@ -63,12 +63,6 @@ def test_a_question_to_a_function_without_a_result_is_named(
     "text, equal",
     {
         "else": ("if a:\n    b()\nelse:\n    b()\n", (1, "if and else do the same")),
-        "the opposite": (
-            "while 1:\n    if a < 5:\n        b(1)\n    if a > 5:\n        b(1)\n",
-            (2, "line 4 asks the opposite, and does the same"),
-        ),
-        "something else": ("if a < 5:\n    b(1)\nif a > 5:\n    b(2)\nelse:\n    b(3)\n", None),
-        "another limit": ("if a < 5:\n    b(1)\nif a > 6:\n    b(1)\n", None),
         "one of three": ("if a:\n    b()\nelif c:\n    b()\nelse:\n    d()\n", None),
     },
 )
@@ -118,3 +112,93 @@ def test_a_wait_of_a_few_milliseconds_meant_as_seconds_is_named(
     text: str, slip: tuple[int, str] | None
 ) -> None:
     assert find_slip(text) == slip
+
+
+HUB = "from pybricks.hubs import PrimeHub\n"
+
+
+@cases(
+    "text, slip",
+    {
+        "compared": (
+            f"{HUB}while eye.color != 3:\n    pass\n",
+            (2, "eye.color without () is not a value: eye.color() gives one"),
+        ),
+        "computed with": (
+            f"{HUB}turn = 90 - hub.imu.heading\n",
+            (2, "hub.imu.heading without () is not a value: hub.imu.heading() gives one"),
+        ),
+        "compared by another name": (
+            f"{HUB}color = eye.color\nif color == 3:\n    pass\n",
+            (2, "eye.color without () is not a value: eye.color() gives one"),
+        ),
+        "tested": (
+            f"{HUB}if not bumper.pressed:\n    pass\n",
+            (2, "bumper.pressed without () is not a value: bumper.pressed() gives one"),
+        ),
+        "printed": (
+            f"{HUB}print('now', f'{{motor.angle}}')\n",
+            (2, "motor.angle without () is not a value: motor.angle() gives one"),
+        ),
+        "called": (f"{HUB}while eye.color() != 3:\n    print(eye.color())\n", None),
+        "passed on": (f"{HUB}wait_until(bumper.pressed)\nread = eye.color\n", None),
+        "an attribute of its own": (f"{HUB}self.speed = 9\nprint(robot.speed + 1)\n", None),
+        "a field": (f"{HUB}class A:\n    speed: int = 9\nprint(A().speed)\n", None),
+        "a property": (
+            f"{HUB}class A:\n    @property\n    def angle(self): return 1\nprint(A().angle)\n",
+            None,
+        ),
+        "a value of ev3dev2": ("print(eye.color + 1)\n", None),
+    },
+)
+def test_a_method_that_is_used_as_a_value_is_named(text: str, slip: tuple[int, str] | None) -> None:
+    assert find_slip(text) == slip
+
+
+METHOD = "TypeError: '<' not supported between instances of 'method' and 'int'"
+NONE = "TypeError: unsupported operand type(s) for +: 'NoneType' and 'int'"
+MEASURE = "def measure():\n    x = 1\n"
+
+
+@cases(
+    "text, error, cause",
+    {
+        "a method": (
+            "\n\nif eye.value < 5: pass\n",
+            METHOD,
+            "eye.value without () is not a value: eye.value() gives one",
+        ),
+        "a function": (
+            "def far(): return 1\n\nif far < 5: pass\n",
+            METHOD.replace("method", "function"),
+            "far without () is not a value: far() gives one",
+        ),
+        "a method by another name": (
+            "light = eye.value\n\nif light < 5: pass\n",
+            METHOD,
+            "eye.value without () is not a value: eye.value() gives one",
+        ),
+        "one of two attributes": ("\n\nif eye.value < self.limit: pass\n", METHOD, ""),
+        "no result": (
+            f"{MEASURE}print(measure() + 1)\n",
+            NONE,
+            "measure() is None: measure(), line 1, has no return",
+        ),
+        "no result in a name": (
+            "x = measure()\ndef measure(): print(5)\ny = x + 1\n",
+            NONE,
+            "x is None: measure(), line 2, has no return",
+        ),
+        "no result of a method": (
+            "def look(self): pass\nrobot.light = robot.look()\nrobot.light.show()\n",
+            "AttributeError: 'NoneType' object has no attribute 'show'",
+            "robot.light is None: look(), line 1, has no return",
+        ),
+        "a result": ("def measure(): return 1\nx = measure()\ny = x + 1\n", NONE, ""),
+        "another error": (f"{MEASURE}print(measure() + 1)\n", "ValueError: x", ""),
+    },
+)
+def test_what_an_error_does_not_name_is_found_in_its_line(
+    text: str, error: str, cause: str
+) -> None:
+    assert read_facts(Program("p.py", text)).explain_error(error, 3) == cause

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.cases import cases
 from tuisim.base.source import Program
 from tuisim.programs.facts import ProgramFacts
+from tuisim.programs.uses import list_lone_stops, list_lost_values, list_stale_reads
 
 READ = "light = eye.reflected_light_intensity\n"
 
@@ -51,7 +52,9 @@ def read(text: str) -> ProgramFacts:
 def test_a_reading_that_a_loop_does_not_renew_is_found(
     text: str, uses: list[tuple[int, str]]
 ) -> None:
-    assert [(use.line, use.operator) for use in read(text).uses.stale_reads] == uses
+    facts = read(text)
+    reads = list_stale_reads(facts.tree, facts.constants)
+    assert [(use.line, use.operator) for use in reads] == uses
 
 
 @cases(
@@ -77,9 +80,10 @@ def test_a_reading_that_a_loop_does_not_renew_is_found(
     },
 )
 def test_a_stop_that_depends_on_one_reading_is_found(text: str, lines: object) -> None:
+    facts = read(text)
     stops = [
         (stop.line, stop.read_line, stop.stop_line, stop.start_line, stop.is_direct)
-        for stop in read(text).uses.lone_stops
+        for stop in list_lone_stops(facts.tree, facts.constants)
     ]
     assert stops == ([lines] if lines else [])
 
@@ -110,25 +114,5 @@ LOST = "count = 0\ndef look():\n    {}\nlook()\nprint(count)\n"
 def test_a_value_that_a_function_gives_to_a_name_of_its_own_is_found(
     text: str, line: int | None
 ) -> None:
-    assert [lost.line for lost in read(text).uses.lost_values] == ([line] if line else [])
-
-
-@cases(
-    "text, moves",
-    {
-        "cut off by the next": ("t.on_for_seconds(9, 9, 1, block=False)\nt.turn(9)\n", [(1, 2)]),
-        "after a pause": ("t.straight(9, wait=False)\nwait(9)\nprint(1)\nt.turn(9)\n", [(1, 4)]),
-        "that of the same motor first": (
-            "a.on_for_degrees(9, 9, block=False)\nb.on_for_degrees(9, 9)\na.on(9)\n",
-            [(1, 3)],
-        ),
-        "waited for": ("a.run_angle(9, 9, wait=False)\na.wait_while(1)\na.run(9)\n", [(1, 0)]),
-        "looked at": (
-            "a.run_angle(9, 9, wait=False)\nwhile a.busy():\n    pass\na.run(9)\n",
-            [(1, 0)],
-        ),
-        "blocking": ("a.run_angle(9, 9, wait=True)\na.run(9)\n", []),
-    },
-)
-def test_a_move_for_which_nobody_waits_is_found(text: str, moves: list[tuple[int, int]]) -> None:
-    assert [(move.line, move.next_line) for move in read(text).uses.unwaited_moves] == moves
+    values = list_lost_values(read(text).tree)
+    assert [lost.line for lost in values] == ([line] if line else [])

@@ -98,21 +98,68 @@ def test_no_end_is_named_for_loops_whose_condition_is_not_a_simple_comparison(te
     assert read(text).loop_ends == ()
 
 
-def test_an_endless_loop_that_does_nothing_is_named() -> None:
-    (end,) = read("while True:\n    pass").loop_ends
-    assert (end.line, end.last_line, end.is_silent) == (1, 2, True)
+@cases(
+    "text, end",
+    {
+        "a change": ("a = g.angle\nwhile g.angle - a < 90: pass", (">=", 90, "angle", 1)),
+        "a change with a name": (
+            "a = g.angle\nwhile way < 90: way = g.angle - a",
+            (">=", 90, "angle", 1),
+        ),
+        "the other way round": (
+            "a = g.angle\nwhile a - g.angle < 90: pass",
+            ("<=", -90, "angle", 1),
+        ),
+        "an aim": ("a = g.angle + 90\nwhile g.angle < a: pass", (">=", 90, "angle", 1)),
+        "an aim in the loop": (
+            "a = m.angle()\nwhile m.angle() > a - 9: pass",
+            ("<=", -9, "angle", 1),
+        ),
+        "an aim by a name": (
+            "a = g.angle\nb = a + 9\nwhile g.angle < b: pass",
+            (">=", 9, "angle", 1),
+        ),
+    },
+)
+def test_a_loop_that_compares_a_change_names_the_line_of_the_first_reading(
+    text: str, end: tuple[str, int, str, int]
+) -> None:
+    (loop,) = read(text).loop_ends
+    assert (loop.operator, loop.limit, loop.attribute, loop.start_line) == end
+
+
+@cases(
+    "text, line",
+    {
+        "never counted": ("n = 0\nwhile n < 4:\n    go()", 1),
+        "counted": ("n = 0\nwhile n < 4:\n    n += 1", None),
+        "counted in a function": (
+            "n = 0\ndef go():\n    global n\n    n += 1\nwhile n < 4:\n    go()",
+            None,
+        ),
+        "not entered": ("n = 9\nwhile n < 4:\n    go()", None),
+        "left by a break": ("n = 0\nwhile n < 4:\n    if go(): break", None),
+        "a flag": ("n = 0\nwhile n == 0:\n    go()", None),
+        "a parameter": ("n = 0\ndef f(n):\n    while n < 4:\n        go()", None),
+    },
+)
+def test_a_loop_that_does_not_count_names_the_line_of_its_first_number(
+    text: str, line: int | None
+) -> None:
+    assert [loop.set_line for loop in read(text).loop_ends if loop.is_count] == (
+        [line] if line else []
+    )
 
 
 def test_a_loop_on_a_value_read_only_before_names_the_line_that_read_it() -> None:
     (end,) = read("v = cs.color\nv = cs.color\nwhile v != 5:\n    sleep(1)\n").loop_ends
-    assert (end.name, end.set_line, end.is_silent) == ("v", 2, False)
+    assert (end.name, end.set_line, end.is_count) == ("v", 2, False)
 
 
-def test_loops_are_listed_from_the_inside_and_marked_if_they_only_compute() -> None:
-    text = "x = 0\nwhile gyro.angle < 90:\n    while x != 1:\n        x += 0.1\n"
+def test_loops_are_listed_from_the_inside() -> None:
+    text = "x = 0\nwhile gyro.angle < 90:\n    while y.angle != 1:\n        x += 0.1\n"
     inner, outer = read(text).loop_ends
-    assert (inner.name, inner.is_silent, inner.set_line) == ("x", True, 0)
-    assert (outer.line, outer.last_line, outer.is_silent) == (2, 4, False)
+    assert (inner.line, outer.line, outer.last_line) == (3, 2, 4)
 
 
 @cases(

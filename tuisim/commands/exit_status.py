@@ -25,7 +25,6 @@ from tuisim.engine.runs.standstill import (
 )
 from tuisim.programs.plugged_words import describe_plugged
 from tuisim.tasks.reasons.reason import describe_end
-from tuisim.tasks.reasons.waited_words import describe_wait
 
 EXIT_RAISED = 1
 EXIT_BAD_OUTPUT = 2
@@ -90,8 +89,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
         "standstill": asdict(stood) if stood else None,
         "push": asdict(push) if push else None,
         "left_field": has_left_field(run.telemetry, run.spec),
-        "waited_for": describe_wait(run),
-        "went_wrong": describe_end(run),
+        **describe_end(run),
         "plugged": [part.to_plain() for part in run.plugged],
         "lines": counts.lines if counts else None,
         "samples": counts.samples if counts else None,

@@ -11,5 +11,6 @@ __all__ = [
     "plugged_words",
     "program_file",
     "program_settings",
+    "remarks",
     "uses",
 ]

@@ -6,16 +6,20 @@ import ast
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field
 from functools import cached_property, lru_cache, partial
-from itertools import pairwise
-from math import copysign
-from typing import TYPE_CHECKING, TypeGuard
+from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import PRELUDE_TEXTS, PYBRICKS, Program
 from tuisim.base.syntax_tree import parse_module
 from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
-from tuisim.programs.mistakes import find_fault, find_idle_definition, list_slips
+from tuisim.programs.comparisons import list_constants
+from tuisim.programs.mistakes import (
+    explain_error,
+    find_fault,
+    find_idle_definition,
+    list_slips,
+)
 from tuisim.programs.questions import Question, QuestionReader, Word
 from tuisim.programs.robot.scopes import Binding, Bound, Imported, Scope, build_scope
 from tuisim.programs.robot.source import Module, parse
@@ -24,114 +28,12 @@ from tuisim.programs.waits import (
     LoopEnd,
     find_first_drive,
     find_turns,
-    list_blocks,
-    list_constants,
     list_counts,
     list_loop_ends,
 )
 
 if TYPE_CHECKING:
     from tuisim.programs.remarks import Remarks
-    from tuisim.programs.uses import Uses
-
-_TURNS_DEG = (45.0, 90.0, 180.0, 360.0)
-_ANGLES = {
-    "on_for_degrees": _TURNS_DEG,
-    "on_for_rotations": (0.25,),
-    "run_angle": _TURNS_DEG,
-}
-"""Angles by which robots are turned; a whole rotation in `on_for_rotations` is mostly meant for a wheel."""
-_SPOT_STEERING = 100.0
-"""The steering that turns the wheels against each other."""
-_DEGREES = {"on_for_degrees": 1.0, "on_for_rotations": 360.0}
-"""The degrees of a unit that a method counts in."""
-
-
-@dataclass(frozen=True, slots=True)
-class WheelTurn:
-    """A call that turns both wheels by an angle, in opposite directions."""
-
-    first_line: int
-    last_line: int
-    method: str
-    angle_deg: float
-    """The angle of the wheels."""
-
-
-def list_wheel_turns(tree: ast.Module) -> Iterator[WheelTurn]:
-    """Yield the calls of a program that turn the wheels in opposite directions by an angle usual for turns of robots.
-
-    Two calls one after the other, each for one motor, are one turn.
-    """
-    for first_call, second_call in _list_pairs(tree):
-        if (angle_deg := _find_pair_angle(first_call, second_call)) in _ANGLES["run_angle"]:
-            end_line = second_call.end_lineno or second_call.lineno
-            yield WheelTurn(first_call.lineno, end_line, "run_angle", angle_deg)
-    for node in ast.walk(tree):
-        match node:
-            case ast.Call(
-                func=ast.Attribute(attr=method), args=[first, second, amount, *_], keywords=[]
-            ) if method in _DEGREES:
-                numbers = [_find_number(each) for each in (first, second, amount)]
-                if not _is_known(numbers):
-                    continue
-                left, right, count = numbers
-                is_turn = abs(left) == _SPOT_STEERING or left == -right
-                if is_turn and abs(count) in _ANGLES[method]:
-                    last_line = node.end_lineno
-                    angle_deg = abs(count) * _DEGREES[method]
-                    yield WheelTurn(node.lineno, last_line or node.lineno, method, angle_deg)
-
-
-def _list_pairs(tree: ast.Module) -> Iterator[tuple[ast.Call, ast.Call]]:
-    """Yield each pair of calls that follow each other as statements of the same block."""
-    for block in list_blocks(tree):
-        for pair in pairwise(block):
-            match pair:
-                case ast.Expr(value=ast.Call() as first), ast.Expr(value=ast.Call() as second):
-                    yield first, second
-
-
-def _find_pair_angle(*calls: ast.Call) -> float:
-    """Return the angle in degrees by which two calls of `run_angle` turn two motors in opposite directions.
-
-    The result is 0 for any other calls.
-    """
-    motors = set[str]()
-    turns_deg: list[float] = []
-    for call in calls:
-        match call:
-            case ast.Call(
-                func=ast.Attribute(value=ast.Name(id=motor), attr="run_angle"),
-                args=[speed, angle, *_],
-            ):
-                numbers = [_find_number(speed), _find_number(angle)]
-                if _is_known(numbers):
-                    motors.add(motor)
-                    turns_deg.append(copysign(numbers[1], numbers[0] * numbers[1]))
-    is_turn = len(motors) == len(turns_deg) == len(calls) and sum(turns_deg) == 0
-    return abs(turns_deg[0]) if is_turn else 0.0
-
-
-def _is_known(numbers: list[float | None]) -> TypeGuard[list[float]]:
-    return None not in numbers
-
-
-def _find_number(node: ast.expr) -> float | None:
-    """Return the number in an expression, which may be in a speed such as `SpeedPercent(30)`.
-
-    The result is None for other expressions.
-    """
-    match node:
-        case ast.Constant(value=int() | float() as value):
-            return float(value)
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            number = _find_number(operand)
-            return None if number is None else -number
-        case ast.Call(func=ast.Name(id=name), args=[speed]) if name.startswith("Speed"):
-            return _find_number(speed)
-    return None
-
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _BLOCKS = (ast.For, ast.While, ast.If, ast.With, ast.Try, _Function, ast.ClassDef)
@@ -222,7 +124,6 @@ __all__ = [
     "ProgramFacts",
     "ProgramThreshold",
     "Question",
-    "WheelTurn",
     "read_facts",
 ]
 
@@ -246,7 +147,7 @@ class ProgramFacts:
         return parse_module(self._program.text)
 
     @cached_property
-    def _short_tree(self) -> ast.Module:
+    def tree(self) -> ast.Module:
         """The syntax tree of the program; an empty tree if the program is not Python, or too long."""
         text = self._program.text
         return (parse(text) if len(text) <= MAX_TEXT else None) or ast.Module([], [])
@@ -281,63 +182,55 @@ class ProgramFacts:
 
     @cached_property
     def _question_reader(self) -> QuestionReader:
-        return QuestionReader(self._short_tree)
+        return QuestionReader(self.tree)
 
     def find_question(self, line: int) -> Question:
         """Return how the program uses the value that a line reads; `Question()` if the text does not show it."""
         return self._question_reader.find_question(line)
 
     @cached_property
-    def _constants(self) -> Mapping[str, Word]:
-        return list_constants(self._short_tree)
+    def constants(self) -> Mapping[str, Word]:
+        """The texts and numbers that names in the program always have; see `list_constants`."""
+        return list_constants(self.tree)
 
     @cached_property
     def loop_ends(self) -> tuple[LoopEnd, ...]:
         """The loops that end when a comparison in the text becomes true, the inner loops first."""
-        return list_loop_ends(self._short_tree, self._constants)
+        return list_loop_ends(self.tree, self.constants)
 
     @cached_property
     def counts(self) -> tuple[tuple[int, LoopEnd], ...]:
         """The lines in loops that add 1 to a variable when a value passes a constant, each with that comparison."""
-        return tuple(list_counts(self._short_tree, self._constants))
-
-    # The following modules are imported on demand: only a search for the reasons why a run went wrong needs them.
-
-    @cached_property
-    def uses(self) -> Uses:
-        """How the program uses its readings, variables and moves."""
-        from tuisim.programs.uses import Uses
-
-        return Uses(self._short_tree, self._constants)
+        return tuple(list_counts(self.tree, self.constants))
 
     @cached_property
     def remarks(self) -> Remarks:
         """What the comments, prints and names of the program say."""
+        # Imported on demand: only a search for the reasons why a run went wrong needs it.
         from tuisim.programs.remarks import Remarks
 
-        return Remarks(self._program.text, self._short_tree)
+        return Remarks(self._program.text)
 
     def find_turns(self, line: int) -> tuple[float, str] | None:
         """Return by how much a call on a line turns a motor or both wheels, and the unit: `rotations` or `degrees`.
 
         The result is None if the line has no such call.
         """
-        return find_turns(self._short_tree, self._constants, line)
-
-    @cached_property
-    def wheel_turns(self) -> tuple[WheelTurn, ...]:
-        """The calls that turn both wheels in opposite directions by an angle that could be meant for the robot."""
-        return tuple(list_wheel_turns(self._short_tree))
+        return find_turns(self.tree, self.constants, line)
 
     @cached_property
     def first_drive(self) -> int:
         """The first line that starts motors; 0 for none."""
-        return find_first_drive(self._short_tree)
+        return find_first_drive(self.tree)
 
     @cached_property
     def slips(self) -> tuple[tuple[int, str], ...]:
         """The lines that do nothing, or always do the same, each with a description of the fault."""
-        return tuple(list_slips(self._short_tree))
+        return tuple(list_slips(self.tree))
+
+    def explain_error(self, error: str, line: int) -> str:
+        """Return what in a line caused an error that Python's text does not name; empty if that is not known."""
+        return explain_error(self.tree, error, line)
 
     @cached_property
     def idle_definition(self) -> tuple[int, str] | None:
@@ -345,12 +238,12 @@ class ProgramFacts:
 
         The value is None for any other program.
         """
-        return find_idle_definition(self._short_tree)
+        return find_idle_definition(self.tree)
 
     @cached_property
     def _places(self) -> Mapping[int, tuple[int, range]]:
         places: dict[int, tuple[int, range]] = {}
-        for node in ast.walk(self._short_tree):
+        for node in ast.walk(self.tree):
             if isinstance(node, ast.stmt):
                 lines = range(node.lineno, (node.end_lineno or node.lineno) + 1)
                 for line in lines:

@@ -6,8 +6,10 @@ import ast
 import io
 import tokenize
 import warnings
-from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from collections.abc import Iterable, Iterator, Sequence
+
+from tuisim.base.source import PYBRICKS
+from tuisim.programs.comparisons import is_set
 
 
 def find_fault(text: str) -> tuple[str, int] | None:
@@ -66,46 +68,141 @@ def _only_makes(node: ast.AST) -> bool:
     return all(ast.unparse(name).rpartition(".")[2][:1].isupper() for name in calls)
 
 
+_READ_METHODS = {
+    *("ambient", "angle", "color", "distance", "force", "heading", "hsv", "presence", "pressed"),
+    *("reflection", "rotation", "speed"),
+}
+"""Methods of Pybricks that read a device; in `ev3dev2`, names such as `color` are values."""
+_SHOWS = ("print", "str", "int", "float", "abs", "round")
+
+
 def _find_uncalled_method(tree: ast.Module) -> tuple[int, str] | None:
     """Return the first line that names a method without calling it, and a description; None if there is none."""
-    for node in ast.walk(tree):
+    nodes = [*ast.walk(tree)]
+    for node in nodes:
         match node:
-            case ast.Expr(value=ast.Attribute() as name):
+            case ast.Expr(value=ast.Attribute(attr=attr) as name) if not attr.startswith("__"):
                 words = ast.unparse(name)
                 return node.lineno, f"{words} without () does nothing: {words}() calls it"
-    return None
+    if not any(isinstance(node, ast.ImportFrom) and _is_pybricks(node) for node in nodes):
+        return None
+    classes = [node for node in nodes if isinstance(node, ast.ClassDef)]
+    fields = [part for node in classes for step in node.body for part in ast.iter_child_nodes(step)]
+    own = {part.id for part in fields if isinstance(part, ast.Name)}
+    own |= {node.attr for node in nodes if isinstance(node, ast.Attribute) and is_set(node)}
+    functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
+    own |= {function.name for function in functions if function.decorator_list}
+    methods = [
+        (value.lineno, _describe_uncalled(value))
+        for _, value in _list_used(nodes)
+        if isinstance(value, ast.Attribute) and value.attr in _READ_METHODS - own
+    ]
+    return min(methods, default=None)
+
+
+def _is_pybricks(node: ast.ImportFrom) -> bool:
+    return (node.module or "").partition(".")[0] == PYBRICKS
+
+
+def _describe_uncalled(name: ast.expr) -> str:
+    words = ast.unparse(name)
+    return f"{words} without () is not a value: {words}() gives one"
+
+
+def _list_used(nodes: Sequence[ast.AST]) -> Iterator[tuple[int, ast.expr]]:
+    """Yield the expressions whose values are compared, tested, computed with or shown, each with the line of the use.
+
+    For a variable that is another name for an attribute, it is the attribute.
+    """
+    stored = [node.id for node in nodes if isinstance(node, ast.Name) and is_set(node)]
+    aliases: dict[str, ast.expr] = {}
+    uses: list[ast.expr] = []
+    for node in nodes:
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Attribute() as value) if (
+                stored.count(name) == 1
+            ):
+                aliases[name] = value
+            case ast.Compare(left=left, comparators=others):
+                uses += [left, *others]
+            case ast.BinOp(left=left, right=right):
+                uses += [left, right]
+            case ast.BoolOp(values=values):
+                uses += values
+            case ast.If(test=value) | ast.While(test=value) | ast.IfExp(test=value):
+                uses.append(value)
+            case ast.UnaryOp(operand=value) | ast.FormattedValue(value=value):
+                uses.append(value)
+            case ast.Call(func=ast.Name(id=name), args=args) if name in _SHOWS:
+                uses += args
+    for use in uses:
+        yield use.lineno, aliases.get(use.id, use) if isinstance(use, ast.Name) else use
+
+
+def explain_error(tree: ast.Module, error: str, line: int) -> str:
+    """Return why a line raised an error, if it uses a method without `()`, or a function without `return`.
+
+    The result is empty for other errors.
+
+    Args:
+        tree: The program.
+        error: The name and the text of the error.
+        line: The line that raised it.
+    """
+    nodes = [*ast.walk(tree)]
+    if "'method'" in error or "'function'" in error:
+        functions = [node.name for node in nodes if isinstance(node, ast.FunctionDef)]
+        used = [value for used_line, value in _list_used(nodes) if used_line == line]
+        names = [
+            value
+            for value in used
+            if isinstance(value, ast.Attribute) or getattr(value, "id", "") in functions
+        ]
+        return _describe_uncalled(names[0]) if len(names) == 1 else ""
+    if "NoneType" not in error:
+        return ""
+    empty = _map_empty_functions(nodes)
+    results: dict[str, str] = {}
+    for node in nodes:
+        match node:
+            case ast.Assign(targets=[target], value=ast.Call(func=func)):
+                results[ast.unparse(target)] = _name_function(func)
+            case ast.Call(func=func):
+                results[ast.unparse(node)] = _name_function(func)
+    for node in nodes:
+        if isinstance(node, ast.expr) and node.lineno == line:
+            words = ast.unparse(node)
+            if (name := results.get(words, "")) in empty:
+                return f"{words} is None: {name}(), line {empty[name]}, has no return"
+    return ""
+
+
+def _name_function(func: ast.expr) -> str:
+    return ast.unparse(func).rpartition(".")[2]
+
+
+def _map_empty_functions(nodes: Iterable[ast.AST]) -> dict[str, int]:
+    """Return the lines of functions that never return a value, by the name that no other function has."""
+    functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
+    names = [function.name for function in functions]
+    return {
+        node.name: node.lineno
+        for node in functions
+        if names.count(node.name) == 1
+        and not node.decorator_list
+        and not any(_gives_value(part) for part in ast.walk(node))
+        and not isinstance(node.body[-1], ast.Raise)
+    }
 
 
 def _find_equal_branches(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line with an `if` whose opposite case does the same, and a description; None if there is none.
-
-    The opposite case is its `else`, or the next `if` with the opposite comparison.
-    """
-    pairs: list[tuple[int, str]] = []
-    for node in ast.walk(tree):
-        if isinstance(node, ast.If) and node.orelse and _dump(node.body) == _dump(node.orelse):
-            pairs.append((node.lineno, "if and else do the same"))
-        block = getattr(node, "body", [])
-        for first, second in pairwise(block if isinstance(block, list) else []):
-            if _is_opposite(first, second):
-                text = f"line {second.lineno} asks the opposite, and does the same"
-                pairs.append((first.lineno, text))
-    return min(pairs, default=None)
-
-
-def _is_opposite(first: ast.stmt, second: ast.stmt) -> bool:
-    """Return whether two `if` statements have the same body, one below a limit and the other above it."""
-    match first, second:
-        case (
-            ast.If(test=ast.Compare(ops=[way]) as test, orelse=[]),
-            ast.If(test=ast.Compare(ops=[other]) as opposite, orelse=[]),
-        ):
-            is_below = [isinstance(each, ast.Lt | ast.LtE) for each in (way, other)]
-            is_above = [isinstance(each, ast.Gt | ast.GtE) for each in (way, other)]
-            parts = [_dump([each.left, *each.comparators]) for each in (test, opposite)]
-            are_opposite = (is_below[0] and is_above[1]) or (is_above[0] and is_below[1])
-            return are_opposite and parts[0] == parts[1] and _dump(first.body) == _dump(second.body)
-    return False
+    """Return the first line with an `if` whose `else` does the same, and a description; None if there is none."""
+    lines = [
+        node.lineno
+        for node in ast.walk(tree)
+        if isinstance(node, ast.If) and node.orelse and _dump(node.body) == _dump(node.orelse)
+    ]
+    return (min(lines), "if and else do the same") if lines else None
 
 
 def _dump(nodes: Sequence[ast.AST]) -> list[str]:
@@ -155,19 +252,10 @@ def _find_missing_return(tree: ast.Module) -> tuple[int, str] | None:
 
     The result is None if there is none.
     """
-    empty = {
-        node.name: node.lineno
-        for node in tree.body
-        if isinstance(node, ast.FunctionDef)
-        and not node.decorator_list
-        and not any(_gives_value(part) for part in ast.walk(node))
-        and not isinstance(node.body[-1], ast.Raise)
-        # A comparison in the last line is a slip of its own.
-        and not (
-            isinstance(node.body[-1], ast.Expr) and isinstance(node.body[-1].value, ast.Compare)
-        )
-    }
-    for node in ast.walk(tree):
+    # A comparison in the last line is a slip of its own.
+    nodes = [node for node in ast.walk(tree) if not _ends_idle(node)]
+    empty = _map_empty_functions(nodes)
+    for node in nodes:
         match node:
             case ast.If(test=test) | ast.While(test=test):
                 match test:
@@ -183,6 +271,13 @@ def _find_missing_return(tree: ast.Module) -> tuple[int, str] | None:
                             f"{text}: return is missing in line {empty[name]} and on",
                         )
     return None
+
+
+def _ends_idle(node: ast.AST) -> bool:
+    match node:
+        case ast.FunctionDef(body=[*_, ast.Expr(value=ast.Compare())]):
+            return True
+    return False
 
 
 def _gives_value(node: ast.AST) -> bool:

@@ -6,6 +6,8 @@ import ast
 import re
 from collections.abc import Iterator
 from itertools import pairwise
+from math import copysign
+from typing import TypeGuard
 
 from tuisim.base.data_class import dataclass
 from tuisim.programs.waits import list_blocks
@@ -138,21 +140,17 @@ _PAIRS = re.compile("Move[A-Z]|DriveBase|tank_|steering_")
 
 
 def list_parted_moves(tree: ast.Module) -> Iterator[PartedMove]:
-    """Yield each pair of equal moves of two motors in which the first call blocks by default, without an argument.
+    """Yield each pair of equal moves of two motors in a loop in which the first call blocks by default.
 
     Programs that also move both wheels by one call, and loops with no other statements, are left out: they probably
     move one wheel alone on purpose.
     """
-    names = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
-    if any(map(_PAIRS.match, names)):
+    nodes = [*ast.walk(tree)]
+    if any(isinstance(node, ast.Name) and _PAIRS.match(node.id) for node in nodes):
         return
-    walks = [
-        node.body
-        for node in ast.walk(tree)
-        if isinstance(node, ast.For | ast.While) and len(node.body) == 2
-    ]
-    for block in list_blocks(tree):
-        for first, second in pairwise(block if block not in walks else ()):
+    loops = [node.body for node in nodes if isinstance(node, ast.For | ast.While)]
+    for block in loops:
+        for first, second in pairwise(block if len(block) > 2 else ()):
             match first, second:
                 case (
                     ast.Expr(value=ast.Call(func=ast.Attribute(value=motor, attr=method)) as move),
@@ -171,3 +169,102 @@ def _list_arguments(call: ast.Call) -> list[str]:
     """Return the arguments of a move in words, without those that say whether to wait."""
     named = [word for word in call.keywords if word.arg not in _OPTIONS]
     return [ast.unparse(each) for each in (*call.args, *named)]
+
+
+_TURNS_DEG = (45.0, 90.0, 180.0, 360.0)
+_ANGLES = {
+    "on_for_degrees": _TURNS_DEG,
+    "on_for_rotations": (0.25,),
+    "run_angle": _TURNS_DEG,
+}
+"""Angles by which robots are turned; a whole rotation in `on_for_rotations` is mostly meant for a wheel."""
+_SPOT_STEERING = 100.0
+"""The steering that turns the wheels against each other."""
+_DEGREES = {"on_for_degrees": 1.0, "on_for_rotations": 360.0}
+"""The degrees of a unit that a method counts in."""
+
+
+@dataclass(frozen=True, slots=True)
+class WheelTurn:
+    """A call that turns both wheels by an angle, in opposite directions."""
+
+    first_line: int
+    last_line: int
+    method: str
+    angle_deg: float
+    """The angle of the wheels."""
+
+
+def list_wheel_turns(tree: ast.Module) -> Iterator[WheelTurn]:
+    """Yield the calls of a program that turn the wheels in opposite directions by an angle usual for turns of robots.
+
+    Two calls one after the other, each for one motor, are one turn.
+    """
+    for first_call, second_call in _list_pairs(tree):
+        if (angle_deg := _find_pair_angle(first_call, second_call)) in _ANGLES["run_angle"]:
+            end_line = second_call.end_lineno or second_call.lineno
+            yield WheelTurn(first_call.lineno, end_line, "run_angle", angle_deg)
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(
+                func=ast.Attribute(attr=method), args=[first, second, amount, *_], keywords=[]
+            ) if method in _DEGREES:
+                numbers = [find_number(each) for each in (first, second, amount)]
+                if not _is_known(numbers):
+                    continue
+                left, right, count = numbers
+                is_turn = abs(left) == _SPOT_STEERING or left == -right
+                if is_turn and abs(count) in _ANGLES[method]:
+                    last_line = node.end_lineno
+                    angle_deg = abs(count) * _DEGREES[method]
+                    yield WheelTurn(node.lineno, last_line or node.lineno, method, angle_deg)
+
+
+def _list_pairs(tree: ast.Module) -> Iterator[tuple[ast.Call, ast.Call]]:
+    """Yield each pair of calls that follow each other as statements of the same block."""
+    for block in list_blocks(tree):
+        for pair in pairwise(block):
+            match pair:
+                case ast.Expr(value=ast.Call() as first), ast.Expr(value=ast.Call() as second):
+                    yield first, second
+
+
+def _find_pair_angle(*calls: ast.Call) -> float:
+    """Return the angle in degrees by which two calls of `run_angle` turn two motors in opposite directions.
+
+    The result is 0 for any other calls.
+    """
+    motors = set[str]()
+    turns_deg: list[float] = []
+    for call in calls:
+        match call:
+            case ast.Call(
+                func=ast.Attribute(value=ast.Name(id=motor), attr="run_angle"),
+                args=[speed, angle, *_],
+            ):
+                numbers = [find_number(speed), find_number(angle)]
+                if _is_known(numbers):
+                    motors.add(motor)
+                    turns_deg.append(copysign(numbers[1], numbers[0] * numbers[1]))
+    is_turn = len(motors) == len(turns_deg) == len(calls) and sum(turns_deg) == 0
+    return abs(turns_deg[0]) if is_turn else 0.0
+
+
+def _is_known(numbers: list[float | None]) -> TypeGuard[list[float]]:
+    return None not in numbers
+
+
+def find_number(node: ast.expr) -> float | None:
+    """Return the number in an expression, which may be in a speed such as `SpeedPercent(30)`.
+
+    The result is None for other expressions.
+    """
+    match node:
+        case ast.Constant(value=int() | float() as value):
+            return float(value)
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            number = find_number(operand)
+            return None if number is None else -number
+        case ast.Call(func=ast.Name(id=name), args=[speed]) if name.startswith("Speed"):
+            return find_number(speed)
+    return None

@@ -5,22 +5,14 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from functools import cached_property
 from typing import TypeGuard
 
 from tuisim.base.data_class import dataclass
+from tuisim.programs.comparisons import find_attribute, read_comparison
 from tuisim.programs.line_values import walk_scope
-from tuisim.programs.moves import (
-    STARTS,
-    STOPS,
-    PartedMove,
-    UnwaitedMove,
-    find_call,
-    list_parted_moves,
-    list_unwaited_moves,
-)
+from tuisim.programs.moves import STARTS, STOPS, find_call
 from tuisim.programs.questions import Word
-from tuisim.programs.waits import LoopEnd, find_attribute, list_blocks, read_comparison
+from tuisim.programs.waits import LoopEnd, list_blocks
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _Loop = ast.For | ast.While
@@ -34,45 +26,7 @@ _SPEEDS = "Speed"
 """How the names of classes of speeds begin."""
 
 
-class Uses:
-    """How a program uses its readings, variables and moves.
-
-    Args:
-        tree: The syntax tree of the program.
-        constants: Values of names in the program; see `list_constants`.
-    """
-
-    def __init__(self, tree: ast.Module, constants: Mapping[str, Word]) -> None:
-        self._tree = tree
-        self._constants = constants
-
-    @cached_property
-    def stale_reads(self) -> tuple[LoopEnd, ...]:
-        """The places in loops that use a reading which was taken before the loop."""
-        return tuple(_list_stale_reads(self._tree, self._constants))
-
-    @cached_property
-    def lone_stops(self) -> tuple[LoneStop, ...]:
-        """The `if` statements that stop motors after a single reading."""
-        return tuple(_list_lone_stops(self._tree, self._constants))
-
-    @cached_property
-    def lost_values(self) -> tuple[LostValue, ...]:
-        """The values that functions assign to local names, although a global name is probably meant."""
-        return tuple(_list_lost_values(self._tree))
-
-    @cached_property
-    def unwaited_moves(self) -> tuple[UnwaitedMove, ...]:
-        """The calls that begin a move of limited length, such as a turn by an angle, without waiting for its end."""
-        return tuple(list_unwaited_moves(self._tree))
-
-    @cached_property
-    def parted_moves(self) -> tuple[PartedMove, ...]:
-        """The pairs of equal moves of two motors that the program makes one after the other."""
-        return tuple(list_parted_moves(self._tree))
-
-
-def _list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoopEnd]:
+def list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoopEnd]:
     """Yield each use in a loop of a reading that was taken before the loop and that nothing in the loop reads again.
 
     A use is a comparison with a constant, another test, or a move; the last two are yielded without an operator. The
@@ -227,7 +181,7 @@ class LoneStop:
     """The comparison; None for another test, such as whether a button is pressed."""
 
 
-def _list_lone_stops(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoneStop]:
+def list_lone_stops(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoneStop]:
     """Yield each `if` outside of `while` loops that stops motors which the same block has just started.
 
     Args:
@@ -303,7 +257,7 @@ class LostValue:
     """Whether a program that comes to its end has called the function: the call is in no other block."""
 
 
-def _list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
+def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
     """Yield each value that a function assigns to a local name and never uses, if the program uses this name, too.
 
     A `print` of the value is no use, and neither is a `return` if no call uses the result of the function.

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import ast
-from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import TypeGuard
 
 from tuisim.base.data_class import dataclass
+from tuisim.engine.core.conditions import COMPARE
+from tuisim.programs.comparisons import (
+    build_difference,
+    find_attribute,
+    find_constant,
+    find_values,
+    is_set,
+    read_comparison,
+    split_start,
+)
 from tuisim.programs.questions import COLOR_WORDS, Word, shorten
-from tuisim.programs.robot.source import OPERATORS, SIGNS, TURNED
 
-_OPPOSITE = {">=": "<", ">": "<=", "<=": ">", "<": ">=", "!=": "==", "==": "!="}
-"""For the operator of a `while` condition, the one with which the loop ends."""
 _Loop = ast.For | ast.While
-_PARALLEL = {"threading", "_thread", "asyncio", "multiprocessing", "multitask"}
-"""Names of modules and functions with which parts of a program run at the same time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,16 +41,15 @@ class LoopEnd:
     read_line: int = 0
     """The line that reads it."""
     name: str = ""
-    """The variable that is compared; empty for none, as in an endless loop that only computes."""
+    """The variable that is compared; empty for none."""
     set_line: int = 0
-    """The line before the loop that read this variable, if nothing in the program changes it afterwards; else 0."""
-    is_silent: bool = False
-    """Whether nothing in the loop calls or reads anything: it only computes."""
-
-    @property
-    def is_endless(self) -> bool:
-        """Whether the loop cannot end: the compared value never changes, or the loop only computes without an end."""
-        return bool(self.set_line) or (self.is_silent and not self.name)
+    """The line before the loop that set this variable, if nothing in the program changes it afterwards; else 0."""
+    is_count: bool = False
+    """Whether `set_line` set a number, with which the loop cannot end, and not a reading."""
+    called_lines: tuple[int, ...] = ()
+    """If it is a count, the first lines of the functions that the loop calls."""
+    start_line: int = 0
+    """The line of an earlier reading of the same device that is subtracted from the value; 0 for none."""
 
     @property
     def color(self) -> str:
@@ -117,7 +121,7 @@ def _is_only_counted(name: str, tree: ast.Module) -> bool:
         node for node in nodes if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div)
     ]
     parts = {part for share in shares for part in ast.walk(share)}
-    return sum(map(_is_set, places)) == 2 and parts.isdisjoint(places)
+    return sum(map(is_set, places)) == 2 and parts.isdisjoint(places)
 
 
 def find_turns(
@@ -151,7 +155,7 @@ def find_first_drive(tree: ast.Module) -> int:
     Lines in functions that the program never mentions are ignored.
     """
     nodes = [*ast.walk(tree)]
-    mentioned = {node.id for node in nodes if isinstance(node, ast.Name) and not _is_set(node)}
+    mentioned = {node.id for node in nodes if isinstance(node, ast.Name) and not is_set(node)}
     idle = {
         part
         for node in nodes
@@ -183,30 +187,6 @@ def _find_ends(
     for step in loop.body if is_endless else ():
         if isinstance(step, ast.If) and any(isinstance(way, ast.Break) for way in step.body):
             yield from _find_end(loop, step.test, tree, constants, is_break=True)
-    if is_endless and not any(map(_does_something, ast.walk(loop))) and not _has_threads(tree):
-        line = loop.lineno
-        yield LoopEnd(line, line, _find_last_line(loop), "", "", read_line=line, is_silent=True)
-
-
-def _does_something(node: ast.AST) -> bool:
-    """Return whether a node in an endless loop may leave the loop, wait, read or move something."""
-    match node:
-        case ast.Call(func=ast.Name(id="print")):
-            return False
-        case ast.Call() | ast.Attribute() | ast.Break() | ast.Return() | ast.Raise():
-            return True
-    return isinstance(node, ast.Await | ast.Yield | ast.YieldFrom)
-
-
-def _has_threads(tree: ast.Module) -> bool:
-    """Return whether a program imports a module of threads or tasks, which may go on beside an endless loop."""
-    return any(
-        isinstance(node, ast.Import | ast.ImportFrom)
-        and _PARALLEL.intersection(
-            [getattr(node, "module", ""), *(each.name for each in node.names)]
-        )
-        for node in ast.walk(tree)
-    )
 
 
 def _find_end(
@@ -231,191 +211,76 @@ def _find_end(
         if isinstance(test.op, ast.Or) is is_break:
             yield from (end for each in ends for end in each if end.attribute)
         return
-    comparison = read_comparison(test, words, is_break=is_break)
-    if comparison is None:
-        return
-    value, ending, limit = comparison
-    name, set_line, read_line, attribute = "", 0, value.lineno, find_attribute(value)
-    is_silent = not _has_any(loop, ast.Call, ast.Attribute)
+    comparison = read_comparison(test, words, is_break=is_break) or read_comparison(
+        build_difference(test), words, is_break=is_break
+    )
+    if comparison and (end := _build_end(loop, test, comparison, tree, words)):
+        yield end
+
+
+def _build_end(
+    loop: _Loop,
+    test: ast.expr,
+    comparison: tuple[ast.expr, str, Word],
+    tree: ast.Module,
+    words: Mapping[str, Word],
+) -> LoopEnd | None:
+    """Return a comparison as the end of a loop; None if it compares no reading, and nothing that stays as it is.
+
+    Args:
+        loop: The loop.
+        test: The condition.
+        comparison: Its value, the operator that ends the loop, and the constant.
+        tree: The program.
+        words: Values of names in the program, which are read as constants.
+    """
+    value, ending, limit, start_line = split_start(*comparison, tree, words)
+    name, set_line, is_count = "", 0, False
     if isinstance(value, ast.Name):
         name = value.id
-        values = _find_values(name, tree)
+        values = find_values(name, tree)
         inner = [value for line, value in values if loop.lineno <= line <= _find_last_line(loop)]
         if inner:
-            read_line = inner[-1].lineno
-            attribute = find_attribute(inner[-1])
-        if values and values[-1][0] < loop.lineno and find_attribute(values[-1][1]):
-            set_line = values[-1][0]
-        is_silent = is_silent and bool(inner)
-    if attribute or (name and not _has_exit(loop) and (set_line or is_silent)):
-        lines = test.lineno, loop.lineno, _find_last_line(loop)
-        yield LoopEnd(*lines, ending, limit, attribute, read_line, name, set_line, is_silent)
+            value, ending, limit, line = split_start(inner[-1], ending, limit, tree, words)
+            start_line = start_line or line
+        elif values and values[-1][0] < loop.lineno:
+            is_count = _is_short(words.get(name), ending, limit)
+            set_line = values[-1][0] if is_count or find_attribute(values[-1][1]) else 0
+    attribute = find_attribute(value)
+    if not attribute and (not set_line or _has_exit(loop)):
+        return None
+    lines = test.lineno, loop.lineno, _find_last_line(loop)
+    called_lines = tuple(_list_called(loop, tree)) if is_count else ()
+    end = LoopEnd(*lines, ending, limit, attribute, value.lineno, name, set_line)
+    return replace(end, is_count=is_count, called_lines=called_lines, start_line=start_line)
 
 
-def read_comparison(
-    test: ast.expr, constants: Mapping[str, Word], *, is_break: bool
-) -> tuple[ast.expr, str, Word] | None:
-    """Return the compared expression, the operator and the constant of a comparison that ends a loop.
-
-    The result is None for other tests.
-
-    Args:
-        test: The comparison.
-        constants: Values of names in the program; see `list_constants`.
-        is_break: Whether the loop ends if it is true; otherwise the operator is reversed.
-    """
-    match test:
-        case ast.Compare(left=left, ops=[operator], comparators=[right]):
-            sign = SIGNS.get(type(operator), "")
-        case _:
-            return None
-    ending = sign if is_break else _OPPOSITE.get(sign, "")
-    limit = find_constant(right, constants)
-    if limit is None:
-        left, limit, ending = right, find_constant(left, constants), TURNED.get(ending, ending)
-    return None if limit is None or not ending else _split_sum(left, ending, limit, constants)
+def _is_short(number: Word | None, operator: str, limit: Word) -> bool:
+    """Return whether a number is on the wrong side of a limit, which is also a number; a flag is on no side."""
+    is_number = isinstance(number, int | float) and isinstance(limit, int | float)
+    return is_number and operator != "!=" and not COMPARE[operator](number, limit)
 
 
-def _split_sum(
-    value: ast.expr, ending: str, limit: Word, constants: Mapping[str, Word]
-) -> tuple[ast.expr, str, Word]:
-    """Return a comparison in which numbers added to the value are subtracted from the limit instead.
-
-    Args:
-        value: The compared expression.
-        ending: The operator.
-        limit: The constant.
-        constants: Values of names in the program.
-
-    Returns:
-        The expression without these numbers, the operator, and the new limit.
-    """
-    while isinstance(limit, int | float):
-        match value:
-            case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
-                sign = 1 if isinstance(op, ast.Add) else -1
-                number = find_constant(right, constants)
-                if number is None and sign > 0:
-                    left, number = right, find_constant(left, constants)
-                if not isinstance(number, int | float):
-                    break
-                value, limit = left, limit - sign * number
-            case _:
-                break
-    return value, ending, limit
-
-
-def _has_any(loop: _Loop, *kinds: type[ast.AST]) -> bool:
-    return any(isinstance(node, kinds) for node in ast.walk(loop))
+def _list_called(loop: _Loop, tree: ast.Module) -> Iterator[int]:
+    """Yield the first lines of the program's functions that a loop calls."""
+    calls = [ast.unparse(node.func) for node in ast.walk(loop) if isinstance(node, ast.Call)]
+    names = {call.rpartition(".")[2] for call in calls}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef) and node.name in names:
+            yield node.lineno
 
 
 def _has_exit(loop: _Loop) -> bool:
     """Return whether something else than a loop's condition can end it, such as a `break` or a call of `exit`."""
-    return _has_any(loop, ast.Break, ast.Return, ast.Raise) or any(map(_is_exit, ast.walk(loop)))
+    return any(map(_is_exit, ast.walk(loop)))
 
 
 def _is_exit(node: ast.AST) -> bool:
     match node:
         case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
             return name.strip("_") in ("exit", "quit")
-    return False
+    return isinstance(node, ast.Break | ast.Return | ast.Raise)
 
 
 def _find_last_line(node: ast.stmt) -> int:
     return node.end_lineno or node.lineno
-
-
-def list_constants(tree: ast.Module) -> dict[str, Word]:
-    """Return the texts and numbers that names in a program always have, by name.
-
-    These are names that are assigned once, and parameters that have the same value in all calls.
-    """
-    nodes = [*ast.walk(tree)]
-    functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
-    times_set = Counter(
-        [
-            *(node.id for node in nodes if isinstance(node, ast.Name) and _is_set(node)),
-            *(node.arg for node in nodes if isinstance(node, ast.arg)),
-        ]
-    )
-    constants: dict[str, Word] = {}
-
-    def add(name: str, values: Iterable[ast.expr]) -> None:
-        words = {find_constant(value, constants) for value in values}
-        if times_set[name] == 1 and len(words) == 1 and (word := words.pop()) is not None:
-            constants[name] = word
-
-    for node in nodes:
-        match node:
-            case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                add(name, [value])
-    calls_by_name: dict[str, list[list[ast.expr]]] = defaultdict(list)
-    for node in nodes:
-        match node:
-            case ast.Call(func=ast.Name(id=name), args=values):
-                calls_by_name[name].append(values)
-    for function in functions:
-        calls = calls_by_name[function.name]
-        for index, parameter in enumerate(function.args.args):
-            if all(len(values) > index for values in calls):
-                add(parameter.arg, [values[index] for values in calls])
-    return constants
-
-
-def _is_set(node: ast.Name) -> bool:
-    return not isinstance(node.ctx, ast.Load)
-
-
-def find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None:
-    """Return the text or number of a constant expression, or a name in capitals such as `RED`; None for others."""
-    match node:
-        case ast.Name(id=name):
-            return constants.get(name)
-        case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
-            match find_constant(left, constants), find_constant(right, constants):
-                case (int() | float() as number, int() | float() as other) if other:
-                    return OPERATORS[type(op)](number, other)
-            return None
-        case ast.Constant(value=str() | int() | float() as value) if not isinstance(value, bool):
-            return value
-        case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int() | float() as value)):
-            return -value
-        case ast.Attribute(attr=attr) if attr.isupper():
-            return attr
-    return None
-
-
-def find_attribute(node: ast.expr) -> str:
-    """Return the attribute that an expression reads, or the method that it calls without an argument or with 0.
-
-    The result is empty for other expressions.
-    """
-    match node:
-        case (
-            ast.Attribute(attr=attr)
-            | ast.Call(func=ast.Attribute(attr=attr), args=[] | [ast.Constant(value=0)])
-        ):
-            return attr
-    return ""
-
-
-def _find_values(name: str, tree: ast.Module) -> list[tuple[int, ast.expr]]:
-    """Return the lines that assign a variable, each with the assigned expression, or the name's node if unknown.
-
-    The result is empty if several functions share the variable, since their order is not known.
-    """
-    values: list[tuple[int, ast.expr]] = []
-    for node in ast.walk(tree):
-        match node:
-            case ast.Global(names=names) | ast.Nonlocal(names=names) if name in names:
-                return []
-            case ast.Name(id=other, ctx=ast.Store()) if other == name:
-                values.append((node.lineno, node))
-            case ast.Assign(targets=[ast.Name(id=other)], value=value) if other == name:
-                values.append((node.lineno, value))
-    known = {line for line, value in values if not isinstance(value, ast.Name)}
-    return [
-        (line, value)
-        for line, value in sorted(values, key=lambda each: each[0])
-        if not (line in known and isinstance(value, ast.Name))
-    ]

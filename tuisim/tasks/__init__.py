@@ -20,7 +20,6 @@ __all__ = [
     "marks.trial",
     "pool",
     "reasons.reason",
-    "reasons.waited_words",
     "reasons.waiting",
     "task",
 ]

@@ -6,6 +6,7 @@ import pytest
 
 from tests.tasks.reasons.runs import run_text
 from tuisim.tasks.reasons.blank_mat import describe_blank_mat
+from tuisim.tasks.reasons.run_data import RunData
 
 HEAD = """
 from ev3dev2.motor import MoveSteering, MoveTank, OUTPUT_B, OUTPUT_C
@@ -51,4 +52,4 @@ REMEDY = "the mat is plain white: -b Loop gives it a line (tuisim backgrounds)"
     ids=["own loop", "follow_line", "reads seldom", "only logs", "stands still", "a line"],
 )
 def test_a_follower_on_the_plain_mat_is_told_how_to_get_a_line(text: str, told: str) -> None:
-    assert describe_blank_mat(run_text(text)) == told
+    assert describe_blank_mat(RunData(run_text(text))) == told

@@ -91,15 +91,17 @@ def test_a_move_that_may_end_so_is_not_blamed(text: str) -> None:
 
 
 WHEELS = HUB.replace("56, 114)", "56, 114)\nright = Motor(Port.B)").replace("base = ", "# ")
+LOOP = "for side in range(2):\n    time.sleep(0.2)\n    "
 PARTED = {
     "a hub": (
-        f"{WHEELS}left.run_angle(300, 360)\nright.run_angle(300, 360)\n",
-        "line 10: run_angle waits until this wheel is done before line 11 moves the other one: "
+        f"{WHEELS}for side in range(2):\n    wait(9)\n"
+        "    left.run_angle(300, 360)\n    right.run_angle(300, 360)\n",
+        "line 12: run_angle waits until this wheel is done before line 13 moves the other one: "
         "wait=False on the first drives both",
     ),
     "a brick": (
-        f"{MOTORS}left.on_for_degrees(30, 360)\nright.on_for_degrees(30, 360)\n",
-        "line 6: on_for_degrees waits until this wheel is done before line 7 moves the other one: block=False",
+        f"{MOTORS}{LOOP}left.on_for_degrees(30, 360)\n    right.on_for_degrees(30, 360)\n",
+        "line 8: on_for_degrees waits until this wheel is done before line 9 moves the other one: block=False",
     ),
 }
 
@@ -112,17 +114,17 @@ def test_a_straight_way_that_is_driven_wheel_after_wheel_is_named(text: str, wor
 @cases(
     "text",
     {
-        "together": "left.on_for_degrees(30, 360, block=False)\nright.on_for_degrees(30, 360)\n",
-        "different angles": "left.on_for_degrees(30, 360)\nright.on_for_degrees(30, 180)\n",
-        "opposite signs": "left.on_for_degrees(30, 360)\nright.on_for_degrees(-30, 360)\n",
-        "one wheel": "left.on_for_degrees(30, 180)\nleft.on_for_degrees(30, 180)\n",
-        "a pause between": "left.on_for_degrees(30, 90)\ntime.sleep(1)\nright.on_for_degrees(30, 90)\n",
+        "a test of each": "left.on_for_degrees(30, 360)\nright.on_for_degrees(30, 360)\n",
+        "together": f"{LOOP}left.on_for_degrees(30, 360, block=False)\n    right.on_for_degrees(30, 360)\n",
+        "different angles": f"{LOOP}left.on_for_degrees(30, 360)\n    right.on_for_degrees(30, 180)\n",
+        "opposite signs": f"{LOOP}left.on_for_degrees(30, 180)\n    right.on_for_degrees(-30, 180)\n",
+        "one wheel": f"{LOOP}left.on_for_degrees(30, 180)\n    left.on_for_degrees(30, 180)\n",
         "a walk": "for _ in range(4):\n"
         "    left.on_for_degrees(30, 180)\n    right.on_for_degrees(30, 180)\n",
         "both with one call elsewhere": "tank = MoveTank(OUTPUT_B, OUTPUT_C)\n"
-        "left.on_for_degrees(30, 180)\nright.on_for_degrees(30, 180)\n",
+        f"{LOOP}left.on_for_degrees(30, 180)\n    right.on_for_degrees(30, 180)\n",
         "another motor": "arm = MediumMotor(OUTPUT_A)\n"
-        "left.on_for_degrees(30, 180)\narm.on_for_degrees(30, 180)\n",
+        f"{LOOP}left.on_for_degrees(30, 180)\n    arm.on_for_degrees(30, 180)\n",
     },
 )
 def test_wheels_that_are_moved_one_by_one_on_purpose_are_not_blamed(text: str) -> None:

@@ -105,23 +105,23 @@ CASES = {
     ),
     "not called": (
         "tank_drive.on_for_seconds(20, 20, 1)\ntank_drive.off\n",
-        ReasonKind.ENDED,
+        ReasonKind.MISTAKEN,
         "line 2: tank_drive.off without () does nothing: tank_drive.off() calls it",
     ),
     "a move not called": (
         "tank_drive.on_for_seconds(20, 20, 1)\ntank_turn.on_for_degrees\n",
-        ReasonKind.ENDED,
+        ReasonKind.MISTAKEN,
         "line 2: tank_turn.on_for_degrees without () does nothing: tank_turn.on_for_degrees() calls",
     ),
     "both ways alike": (
         "if colorLeft.reflected_light_intensity_pc < 50:\n    tank_drive.off()\n"
         "else:\n    tank_drive.off()\n",
-        ReasonKind.ENDED,
+        ReasonKind.MISTAKEN,
         "line 1: if and else do the same",
     ),
     "not returned": (
         "def is_grey():\n    colorLeft.reflected_light_intensity_pc < 90\nis_grey()\n",
-        ReasonKind.ENDED,
+        ReasonKind.MISTAKEN,
         "line 2: is_grey() returns nothing: return is missing before colorLeft.reflected_light",
     ),
     "degrees of the wheels": (
@@ -193,7 +193,7 @@ END = {
     "a band between two reads": (
         "# %%sim_magic_preloaded -b Grey_bands\nimport time\ntank_drive.on(80, 80)\n"
         "while colorLeft.reflected_light_intensity_pc > 10:\n    time.sleep(1.02)\n",
-        " s, line 4: the value that this line waited for came between two reads: it was ",
+        " s, line 5: the left sensor saw light of 0 here, but the program read it only at ",
     ),
     "as it should": ("tank_drive.on_for_seconds(20, 20, 1)\n", ""),
     "a wait": (WAITS, ""),
@@ -202,9 +202,29 @@ END = {
 
 @cases("text, words", END)
 def test_the_last_line_of_a_run_says_how_it_ended_wrong(text: str, words: str) -> None:
-    sentence = describe_end(run_text(text))
+    sentence = describe_end(run_text(text))["went_wrong"]
     assert words in sentence
     assert bool(sentence) == bool(words)
+
+
+def test_the_final_state_of_a_run_has_each_reason_once() -> None:
+    run = run_text(
+        "# %%sim_magic_preloaded -b Grey_bands\nspeed = 20\ndef go_faster():\n    speed = 60\ngo_faster()\n"
+        "tank_drive.on(speed, speed)\nif colorLeft.reflected_light_intensity_pc < 5:\n    tank_drive.off()\n"
+    )
+    reasons = find_reasons(run)
+    assert len(reasons) == 2
+    assert describe_end(run) == {
+        "waited_for": "",
+        "went_wrong": "; ".join(reason.words for reason in reasons),
+    }
+
+
+def test_an_error_whose_cause_python_does_not_name_has_it_in_its_reason() -> None:
+    text = "def measure():\n    x = 1\nx = measure()\nprint(x + 1)\n"
+    (reason,) = find_reasons(run_text(text))
+    assert reason.kind is ReasonKind.RAISED
+    assert reason.words.endswith("and 'int': x is None: measure(), line 1, has no return")
 
 
 TURNS_TOO_LITTLE = """\

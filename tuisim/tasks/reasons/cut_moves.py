@@ -12,13 +12,12 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.runs.arrays import find_spans
 from tuisim.engine.runs.command_words import CALL_WORDS, Aim
+from tuisim.programs import moves
 from tuisim.tasks.reasons.run_data import STOP_CALLS, RunData
 from tuisim.tasks.reasons.unmet import Unmet
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from tuisim.programs.moves import UnwaitedMove
 
     Array = NDArray[Any]
 
@@ -71,14 +70,14 @@ class _Move:
     """The next command; None for the end of the run."""
 
 
-def find_cut_move(data: RunData) -> Unmet | None:
-    """Return the first move that the next command to the same part, or the end of the program, cut off.
+def list_cut_moves(data: RunData) -> Iterator[Unmet]:
+    """Yield the moves that the next command to the same part, or the end of the program, cut off.
 
-    A part is a motor or a drive base. The result is None if there is none.
+    A part is a motor or a drive base.
     """
-    unwaited = data.facts.uses.unwaited_moves
-    if not unwaited or not len(data.records):
-        return None
+    unwaited = [*moves.list_unwaited_moves(data.facts.tree)]
+    if not unwaited:
+        return
     calls = {call for each in unwaited for call in _CALLS.get(each.method, ())}
     for move in _list_moves(data, calls):
         fitting = [each for each in unwaited if move.call in _CALLS.get(each.method, ())]
@@ -90,19 +89,16 @@ def find_cut_move(data: RunData) -> Unmet | None:
                 after = "the next one began" if move.next_call else "the program ended"
             text = f"{call.option} did not wait for this move, {share} when {after}"
             if share:
-                return Unmet(move.end / data.hz, call.line, text)
-    return None
+                yield Unmet(move.end / data.hz, call.line, text)
 
 
-def find_parted_move(data: RunData) -> Unmet | None:
-    """Return the first straight move that swerved because the program moved one wheel after the other.
-
-    The result is None if there is no such move.
+def list_parted_moves(data: RunData) -> Iterator[Unmet]:
+    """Yield the straight moves that swerved because the program moved one wheel after the other.
 
     Args:
         data: The run.
     """
-    for pair in data.facts.uses.parted_moves if len(data.records) else ():
+    for pair in moves.list_parted_moves(data.facts.tree):
         stays, next_stays = (
             find_spans(data.records["line"] == line) for line in (pair.first_line, pair.next_line)
         )
@@ -113,8 +109,7 @@ def find_parted_move(data: RunData) -> Unmet | None:
                     f"{pair.method} waits until this wheel is done before line {pair.next_line} moves the other one: "
                     f"{pair.option} on the first drives both"
                 )
-                return Unmet(start / data.hz, pair.first_line, text)
-    return None
+                yield Unmet(start / data.hz, pair.first_line, text)
 
 
 def _has_swerved(records: Array, *ticks: int) -> bool:
@@ -159,18 +154,20 @@ def _list_moves(data: RunData, calls: Set[Call]) -> Iterator[_Move]:
     last = len(data.records) - 1
     is_finished = data.is_finished and len(rows) == is_aim.sum()
     following: dict[tuple[bool, int], tuple[int, Call]] = {}
-    moves: list[_Move] = []
+    all_moves: list[_Move] = []
     for row, tick in zip(rows[::-1], ticks[::-1].tolist(), strict=True):
         call = Call(int(row["call"]))
         part = (call >= Call.BUILD_BASE, int(row["part"]))
         end, next_call = following.get(part, (last, None))
         following[part] = tick, call
         if call in calls and (next_call or (is_finished and call not in _GO_ON)):
-            moves.append(_Move(tick, end, call, row["values"].tolist(), part[1], next_call))
-    yield from sorted(moves, key=lambda move: move.end)
+            all_moves.append(_Move(tick, end, call, row["values"].tolist(), part[1], next_call))
+    yield from sorted(all_moves, key=lambda move: move.end)
 
 
-def _find_call(data: RunData, move: _Move, fitting: list[UnwaitedMove]) -> UnwaitedMove | None:
+def _find_call(
+    data: RunData, move: _Move, fitting: list[moves.UnwaitedMove]
+) -> moves.UnwaitedMove | None:
     """Return the call in the program's text that gave the command of a move.
 
     The result is None if several calls may have given it, or if the program may have cut the move off on purpose.
@@ -195,7 +192,7 @@ def _find_call(data: RunData, move: _Move, fitting: list[UnwaitedMove]) -> Unwai
     return calls[0] if len(calls) == 1 and is_at_once else None
 
 
-def _turns_as_asked(data: RunData, move: _Move, call: UnwaitedMove) -> bool:
+def _turns_as_asked(data: RunData, move: _Move, call: moves.UnwaitedMove) -> bool:
     """Return whether a call in the text turns a motor by the same angle as a move."""
     turns = data.facts.find_turns(call.line)
     unit_deg = 360.0 if turns and turns[1] == "rotations" else 1.0

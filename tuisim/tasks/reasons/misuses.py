@@ -7,18 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.conditions import COMPARE
-from tuisim.engine.core.profile import NS_PER_S
+from tuisim.programs import uses
 from tuisim.programs.facts import LoopEnd
 from tuisim.tasks.reasons.run_data import RunData, Series
 from tuisim.tasks.reasons.unmet import Unmet, name_goal, round_value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from tuisim.programs.uses import LoneStop
 
     Array = NDArray[Any]
 
@@ -39,40 +36,18 @@ _MIN_TURN_DEG = 10.0
 """A missing stop does no harm if the robot moves by less than this."""
 
 
-def find_misuses(data: RunData) -> Iterator[Unmet]:
-    """Yield the first misuse of each kind in a run: a reading used too long, a test made only once, and a value lost.
-
-    Args:
-        data: The run.
-    """
-    if not len(data.records):
-        return
-    for find in (_find_stale_reads, _find_lone_stops, _find_lost_values):
-        try:
-            if misuse := next(find(data), None):
-                yield misuse
-        except (LogError, ConfigError):
-            continue
-
-
 # The following functions find readings that were taken once and used many times.
 
 
-def _find_stale_reads(data: RunData) -> Iterator[Unmet]:
+def list_stale_reads(data: RunData) -> Iterator[Unmet]:
     """Yield a misuse for each reading that a loop still used when the sensor saw something else."""
     known = {end.line for end in data.facts.loop_ends if end.set_line}
-    for use in data.facts.uses.stale_reads:
+    for use in uses.list_stale_reads(data.facts.tree, data.facts.constants):
         if use.line in known and _was_in_vain(data, use):
             continue
-        for tick in _list_ticks(data, use.read_line):
-            if tick < len(data.records) and (misuse := _compare_stale(data, use, tick)):
+        for tick in data.find_read_ticks(use.read_line)[:_MAX_READINGS].tolist():
+            if misuse := _compare_stale(data, use, tick):
                 yield misuse
-
-
-def _list_ticks(data: RunData, line: int) -> list[int]:
-    """Return the ticks at which a line of the program read a sensor or motor, ascending, at most `_MAX_READINGS`."""
-    ticks: list[int] = np.unique(data.reading_ticks[data.readings["line"] == line]).tolist()
-    return ticks[:_MAX_READINGS]
 
 
 def _was_in_vain(data: RunData, use: LoopEnd) -> bool:
@@ -158,21 +133,18 @@ def _name(series: Series, value: float) -> str:
 # The following functions find each `if` where a loop was meant.
 
 
-def _find_lone_stops(data: RunData) -> Iterator[Unmet]:
+def list_lone_stops(data: RunData) -> Iterator[Unmet]:
     """Yield a misuse for each stop that never came, because the program tested only once, and too early."""
-    for stop in data.facts.uses.lone_stops:
-        read_ticks = _list_ticks(data, stop.read_line)
+    for stop in uses.list_lone_stops(data.facts.tree, data.facts.constants):
+        read_ticks = data.find_read_ticks(stop.read_line)[:_MAX_READINGS]
         if np.diff(read_ticks).min(initial=data.hz) < _APART_S * data.hz:
             continue
-        for read_tick in read_ticks:
-            # The last reading may lie in the tick that the end of the program cut off.
-            tick = min(read_tick, len(data.records) - 1)
+        for tick in read_ticks.tolist():
             if _is_unstopped(data, stop, tick):
-                when_ns = data.readings["time_ns"][data.reading_ticks == read_tick][0]
-                yield Unmet(float(when_ns / NS_PER_S), stop.line, _describe_lone(data, stop, tick))
+                yield Unmet(tick / data.hz, stop.line, _describe_lone(data, stop, tick))
 
 
-def _is_unstopped(data: RunData, stop: LoneStop, tick: int) -> bool:
+def _is_unstopped(data: RunData, stop: uses.LoneStop, tick: int) -> bool:
     """Return whether the robot drove on after the reading on which a stop depends, without another reading or a stop.
 
     Args:
@@ -204,7 +176,7 @@ def _is_met(data: RunData, test: LoopEnd, tick: int) -> bool:
     return bool(COMPARE[test.operator](seen.values, test.limit).any())
 
 
-def _describe_lone(data: RunData, stop: LoneStop, tick: int) -> str:
+def _describe_lone(data: RunData, stop: uses.LoneStop, tick: int) -> str:
     text = "this line asked only once"
     test = stop.test
     seen = data.measure_ticks(test, np.array([tick])) if test else None
@@ -222,9 +194,9 @@ def _describe_lone(data: RunData, stop: LoneStop, tick: int) -> str:
 # The following functions find assignments to a name that was not meant.
 
 
-def _find_lost_values(data: RunData) -> Iterator[Unmet]:
+def list_lost_values(data: RunData) -> Iterator[Unmet]:
     """Yield a misuse for each value that a function which ran has assigned to a local name instead of a global one."""
-    for lost in data.facts.uses.lost_values:
+    for lost in uses.list_lost_values(data.facts.tree):
         tick = _find_tick(data, *lost.lines)
         if tick is None and lost.call_line:
             tick = _find_tick(data, lost.call_line + 1, 1 << 31)

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.runs.arrays import find_spans
+from tuisim.programs import remarks
 from tuisim.programs.facts import LoopEnd
 from tuisim.tasks.reasons.read_columns import LIGHT_COLUMNS
 from tuisim.tasks.reasons.run_data import RunData
@@ -28,43 +28,25 @@ _AHEAD_MM = 1500
 _STEP_MM = 4
 _RIM_MM = 60
 """A sensor of a robot so near to the edge may be off the mat."""
-_MIN_ON_MM = 200.0
-"""A robot that drives so far after a loop has ended has left the place whose light ended the loop."""
-_MIN_CHANGE_PC = 20.0
-_SOON_S = 0.6
+_MIN_AHEAD_MM = 60
+"""A band that comes sooner is the one whose edge ended the loop."""
 _MIN_ON_DEG = 90.0
 _MIN_SPIN_DEG = 60.0
 _MAX_SPOT_MM = 20.0
 """A robot that turns by so much, and gets no farther, turns on the spot."""
 
 
-def find_missed_aims(data: RunData) -> Iterator[Unmet]:
-    """Yield the first instant of each kind at which a run did not do what comments and names in its program say.
-
-    Args:
-        data: The run.
-    """
-    if not len(data.records):
-        return
-    for find in (_find_wrong_bands, _find_late_stops, _find_spins, _find_wrong_units):
-        try:
-            if missed := next(find(data), None):
-                yield missed
-        except (LogError, ConfigError):
-            continue
-
-
-def _find_wrong_bands(data: RunData) -> Iterator[Unmet]:
+def list_wrong_bands(data: RunData) -> Iterator[Unmet]:
     """Yield a fault for each loop that should wait for black or white, but was ended by another band."""
-    places = [(loop.first_line, loop.last_line) for loop in data.facts.loop_ends]
-    for loop in data.facts.loop_ends:
-        place = loop.first_line, loop.last_line
-        others = [line for other in places if other != place for line in other]
-        color = data.facts.remarks.find_color(*place, others)
-        if not color or isinstance(loop.limit, str) or loop.operator[0] != _LIMITS[color][1]:
+    loops = data.facts.loop_ends
+    ends = [line for loop in loops for line in (loop.first_line, loop.last_line)]
+    for loop in loops:
+        color = data.facts.remarks.find_color(loop.first_line, loop.last_line, ends)
+        if not color or loop.start_line or isinstance(loop.limit, str):
             continue
         series = data.measure(loop, (0, len(data.records)))
-        if series is None or series.column not in LIGHT_COLUMNS:
+        is_other = loop.operator[0] != _LIMITS[color][1]
+        if is_other or series is None or series.column not in LIGHT_COLUMNS:
             continue
         is_met = COMPARE[loop.operator](series.values, loop.limit)
         if not is_met[-1] or is_met[:-1].any():
@@ -74,8 +56,8 @@ def _find_wrong_bands(data: RunData) -> Iterator[Unmet]:
         ahead = _measure_light(data, loop, _extend_way(data.records[tick]))
         limit, sign = _LIMITS[color]
         comes = COMPARE[sign](ahead, limit)
-        if len(light) and not COMPARE[sign](light[0], limit) and comes.any():
-            index = int(comes.argmax())
+        index = int(comes.argmax()) if comes.any() else 0
+        if len(light) and not COMPARE[sign](light[0], limit) and index * _STEP_MM >= _MIN_AHEAD_MM:
             nearest = ahead[index : index + 25]
             value = nearest.min() if sign == "<" else nearest.max()
             goal = name_goal(loop, f"{loop.limit:g}{series.unit}")
@@ -108,34 +90,10 @@ def _extend_way(record: Array) -> Array:
     return records
 
 
-def _find_late_stops(data: RunData) -> Iterator[Unmet]:
-    """Yield a fault for each stop near the end of a run that came long after the awaited light."""
-    loops = {loop.first_line: loop for loop in data.facts.loop_ends}
-    for loop_line, sleep_line, stop_line in data.facts.remarks.late_stops:
-        loop = loops.get(loop_line)
-        series = data.measure(loop, (0, len(data.records))) if loop else None
-        if loop is None or series is None or series.column not in LIGHT_COLUMNS:
-            continue
-        tick = int(series.ticks[-1])
-        later = data.stop_ticks[data.stop_ticks > tick]
-        if not len(later) or len(data.records) - later[0] > _SOON_S * data.hz:
-            continue
-        stop_tick = min(int(later[0]), len(data.records) - 1)
-        way = data.records[tick : stop_tick + 1]
-        way_mm = float(np.hypot(np.diff(way["x_mm"]), np.diff(way["y_mm"])).sum())
-        light = _measure_light(data, loop, data.records[[tick, stop_tick]])
-        if way_mm >= _MIN_ON_MM and len(light) > 1 and abs(np.ptp(light)) >= _MIN_CHANGE_PC:
-            text = (
-                f"after the light of {light[0]:.0f} % at {tick / data.hz:.2f} s, this line let the robot drive on "
-                f"for {way_mm:.0f} mm before line {stop_line} stopped it, where the light is {light[1]:.0f} %"
-            )
-            yield Unmet(tick / data.hz, sleep_line, text)
-
-
-def _find_spins(data: RunData) -> Iterator[Unmet]:
+def list_spins(data: RunData) -> Iterator[Unmet]:
     """Yield a fault for each turn on the spot at a place where the program says that it drives straight on."""
     lines = data.records["line"]
-    for spin in data.facts.remarks.spins:
+    for spin in remarks.list_spins(data.facts.tree, data.facts.remarks):
         # The line after those that start motors is the one that waits.
         is_in = (lines >= spin.first_line) & (lines <= spin.last_line + 1)
         for start, end in find_spans(is_in).tolist():
@@ -150,10 +108,10 @@ def _find_spins(data: RunData) -> Iterator[Unmet]:
                 yield Unmet(start / data.hz, spin.first_line, text)
 
 
-def _find_wrong_units(data: RunData) -> Iterator[Unmet]:
+def list_wrong_units(data: RunData) -> Iterator[Unmet]:
     """Yield each call that ran and whose numbers were probably meant in another unit or order."""
     lines = data.records["line"]
-    for wrong in data.facts.remarks.wrong_units:
+    for wrong in remarks.list_wrong_units(data.facts.tree, data.facts.remarks):
         ticks = np.flatnonzero(lines == wrong.line)
         is_stuck = not data.is_finished and lines[-1] == wrong.line
         if len(ticks) and (not wrong.is_endless or (is_stuck and _has_moved(data.records[ticks]))):

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from enum import IntEnum, auto
 from pathlib import Path
@@ -23,14 +24,16 @@ from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.standstill import find_standstill
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.reasons.blank_mat import describe_blank_mat
-from tuisim.tasks.reasons.cut_moves import find_cut_move, find_parted_move
+from tuisim.tasks.reasons.cut_moves import list_cut_moves, list_parted_moves
 from tuisim.tasks.reasons.run_data import RunData
 from tuisim.tasks.reasons.subjects import Subject
 from tuisim.tasks.reasons.unmet import (
+    Unmet,
     find_early_end,
-    find_near_miss,
-    find_recount,
-    find_stale_angle,
+    find_first,
+    list_near_misses,
+    list_recounts,
+    list_stale_angles,
 )
 from tuisim.tasks.reasons.waited_words import Wait, find_waits
 
@@ -71,6 +74,8 @@ class Reason:
     """What happened, a sentence that begins small and has no full stop."""
     until_s: float = math.inf
     """Until when it may have led to other reasons: a line that a sensor saw again leads to nothing later."""
+    is_state: bool = False
+    """Whether the final state of a run tells it without a search, such as an error or a wall."""
 
     @property
     def words(self) -> str:
@@ -98,13 +103,9 @@ def find_reasons(
         LogError: a recording is damaged, or the mat no longer exists.
     """
     data = RunData(run, mat)
-    has_met = bool(judgements) and all(each.is_good for each in judgements)
-    reasons = [*_find_raised(run), *_find_missed(judgements)]
-    if not has_met:
-        waits = find_waits(data)
-        is_seen = any(wait.subject is Subject.COLOR for wait in waits)
-        reasons += [*_find_blocked(run, waits), *_find_lost(data, is_seen)]
-        reasons += [*_find_left_mat(run), *_find_mistaken(data), *_find_ended(data)]
+    reasons = [*_find_raised(data), *_find_missed(judgements)]
+    if not (judgements and all(each.is_good for each in judgements)):
+        reasons += _find_behaviour(data, find_waits(data))
     if earlier is not None and is_repeat(run, earlier):
         reasons += _find_difference(run, earlier)
     return sort_by_cause(reasons)
@@ -116,6 +117,35 @@ def describe_reasons(run: StoredRun) -> list[str]:
         return [reason.words for reason in find_reasons(run)]
     except LogError:
         return []
+
+
+def describe_end(run: StoredRun) -> dict[str, str]:
+    """Return what a final state says of faults: `waited_for`, what the run waited for in vain, and `went_wrong`.
+
+    `went_wrong` has the reasons of `find_reasons` that a final state does not tell anyway; without one, it says if the
+    mat is blank. It is empty if nothing went wrong, if the run still goes on, or if its mat no longer exists.
+    """
+    data = RunData(run)
+    waits = find_waits(data)
+    reasons: list[Reason] = []
+    if run.end is not None:
+        with suppress(LogError):
+            reasons = [*_find_raised(data), *_find_behaviour(data, waits)]
+    words = [reason.words for reason in sort_by_cause(reasons) if not reason.is_state]
+    return {
+        "waited_for": "; ".join(wait.what for wait in waits),
+        "went_wrong": "; ".join(words) or describe_blank_mat(data),
+    }
+
+
+def _find_behaviour(data: RunData, waits: Sequence[Wait]) -> Iterator[Reason]:
+    """Yield the reasons that are neither errors nor missed goals."""
+    yield from _find_blocked(data.run, waits)
+    yield from _find_lost(data, any(wait.subject is Subject.COLOR for wait in waits))
+    yield from _find_left_mat(data.run)
+    yield from _find_mistaken(data)
+    yield from _find_slips(data)
+    yield from _find_ended(data)
 
 
 _CAUSES = frozenset({ReasonKind.LOST, ReasonKind.MISTAKEN})
@@ -153,8 +183,15 @@ def _find_line(run: StoredRun, time_s: float) -> int:
     return run.telemetry.record(min(tick, run.telemetry.count - 1)).line
 
 
-def _find_raised(run: StoredRun) -> Iterator[Reason]:
-    """Yield a reason for each error in a thread, and for the error that ended the run."""
+def _find_raised(data: RunData) -> Iterator[Reason]:
+    """Yield a reason for each error in a thread, and for the error that ended the run, each with what caused it."""
+    for error in _find_errors(data.run):
+        cause = data.facts.explain_error(error.text, error.line)
+        text = f"{error.text}: {cause}" if cause else error.text
+        yield replace(error, text=text, is_state=not cause)
+
+
+def _find_errors(run: StoredRun) -> Iterator[Reason]:
     end = run.end
     ending = end.summary if end and end.end not in _EXPECTED_ENDS else ""
     for error in _find_tracebacks(run):
@@ -203,9 +240,11 @@ def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]
     ):
         if contact:
             line = _find_line(run, contact.since_s)
-            yield Reason(ReasonKind.BLOCKED, contact.since_s, line, f"the robot {contact.words}")
+            text = f"the robot {contact.words}"
+            yield Reason(ReasonKind.BLOCKED, contact.since_s, line, text, is_state=True)
     for wait in all_waits:
-        yield Reason(ReasonKind.BLOCKED, wait.time_s, wait.line, f"from here on {wait.text}")
+        text = f"from here on {wait.text}"
+        yield Reason(ReasonKind.BLOCKED, wait.time_s, wait.line, text, is_state=True)
 
 
 def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
@@ -226,25 +265,26 @@ def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
         has_waited: Whether the program waited for a light sensor in vain. That it saw only one colour is then no
             further reason.
     """
-    run = data.run
-    if not run.spec.robot.color_sensors or run.telemetry.count < 2:
-        return
     from tuisim.tasks.reasons.lost_line import find_lost_lines
     from tuisim.tasks.reasons.one_colour import find_one_color
-    from tuisim.tasks.reasons.unwatched import find_unwatched
+    from tuisim.tasks.reasons.unwatched import list_unwatched
 
-    if missed := find_near_miss(data) or find_stale_angle(data):
-        yield Reason(ReasonKind.LOST, missed.time_s, missed.line, missed.text)
+    run = data.run
+    for search in (list_near_misses, list_stale_angles, list_unwatched):
+        if missed := find_first(search, data):
+            yield _build_reason(ReasonKind.LOST, missed)
+            break
+    if run.telemetry.count < 2 or not data.decides_by_light:
+        return
     seen_by_eyes = data.records, run.spec, data.mat, data.light_ticks
     for lost in find_lost_lines(*seen_by_eyes):
         yield _describe_loss(run, lost)
-    unwatched = find_unwatched(run.program, *seen_by_eyes)
-    if unwatched and not missed:
-        yield _explain_lost(run, unwatched.tick, unwatched.text)
     if not has_waited and (seen := find_one_color(*seen_by_eyes)):
         text = f"from here on the {seen.sensor} sensor saw only {seen.color}"
         if seen.left_tick is not None:
-            text += f", until it left the mat at {seen.left_tick / run.spec.profile.tick_hz:.2f} s"
+            text += f", until it left the mat at {seen.left_tick / data.hz:.2f} s"
+        if blank := describe_blank_mat(data):
+            text += f"; {blank}"
         yield _explain_lost(run, seen.tick, text)
 
 
@@ -254,64 +294,55 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
     x_mm, y_mm = records["x_mm"], records["y_mm"]
     is_off = (x_mm < 0) | (x_mm > FIELD_WIDTH_MM) | (y_mm < 0) | (y_mm > FIELD_HEIGHT_MM)
     if is_off.any():
-        yield _explain_lost(run, int(is_off.argmax()), "the robot left the mat")
+        yield replace(
+            _explain_lost(run, int(is_off.argmax()), "the robot left the mat"), is_state=True
+        )
 
 
 def _find_mistaken(data: RunData) -> Iterator[Reason]:
-    """Yield reasons at lines whose effect the author of the program probably did not mean.
+    """Yield the first reason of each kind at lines whose effect the author of the program probably did not mean.
 
     The program turned the wheels by an angle meant for the robot, counted a band twice, or cut off a move, for example.
     """
-    from tuisim.tasks.reasons.misuses import find_misuses
-    from tuisim.tasks.reasons.named_aims import find_missed_aims
-    from tuisim.tasks.reasons.unwatched import find_mistaken_turn
+    from tuisim.tasks.reasons import misuses, named_aims
+    from tuisim.tasks.reasons.unwatched import list_mistaken_turns
 
-    if turn := find_mistaken_turn(data):
-        time_s = turn.tick / data.hz
-        yield Reason(ReasonKind.MISTAKEN, time_s, turn.line, turn.text)
-    moves = find_cut_move(data), find_parted_move(data)
-    slips = (find_recount(data), *moves, *find_misuses(data), *find_missed_aims(data))
-    for mistake in slips:
-        if mistake:
-            yield Reason(ReasonKind.MISTAKEN, mistake.time_s, mistake.line, mistake.text)
+    for search in (
+        *(list_mistaken_turns, list_cut_moves, list_parted_moves, list_recounts),
+        *(misuses.list_stale_reads, misuses.list_lone_stops, misuses.list_lost_values),
+        *(named_aims.list_spins, named_aims.list_wrong_bands, named_aims.list_wrong_units),
+    ):
+        if mistake := find_first(search, data):
+            yield _build_reason(ReasonKind.MISTAKEN, mistake)
+
+
+def _build_reason(kind: ReasonKind, fault: Unmet) -> Reason:
+    return Reason(kind, fault.time_s, fault.line, fault.text)
+
+
+def _find_slips(data: RunData) -> Iterator[Reason]:
+    """Yield a reason for each line that does nothing, from where its loop first ran or, without one, at the end."""
+    lines, end = data.records["line"], data.run.end
+    if end is None:
+        return
+    cause = data.facts.explain_error(end.error, end.error_line)
+    for line, text in data.facts.slips:
+        _, place = data.facts.find_place(line)
+        is_there = (lines >= place.start) & (lines < place.stop)
+        time_s = int(is_there.argmax()) / data.hz if is_there.any() else data.run.time_s
+        # The error that ended the run may name the slip.
+        if text != cause:
+            yield Reason(ReasonKind.MISTAKEN, time_s, line, text)
 
 
 def _find_ended(data: RunData) -> Iterator[Reason]:
-    """Yield a reason if the program ended too early or left motors turning, and for each line that does nothing."""
+    """Yield a reason if the program ended too early or left motors turning."""
     run = data.run
-    for line, text in data.facts.slips if run.end else ():
-        yield Reason(ReasonKind.ENDED, run.time_s, line, text)
-    if (early := find_early_end(data)) and not find_cut_move(data):
-        yield Reason(ReasonKind.ENDED, early.time_s, early.line, early.text)
+    if (early := find_early_end(data)) and not find_first(list_cut_moves, data):
+        yield _build_reason(ReasonKind.ENDED, early)
     elif run.end and run.end.end is End.FINISHED and run.end.summary:
         text = f"the program {run.end.summary}"
-        yield Reason(ReasonKind.ENDED, run.end.time_ns / NS_PER_S, 0, text)
-
-
-def describe_end(run: StoredRun) -> str:
-    """Return in a sentence, without its full stop, what went wrong at the end of a run; empty if nothing did.
-
-    The sentence says the first of these that applies: where the robot lost its line for good, if a limit or the user
-    ended the run; where the light came near what the program waited for, but did not reach it; which line probably does
-    something that its author did not mean; why the program ended too early; that the mat is blank.
-    """
-    if run.end is None:
-        return ""
-    data = RunData(run)
-    eyes = run.spec.robot.color_sensors
-    if run.end.end in (End.TIME_LIMIT, End.STOPPED) and eyes and len(data.records) > 1:
-        from tuisim.tasks.reasons.lost_line import find_lost_lines
-
-        for lost in find_lost_lines(data.records, run.spec, data.mat, data.light_ticks):
-            if lost.seen_again is None:
-                return _describe_loss(run, lost).words
-    if missed := find_near_miss(data):
-        return Reason(ReasonKind.LOST, missed.time_s, missed.line, missed.text).words
-    for mistake in _find_mistaken(data):
-        return mistake.words
-    if early := find_early_end(data):
-        return Reason(ReasonKind.ENDED, early.time_s, early.line, early.text).words
-    return describe_blank_mat(run)
+        yield Reason(ReasonKind.ENDED, run.end.time_ns / NS_PER_S, 0, text, is_state=True)
 
 
 def _explain_lost(run: StoredRun, tick: int, text: str) -> Reason:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.hub_spec import HUB_PORTS, INSIDE
-from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.profile import NS_PER_S, Library
 from tuisim.engine.core.spec import (
     ColorSensorSpec,
     GyroSpec,
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
 
 STOP_CALLS = (Call.STOP, Call.STOP_DRIVER, Call.HOLD, Call.STOP_BASE)
 """The commands that only stop a motor or a drive base."""
+_MAX_READING_LINES = 64
+"""The most reading lines of a program that are analysed."""
 _NOUNS: Mapping[type[SensorSpec], str] = {
     ColorSensorSpec: "colour sensor",
     UltrasonicSpec: "ultrasonic sensor",
@@ -131,6 +134,11 @@ class RunData:
         """Whether the program ended by itself, without an error."""
         return self.run.end is not None and self.run.end.end is End.FINISHED
 
+    @property
+    def has_codes(self) -> bool:
+        """Whether `color` is a number in the program's library."""
+        return self.run.spec.profile.motor_law.library is not Library.PYBRICKS
+
     @cached_property
     def _scales(self) -> dict[str, float]:
         """The scales of motors by port: degrees in the program per degree of the motor.
@@ -164,36 +172,56 @@ class RunData:
             for eye in self.run.spec.robot.color_sensors
         }
 
-    def measure(
-        self, loop: LoopEnd, stay: tuple[int, int], *, is_between: bool = False
-    ) -> Series | None:
-        """Return the values that a loop has read or, with `is_between`, would have read at every tick.
+    @cached_property
+    def decides_by_light(self) -> bool:
+        """Whether the program does more with the light and colours that it reads than show or store them."""
+        import numpy as np
+
+        lines = np.unique(self._recorded.find(MODES_BY_KIND["color"])["line"])
+        return any(
+            self.facts.find_question(line).decides for line in lines[:_MAX_READING_LINES].tolist()
+        )
+
+    def measure(self, loop: LoopEnd, stay: tuple[int, int]) -> Series | None:
+        """Return the values that a loop has read.
 
         The result is None if they are not known, or if noise or the pen's marks would make the computation slow.
 
         Args:
             loop: The loop, or another comparison.
             stay: The first tick to consider, and the tick after the last one.
-            is_between: Whether to measure at every tick from the first reading to the last one, not only at the
-                readings.
         """
+        ticks = self.find_read_ticks(loop.read_line)
+        return self.measure_ticks(loop, ticks[(ticks >= stay[0]) & (ticks < stay[1])])
+
+    def find_read_ticks(self, line: int) -> Array:
+        """Return the ticks of the recording at which a line of the program read a sensor or motor, ascending."""
         import numpy as np
 
-        is_read = self.readings["line"] == loop.read_line
-        ticks = np.unique(self.reading_ticks[is_read])
-        ticks = ticks[(ticks >= stay[0]) & (ticks < stay[1])]
-        if len(ticks) and is_between:
-            ticks = np.arange(ticks[0], ticks[-1] + 1)
-        return self.measure_ticks(loop, ticks)
+        ticks = self.reading_ticks[self.readings["line"] == line]
+        # The last reading may lie in the tick that the end of the program cut off.
+        return np.unique(np.minimum(ticks, len(self.records) - 1))
 
     def measure_ticks(self, loop: LoopEnd, ticks: Array) -> Series | None:
         """Return the values that a comparison would read at some ticks; None as for `measure`.
+
+        If it compares the change since an earlier reading, the values are the changes.
 
         Args:
             loop: The loop, or another comparison, whose sensor or motor the program read at least once.
             ticks: The ticks.
         """
-        return self.measure_records(loop, self.records[ticks], ticks) if len(ticks) else None
+        import numpy as np
+
+        series = self.measure_records(loop, self.records[ticks], ticks) if len(ticks) else None
+        if series is None or not loop.start_line:
+            return series
+        start_ticks = self.find_read_ticks(loop.start_line)
+        starts = self.measure_records(loop, self.records[start_ticks], start_ticks)
+        places = np.searchsorted(start_ticks, ticks, side="right") - 1
+        if starts is None or places.min() < 0:
+            return None
+        return replace(series, values=series.values - starts.values[places])
 
     def measure_records(self, loop: LoopEnd, records: Array, ticks: Array) -> Series | None:
         """Return the values that a comparison would read in some records; None as in `measure`.

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.sensors.color import WHITE, LightRead, find_color_code
 from tuisim.engine.runs.arrays import find_spans
 from tuisim.engine.runs.sensor_arrays import measure_quiet_color
-from tuisim.programs.facts import ProgramThreshold, WheelTurn, read_facts
+from tuisim.programs.facts import ProgramThreshold
+from tuisim.programs.moves import WheelTurn, list_wheel_turns
 from tuisim.tasks.reasons.lost_line import MIN_READINGS, is_on_mat
+from tuisim.tasks.reasons.unmet import Unmet
 
 if TYPE_CHECKING:
-    from tuisim.base.source import Program
-    from tuisim.engine.core.field import Field
-    from tuisim.engine.core.spec import ColorSensorSpec, RunSpec
+    from tuisim.engine.core.spec import ColorSensorSpec
     from tuisim.tasks.reasons.run_data import RunData
 
     Array = NDArray[Any]
@@ -33,38 +32,24 @@ _NEAR_DEG = 3.0
 """A turn that differs by no more from a multiple is intended."""
 
 
-@dataclass(frozen=True, slots=True)
-class MistakenTurn:
-    """A turn of the wheels by an angle that was probably meant for the robot."""
-
-    tick: int
-    """When the turn began."""
-    line: int
-    text: str
-    """What it did, a sentence that begins small and has no full stop."""
+def list_mistaken_turns(data: RunData) -> Iterator[Unmet]:
+    """Yield the turns on the spot whose angle was probably meant for the robot, but turned the wheels, in order."""
+    turns = [_measure_turns(data, turn) for turn in list_wheel_turns(data.facts.tree)]
+    yield from sorted((turn for turn in turns if turn), key=lambda turn: turn.time_s)
 
 
-def find_mistaken_turn(data: RunData) -> MistakenTurn | None:
-    """Return the first turn on the spot whose angle was probably meant for the robot, but turned the wheels.
-
-    The result is None if there is no such turn.
-    """
-    turns = [_measure_turns(data.records, turn) for turn in data.facts.wheel_turns]
-    return min((turn for turn in turns if turn), key=lambda turn: turn.tick, default=None)
-
-
-def _measure_turns(records: Array, turn: WheelTurn) -> MistakenTurn | None:
+def _measure_turns(data: RunData, turn: WheelTurn) -> Unmet | None:
     """Return a call as a mistaken turn, with the angle by which it turned the robot the first time it ran.
 
     The result is None if it never ran, or if that angle seems to be intended.
     """
-    lines = records["line"]
+    lines = data.records["line"]
     is_on = (lines >= turn.first_line) & (lines <= turn.last_line)
     spans = find_spans(is_on).tolist()
     if not spans:
         return None
     first, end = spans[0]
-    span = records[max(0, first - 1) : end]
+    span = data.records[max(0, first - 1) : end]
     wheels = [span[f"{side}_position_deg"] for side in ("left", "right")]
     left_deg, right_deg = (float(positions[-1] - positions[0]) for positions in wheels)
     wheel_deg = abs(left_deg - right_deg) / 2
@@ -85,10 +70,10 @@ def _measure_turns(records: Array, turn: WheelTurn) -> MistakenTurn | None:
         f"this line turned the robot by {robot_deg:.0f}°: {turn.method} counts {counted} of the "
         f"wheels; {needed} turn the robot by {turn.angle_deg:.0f}°"
     )
-    return MistakenTurn(first, turn.first_line, text)
+    return Unmet(first / data.hz, turn.first_line, text)
 
 
-_MIN_PAUSE_S = 0.3
+_MIN_PAUSE_S = 0.1
 """A program that reads again sooner looks often enough."""
 _MIN_SEEN_S = 0.03
 """What a sensor sees for less time is the edge of something."""
@@ -96,65 +81,39 @@ _WHOLE = frozenset({LightRead.REFLECTED, LightRead.REFLECTION})
 """What programs read as whole numbers, cut off."""
 
 
-@dataclass(frozen=True, slots=True)
-class Unwatched:
-    """A light that a sensor passed between two readings, so that the program missed it."""
+def list_unwatched(data: RunData) -> Iterator[Unmet]:
+    """Yield, for each sensor, the first light between two readings on which the program would have acted differently.
 
-    tick: int
-    """When it came."""
-    text: str
-    """What came, and when the program read; a sentence without a full stop."""
-
-
-def find_unwatched(
-    program: Program, records: Array, spec: RunSpec, mat: Field, read_ticks: Mapping[str, Array]
-) -> Unwatched | None:
-    """Return the first light between two readings on which the program would have acted differently.
-
-    The result is None if there is none.
-
-    Args:
-        program: The program.
-        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
-        spec: The run.
-        mat: Its mat, prepared for its sensors.
-        read_ticks: The ticks at which the program read each light sensor, by name, in ascending order.
+    The earliest is first.
     """
-    thresholds = read_facts(program).find_thresholds(spec.robot)
+    thresholds = data.facts.find_thresholds(data.run.spec.robot)
     passes = [
         unwatched
-        for sensor in spec.robot.color_sensors
-        if len(ticks := np.unique(read_ticks[sensor.name])) >= MIN_READINGS
+        for sensor in data.run.spec.robot.color_sensors
+        if len(ticks := np.unique(data.light_ticks[sensor.name])) >= MIN_READINGS
         for threshold in thresholds.get(sensor.name, ())
         if not threshold.is_aim
-        for unwatched in _list_passes(records, spec, sensor, mat, threshold, ticks)
+        for unwatched in _list_passes(data, sensor, threshold, ticks)
     ]
-    return min(passes, key=lambda unwatched: unwatched.tick, default=None)
+    yield from sorted(passes, key=lambda unwatched: unwatched.time_s)
 
 
 def _list_passes(
-    records: Array,
-    spec: RunSpec,
-    sensor: ColorSensorSpec,
-    mat: Field,
-    threshold: ProgramThreshold,
-    ticks: Array,
-) -> Iterator[Unwatched]:
+    data: RunData, sensor: ColorSensorSpec, threshold: ProgramThreshold, ticks: Array
+) -> Iterator[Unmet]:
     """Yield the first light between two readings for which a comparison had another result than at both readings.
 
     Args:
-        records: Telemetry, structured as `TICK_FIELDS`.
-        spec: The run.
+        data: The run.
         sensor: The light sensor.
-        mat: The mat of the run.
         threshold: The comparison.
         ticks: The ticks at which the program read the sensor.
     """
-    hz = spec.profile.tick_hz
+    hz, records = data.hz, data.records
     long = np.flatnonzero(np.diff(ticks) >= _MIN_PAUSE_S * hz)
     if not len(long):
         return
-    values = _measure(records, spec, sensor, mat, threshold.read)
+    values = _measure(data, sensor, threshold.read)
     holds = COMPARE[threshold.sign](values, threshold.value)
     is_on = is_on_mat(records, sensor)
     for start, end in zip(ticks[long], ticks[long + 1], strict=True):
@@ -168,15 +127,14 @@ def _list_passes(
                 f"the {sensor.name} sensor saw {_name_value(threshold.read, value)} here, but the program read it "
                 f"only at {start / hz:.2f} s and {end / hz:.2f} s: line {lines[counts.argmax()]} takes too long"
             )
-            yield Unwatched(tick, text)
+            yield Unmet(tick / hz, int(records["line"][tick]), text)
             return
 
 
-def _measure(
-    records: Array, spec: RunSpec, sensor: ColorSensorSpec, mat: Field, read: LightRead
-) -> Array:
+def _measure(data: RunData, sensor: ColorSensorSpec, read: LightRead) -> Array:
     """Return what a program would have read from a colour sensor at each tick without noise, shape (n,)."""
-    red, green, blue = measure_quiet_color(records, sensor, spec, mat).values()
+    spec = data.run.spec
+    red, green, blue = measure_quiet_color(data.records, sensor, spec, data.mat).values()
     if read.is_color:
         colors, places = np.unique(
             np.stack([red, green, blue]).astype(int), axis=1, return_inverse=True
