@@ -25,8 +25,8 @@ from tuisim.app import app as lab_app
 from tuisim.cli import COMMANDS
 from tuisim.commands import app as app_command
 from tuisim.guide.catalogue import load_pages
+from tuisim.guide.markdown import render_markdown
 from tuisim.settings.command_line import Group
-from tuisim.tasks.lessons.markdown import render_markdown
 
 
 def _class(where: Path) -> None:

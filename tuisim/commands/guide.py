@@ -14,9 +14,9 @@ from tuisim.base.errors import ConfigError, closest, did_you_mean
 from tuisim.commands.echo import echo
 from tuisim.guide.catalogue import CONTENTS, Page, load_pages
 from tuisim.guide.excerpt import draw_excerpt
+from tuisim.guide.markdown import PLAIN, render_markdown
 from tuisim.guide.search import SearchResult
 from tuisim.settings.command_line import WordType, argument, command, option
-from tuisim.tasks.lessons.markdown import PLAIN, render_markdown
 from tuisim.terminal.text_runs import Line
 
 _MAX_COLUMNS = 100

@@ -12,6 +12,7 @@ from tuisim.base.errors import ConfigError, counted
 from tuisim.base.folders import user_path
 from tuisim.commands.echo import AS_JSON, Progress, draw_table, echo, echo_json, echo_lines, tell
 from tuisim.engine.core.profile import Library
+from tuisim.guide.markdown import render_plain_text
 from tuisim.settings.command_line import Group, WordType, argument, choice, command, option
 from tuisim.tasks.lessons.catalogue import (
     find_lesson,
@@ -20,7 +21,6 @@ from tuisim.tasks.lessons.catalogue import (
     find_telling,
 )
 from tuisim.tasks.lessons.files import load_lesson
-from tuisim.tasks.lessons.markdown import render_plain_text
 from tuisim.tasks.lessons.progress import LessonProgress, StepState, load_progress
 from tuisim.tasks.lessons.spec import Lesson, LessonStep, QuestionCheck, RunCheck
 

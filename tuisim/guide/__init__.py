@@ -3,6 +3,7 @@
 __all__ = [
     "catalogue",
     "excerpt",
+    "markdown",
     "search",
     "tables",
     "text",

@@ -15,6 +15,8 @@ from pathlib import Path
 
 from tuisim.base.data_class import dataclass
 
+_HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
+
 _PAGES = Path(__file__).resolve().parent / "pages"
 _PARTS = re.compile(
     r"\A\+\+\+\n(?P<head>.*?)\n\+\+\+\n\n# (?P<title>[^\n]+)\n(?P<text>.*)\Z", re.DOTALL
@@ -94,6 +96,14 @@ class Page:
     """Further words for the search."""
     source: str
     """Markdown below the title, with the marks of tables."""
+
+    def list_headings(self) -> list[str]:
+        """Return the headings of the sections of a page, as readers see them."""
+        return [heading.replace("`", "") for heading in _HEADING.findall(self.source)]
+
+    def list_links(self) -> list[str]:
+        """Return the names of the pages that a page links to, in the order of the links."""
+        return list(dict.fromkeys(link[2] for link in LINK.finditer(self.source)))
 
 
 @cache

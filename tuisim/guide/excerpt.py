@@ -8,8 +8,8 @@ from functools import lru_cache
 from textwrap import dedent, wrap
 
 from tuisim.guide.catalogue import LINK
+from tuisim.guide.markdown import CODE, PLAIN, render_markdown, render_plain_text
 from tuisim.guide.search import SET_IN, SearchResult
-from tuisim.tasks.lessons.markdown import CODE, PLAIN, render_markdown, render_plain_text
 from tuisim.terminal.text_runs import Line
 
 _CLEAR_COLUMNS = 2

@@ -7,25 +7,14 @@ from itertools import accumulate
 
 from tuisim.guide.catalogue import LINK, Page
 from tuisim.guide.excerpt import flatten_passage, split_cells
+from tuisim.guide.markdown import render_markdown
 from tuisim.guide.tables import build_markdown
-from tuisim.tasks.lessons.markdown import render_markdown
 from tuisim.terminal.text_runs import Line
 
-_HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
 _LETTERS = re.compile(r"[\W_]+")
 _LONG_PREFIXES, _SHORT_PREFIXES = (40, 20), (10, 5)
 """Numbers of first letters by which the beginning of a passage is looked for, the most reliable number first."""
 NO_WORDS = "No page has these words"
-
-
-def list_links(page: Page) -> list[str]:
-    """Return the names of the pages that a page links to, in the order of the links."""
-    return list(dict.fromkeys(link[2] for link in LINK.finditer(page.source)))
-
-
-def list_headings(page: Page) -> list[str]:
-    """Return the headings of the sections of a page, as readers see them."""
-    return [heading.replace("`", "") for heading in _HEADING.findall(page.source)]
 
 
 def draw_page(page: Page, width: int) -> list[Line]:

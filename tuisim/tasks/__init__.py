@@ -10,7 +10,6 @@ __all__ = [
     "goals.spec",
     "lessons.catalogue",
     "lessons.files",
-    "lessons.markdown",
     "lessons.progress",
     "lessons.session",
     "lessons.spec",

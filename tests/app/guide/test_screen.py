@@ -22,7 +22,6 @@ from tuisim.app.panels import PANELS
 from tuisim.guide.catalogue import load_pages
 from tuisim.guide.excerpt import draw_excerpt, flatten_passage
 from tuisim.guide.search import SearchResult, search
-from tuisim.guide.text import list_headings
 
 SMALL = (80, 24)
 MEDIUM = (120, 40)
@@ -177,7 +176,7 @@ async def test_escape_goes_from_a_page_to_the_answers_and_from_these_to_the_cont
 async def test_choosing_a_section_in_the_guides_contents_scrolls_to_it() -> None:
     async with open_guide() as (pilot, screen):
         await pilot.press("tab", *DOWN_TO_PAGE, "space", "down", "down", "enter")
-        second = list_headings(load_pages()["first-steps"])[1]
+        second = load_pages()["first-steps"].list_headings()[1]
         await until(pilot, lambda: screen.place == ("first-steps", second))
         await until(
             pilot,

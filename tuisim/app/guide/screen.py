@@ -24,14 +24,7 @@ from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.guide.catalogue import CONTENTS, load_pages
 from tuisim.guide.search import SearchResult, search
-from tuisim.guide.text import (
-    NO_WORDS,
-    draw_page,
-    find_passage_end,
-    find_rows,
-    list_headings,
-    list_links,
-)
+from tuisim.guide.text import NO_WORDS, draw_page, find_passage_end, find_rows
 from tuisim.terminal.text_runs import Line
 
 
@@ -130,9 +123,9 @@ class _Contents(Tree[Place | None]):
     def _add_page(self, branch: TreeNode[Place | None], name: str) -> None:
         page = load_pages()[name]
         node = branch.add(page.title, (name, ""))
-        for heading in list_headings(page):
+        for heading in page.list_headings():
             node.add_leaf(heading, (name, heading))
-        for other in list_links(page):
+        for other in page.list_links():
             node.add_leaf(f"→ {load_pages()[other].title}", (other, ""))
 
     def say(self, words: str) -> None:

@@ -13,8 +13,8 @@ from tuisim.app.panels import PANELS
 from tuisim.app.render.code_rows import split_rows
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
+from tuisim.guide.markdown import render_markdown
 from tuisim.tasks.goals.judgement import GoalState, Judgement
-from tuisim.tasks.lessons.markdown import render_markdown
 from tuisim.tasks.lessons.progress import StepState
 from tuisim.tasks.lessons.spec import (
     Lesson,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tuisim.guide.catalogue import load_pages
+from tuisim.guide.markdown import render_markdown
 from tuisim.guide.text import draw_page
-from tuisim.tasks.lessons.markdown import render_markdown
 
 TABLE = """
 | to | ev3dev2 | Pybricks |
