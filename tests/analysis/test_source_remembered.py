@@ -9,7 +9,7 @@ import pytest
 
 from tests.cases import cases
 from tuisim.analysis import source
-from tuisim.analysis.source import LogRequest, find_choices, remember_choices, request_file
+from tuisim.analysis.source import LogRequest, find_choices, request_file
 from tuisim.app.analyser.screen import read_doubtful
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.settings.preferences import find_preferences_file, keep
@@ -28,26 +28,26 @@ def test_choices_for_a_log_file_are_stored_in_the_home_and_found_by_any_path(
     file: Path, home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert find_choices(str(file)) is None
-    remember_choices(str(file), CHOICES)
+    LogRequest(str(file)).remember(CHOICES)
     monkeypatch.chdir(file.parent)
     assert find_choices("log.csv") == find_choices(str(file)) == CHOICES
     assert sorted(file.parent.iterdir()) == [home, file]
-    remember_choices("log.csv", NO_CHOICES)
+    LogRequest("log.csv").remember(NO_CHOICES)
     assert find_choices(str(file)) == NO_CHOICES
 
 
 def test_choices_for_a_log_file_are_forgotten_once_the_file_changes(file: Path) -> None:
-    remember_choices(str(file), CHOICES)
+    LogRequest(str(file)).remember(CHOICES)
     status = file.stat()
     os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns + 1))
     assert find_choices(str(file)) is None
-    remember_choices(str(file), CHOICES)
+    LogRequest(str(file)).remember(CHOICES)
     with file.open("a") as handle:
         handle.write("180;4\n")
     os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns + 1))
     assert find_choices(str(file)) is None
     file.unlink()
-    remember_choices(str(file), CHOICES)
+    LogRequest(str(file)).remember(CHOICES)
     assert find_choices(str(file)) is None
 
 
@@ -58,7 +58,7 @@ def test_choices_for_the_oldest_log_files_are_forgotten_first(
     files = [str(file.rename(tmp_path / "0"))] + [str(tmp_path / str(n)) for n in (1, 2)]
     for name in files:
         Path(name).write_text("a\n1\n")
-        remember_choices(name, CHOICES)
+        LogRequest(name).remember(CHOICES)
     assert [find_choices(name) for name in files] == [None, CHOICES, CHOICES]
 
 
@@ -80,12 +80,12 @@ def test_a_damaged_file_of_remembered_choices_raises_no_error(text: str, file: P
     text = text.replace("FILE", str(file)).replace("SIZE", str(status.st_size))
     find_preferences_file().write_text(text.replace("DATE", str(status.st_mtime_ns)))
     assert request_file(str(file)) == LogRequest(str(file))
-    remember_choices(str(file), CHOICES)
+    LogRequest(str(file)).remember(CHOICES)
     assert find_choices(str(file)) == CHOICES
 
 
 def test_remembered_choices_apply_when_none_are_given_and_a_note_says_so(file: Path) -> None:
-    remember_choices(str(file), CHOICES)
+    LogRequest(str(file)).remember(CHOICES)
     *_, opened = request_file(str(file)).open_pieces()
     assert opened.log.series("light").time_s[-1] == pytest.approx(0.16)
     options = "--time boot --unit ms --header 1 --separator semicolon --decimal ,"
@@ -113,7 +113,7 @@ def test_a_file_read_by_guesses_is_shown_first_until_choices_are_kept(
     file.write_text(text)
     assert (read_doubtful(LogRequest(str(file))) is not None) is is_shown
     assert read_doubtful(LogRequest(str(file), choices=ReadChoices(time=""))) is None
-    remember_choices(str(file), NO_CHOICES)
+    LogRequest(str(file)).remember(NO_CHOICES)
     assert read_doubtful(request_file(str(file))) is None
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from tuisim.analysis.events import Events
 from tuisim.analysis.source import Note, OpenedLog, read_notes, write_notes
-from tuisim.analysis.traces import TIME, LogTrace, LogTraces, align_series
+from tuisim.analysis.traces import DISTANCE, TIME, LogTrace, LogTraces, align_series
 from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.bands import Band, BandReport, build_band_report, describe_levels
@@ -79,6 +79,11 @@ class AnalysisModel:
             self.row = int(self.trace.series.rows[0])
 
     # The cursor
+
+    @property
+    def x_unit(self) -> str:
+        """The unit of the horizontal axis."""
+        return "mm" if self.alignment == DISTANCE else "s"
 
     @property
     def trace(self) -> LogTrace:

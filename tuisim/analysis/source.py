@@ -59,29 +59,10 @@ def find_choices(file: str) -> ReadChoices | None:
     )
 
 
-def remember_choices(file: str, choices: ReadChoices) -> None:
-    """Store the choices of how to read a file, in place of its earlier choices.
-
-    Only the choices for the last `MAX_FILES` files are kept. For a file that is not a regular one, nothing is stored.
-
-    Raises:
-        OSError: the choices cannot be stored.
-    """
-    if (reading := _look_up(file)) is not None:
-        others = [old for old in _load() if old.path != reading.path]
-        newest = [*others, replace(reading, choices=choices)][-MAX_FILES:]
-        keep(_NAME, list(map(asdict, newest)))
-
-
-def is_readable_again(file: str) -> bool:
-    """Return whether a log is a regular file, and can be read twice: a pipe cannot, and runs are in no file."""
-    return file not in ("", STDIN) and os.path.isfile(file)
-
-
 def _look_up(file: str) -> _Reading | None:
     """Return the path, size and time of a file, without choices of how to read it; None if it is not a regular file."""
     try:
-        status = os.stat(file) if is_readable_again(file) else None
+        status = os.stat(file) if LogRequest(file).is_readable_again else None
     except OSError:
         return None
     path = os.path.realpath(file)
@@ -112,6 +93,24 @@ class LogRequest:
     """The choices of how to read a file."""
     is_remembered: bool = False
     """Whether the choices were made before, for a file that is still the same."""
+
+    @property
+    def is_readable_again(self) -> bool:
+        """Whether the log is a regular file, and can be read twice: a pipe cannot, and runs are in no file."""
+        return self.file not in ("", STDIN) and os.path.isfile(self.file)
+
+    def remember(self, choices: ReadChoices) -> None:
+        """Store the choices of how to read the file, in place of its earlier choices.
+
+        Only the choices for the last `MAX_FILES` files are kept. For a file that is no regular one, nothing is stored.
+
+        Raises:
+            OSError: the choices cannot be stored.
+        """
+        if (reading := _look_up(self.file)) is not None:
+            others = [old for old in _load() if old.path != reading.path]
+            newest = [*others, replace(reading, choices=choices)][-MAX_FILES:]
+            keep(_NAME, list(map(asdict, newest)))
 
     def mark(self, log: Log) -> Log:
         """Return a log with a note about the stored choices with which it was read; without any, the same log."""

@@ -15,7 +15,7 @@ import pytest
 
 from tests.conftest import ROOT, Command
 from tests.running import PATIENCE_S
-from tuisim.analysis.source import remember_choices
+from tuisim.analysis.source import LogRequest
 from tuisim.logs.choices import ReadChoices
 
 
@@ -70,7 +70,7 @@ def test_log_commands_read_a_file_as_chosen_in_the_analyser_and_say_so(
     here: Command, tmp_path: Path, home: Path
 ) -> None:
     (tmp_path / "log.csv").write_text("boot;light\n0;1\n20;2\n")
-    remember_choices("log.csv", ReadChoices(time="boot", unit="ms"))
+    LogRequest("log.csv").remember(ReadChoices(time="boot", unit="ms"))
     note = "read as chosen in the analyser: --time boot --unit ms (giving one of these options replaces all of them)"
     done = here("log", "summary", "log.csv")
     assert (done.returncode, f"note: log.csv: {note}\n" in done.stderr) == (0, True)

@@ -12,7 +12,7 @@ from textual.message import Message
 
 from tuisim.analysis.chart import build_spans
 from tuisim.analysis.events import CommandRow
-from tuisim.analysis.traces import DISTANCE, TIME
+from tuisim.analysis.traces import TIME
 from tuisim.app import design
 from tuisim.app.plot_view import PlotView
 from tuisim.base import palette
@@ -119,7 +119,7 @@ class LogChart(LinesPanel):
             trace.prepare(
                 model.find_x_limits(), width * (MAX_POINTS if is_blank else 1), self.options.hold
             )
-        unit = "mm" if model.alignment == DISTANCE else "s"
+        unit = model.x_unit
         measured = _build_measure_line(model, unit, width)
         marked = 1 if model.events.thresholds and model.log.rows else 0
         height -= len(measured) + marked
@@ -239,7 +239,7 @@ class LogChart(LinesPanel):
         )
         words = ""
         if model is not None and drawn:
-            unit = "mm" if model.alignment == DISTANCE else "s"
+            unit = model.x_unit
             time_s = model.cursor_s if time_s is None else time_s
             words = escape_markup(format_values(drawn, time_s, unit, self.size.width - 4))
         # An assignment draws the panel again even if the words are the same.

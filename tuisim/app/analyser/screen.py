@@ -17,7 +17,7 @@ from textual.widget import Widget
 
 from tuisim.analysis.events import CommandRow
 from tuisim.analysis.model import RECKONING, AnalysisModel
-from tuisim.analysis.source import LogRequest, is_readable_again, remember_choices
+from tuisim.analysis.source import LogRequest
 from tuisim.app import background, design
 from tuisim.app.action import ActionHost, KeyFooter
 from tuisim.app.analyser.chart import LogChart
@@ -384,7 +384,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     def ask_choices(self) -> None:
         """Open the dialog that asks how to read the file."""
         request = self.request
-        if not is_readable_again(request.file):
+        if not request.is_readable_again:
             self.say("You can change only how a file is read, not a run or a pipe")
             return
         self._ask_choices(request, read_beginning(request.file, request.choices))
@@ -404,7 +404,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
                 self.dismiss()
             return
         try:
-            remember_choices(self.request.file, choices)
+            self.request.remember(choices)
         except OSError as error:
             self.say(f"The choices cannot be saved: {error.strerror or error}")
         self.open(LogRequest(self.request.file, choices=choices))
@@ -484,7 +484,7 @@ def read_doubtful(request: LogRequest) -> Log | None:
         LogError: the file cannot be read, or has no row.
     """
     is_known = request.is_remembered or request.choices != NO_CHOICES
-    if is_known or not is_readable_again(request.file):
+    if is_known or not request.is_readable_again:
         return None
     log = read_beginning(request.file, NO_CHOICES)
     # The lines that a program printed are read in one way only: there is nothing to choose.
