@@ -21,7 +21,7 @@ from tuisim.engine.runs.run_folder import field_files
 from tuisim.engine.runs.samples import Sample
 from tuisim.notebook.display import CHART_SIZE, Scene, list_instruments, start_record
 from tuisim.pictures.charts.files import draw_svg
-from tuisim.pictures.charts.layout import ChartData, Stroke, Words, lay_out_chart
+from tuisim.pictures.charts.layout import ChartData, Stroke, Words
 from tuisim.pictures.charts.sample_chart import build_sample_chart
 
 Kind = TypeVar("Kind", Stroke, Words)
@@ -38,7 +38,7 @@ def samples(count: int, peak: float) -> list[Sample]:
 def drawn(chart: ChartData, kind: type[Kind]) -> list[Kind]:
     return [
         shape
-        for shape in lay_out_chart(chart, *CHART_SIZE, titled=False).shapes
+        for shape in chart.lay_out(*CHART_SIZE, titled=False).shapes
         if isinstance(shape, kind)
     ]
 
@@ -57,7 +57,7 @@ def test_a_notebooks_chart_draws_samples_as_log_plot_does() -> None:
     here = chart_of([Sample("Gyro", v, t, 0, 0, 1) for t, v in zip(times, values, strict=True)])
     model = log_of({"time": times.tolist(), "Gyro": values.tolist()})
     there = plotted(model, View(), *CHART_SIZE)
-    drawings = [lay_out_chart(chart, *CHART_SIZE, titled=False) for chart in (here, there)]
+    drawings = [chart.lay_out(*CHART_SIZE, titled=False) for chart in (here, there)]
     assert draw_svg(replace(drawings[0], title="")) == draw_svg(replace(drawings[1], title=""))
 
 

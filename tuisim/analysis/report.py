@@ -29,7 +29,6 @@ from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Search, find_plateaus
 from tuisim.logs.signals import QUANTILES
 from tuisim.pictures.charts.files import FACET_PX, draw_svg, write_whole
-from tuisim.pictures.charts.layout import lay_out_chart
 from tuisim.pictures.html.render import Table, render_page
 from tuisim.pictures.movies.clip import ClipRun
 from tuisim.pictures.movies.files import make_small_movie
@@ -259,7 +258,7 @@ def _draw_chart(model: AnalysisModel) -> Mapping[str, Any]:
     chart = replace(chart, spans=spans)
     hidden = [trace.name for trace in model.traces if not trace.on]
     return {
-        "svg": draw_svg(lay_out_chart(chart, _WIDTH_PX, height, titled=False), inside=True),
+        "svg": draw_svg(chart.lay_out(_WIDTH_PX, height, titled=False), inside=True),
         "is_shaded": bool(spans),
         "not_drawn": listed(hidden) if hidden else "",
     }

@@ -24,7 +24,6 @@ from tuisim.engine.runs.command_events import CommandIndex
 from tuisim.engine.runs.samples import Sample
 from tuisim.engine.runs.views import TickRecord
 from tuisim.pictures.charts.files import draw_image, encode_png
-from tuisim.pictures.charts.layout import lay_out_chart
 from tuisim.pictures.charts.sample_chart import build_sample_chart
 from tuisim.pictures.movies.arrays import FACE_PX, draw_arrays
 from tuisim.pictures.scene.discs import DiscFace, list_disc_faces
@@ -265,8 +264,8 @@ class Stage:
         if "arrays" in on:
             self._put("arrays", bundle_picture(_draw_arrays(scene), "sensor arrays"))
         if "chart" in on:
-            drawing = lay_out_chart(
-                build_sample_chart(scene.samples, CHART_SIZE[0]), *CHART_SIZE, titled=False
+            drawing = build_sample_chart(scene.samples, CHART_SIZE[0]).lay_out(
+                *CHART_SIZE, titled=False
             )
             self._put("chart", bundle_picture(draw_image(drawing), "chart"))
         if "output" in on and scene.printed is not None:

@@ -33,13 +33,12 @@ from tuisim.terminal.fitted_cells import CellIndex, Cells, fit_cells, is_flat, l
 from tuisim.terminal.glyphs import GLYPHS, GlyphSet, build_glyph_set, build_half_block
 from tuisim.terminal.picture import Graphics, PictureCell, TilePicture
 from tuisim.terminal.picture_mode import (
-    BLOCKS,
     PictureMode,
     Sharpness,
     find_color_depth,
     find_picture_mode,
 )
-from tuisim.terminal.picture_options import CellSet
+from tuisim.terminal.picture_options import BLOCKS, CellSet
 from tuisim.terminal.pixels import CellPoints, Pixels, unpack_rgb
 from tuisim.terminal.text_runs import Run, cut_line
 from tuisim.terminal.textual_internals import MadeOnDemand

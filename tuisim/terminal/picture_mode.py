@@ -19,7 +19,7 @@ from textual.widget import Widget
 from tuisim.terminal import kitty
 from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR
 from tuisim.terminal.picture import MAX_PAGE_POINTS, MAX_POINTS, Graphics
-from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet, Protocol
+from tuisim.terminal.picture_options import AUTO, BLOCKS, NO_PIXELS, CellSet, Protocol
 from tuisim.terminal.pixels import Rgb
 from tuisim.terminal.probe import (
     SILENT,
@@ -35,9 +35,6 @@ from tuisim.terminal.probe import (
 )
 from tuisim.terminal.queries import TerminalFacts
 from tuisim.terminal.textual_internals import SUPPORTED
-
-BLOCKS = frozenset({CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT})
-"""The sets whose glyphs fill their cells."""
 
 
 class Recoloring(TypingProtocol):

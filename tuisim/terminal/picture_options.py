@@ -22,6 +22,8 @@ class CellSet(StrEnum):
     """Letters and signs"""
 
 
+BLOCKS = frozenset({CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT})
+"""The sets whose glyphs fill their cells."""
 AUTO = "auto"
 
 

@@ -34,7 +34,6 @@ from tuisim.pictures.charts.layout import (
     Stroke,
     Words,
     cut_drawing,
-    lay_out_chart,
     move_shapes,
 )
 from tuisim.pictures.charts.text_chart import ChartPainter, ChartState, draw_text
@@ -78,7 +77,7 @@ def test_a_chart_in_svg_png_and_text_stays_within_its_size(
 ) -> None:
     model = log_of(columns)
     for width, height in ((200, 150), (960, 420)):
-        drawing = lay_out_chart(build_chart(model, view, width, height), width, height)
+        drawing = build_chart(model, view, width, height).lay_out(width, height)
         text = draw_svg(drawing)
         assert ElementTree.fromstring(text).attrib["width"] == str(width)
         assert not re.search(r'="[^"]*(nan|inf)', text)
@@ -99,7 +98,7 @@ def test_a_chart_in_svg_png_and_text_stays_within_its_size(
 @cases("columns", COLUMNS)
 def test_a_chart_has_the_same_scales_on_screen_and_in_a_file(columns: dict[str, object]) -> None:
     model = log_of(columns)
-    drawing = lay_out_chart(build_chart(model, View(), 960, 420), 960, 420)
+    drawing = build_chart(model, View(), 960, 420).lay_out(960, 420)
     for trace in model.traces.list_ticked():
         trace.prepare(model.find_x_limits(), 960, False)
 
@@ -155,9 +154,7 @@ def test_the_axis_of_aligned_runs_names_what_they_are_aligned_by() -> None:
 
 
 def test_charts_drawn_as_facets_stand_below_each_other() -> None:
-    drawing = lay_out_chart(
-        build_chart(model_of(long_log()), View(facets=True), 800, 400), 800, 400
-    )
+    drawing = build_chart(model_of(long_log()), View(facets=True), 800, 400).lay_out(800, 400)
     first, second = (shape.points[:, 1] for shape in drawing.shapes if isinstance(shape, Stroke))
     assert first.max() < second.min()
     assert any(isinstance(shape, Rule) and shape.faint for shape in drawing.shapes)
@@ -181,7 +178,7 @@ def test_a_chart_of_a_path_on_the_field_has_equal_scales() -> None:
     path = Line("y_mm", np.array([200.0, 1200.0]), np.array([100.0, 400.0]), 0)
     chart = ChartData("", (path,), (200.0, 1200.0), "x_mm (mm)", path=True)
     for width, height in ((960, 420), (400, 900), (2000, 300)):
-        (frame,) = lay_out_chart(chart, width, height).plots
+        (frame,) = chart.lay_out(width, height).plots
         mm_per_px = (frame.x[1] - frame.x[0]) / (frame.right - frame.left)
         assert mm_per_px == pytest.approx((frame.y[1] - frame.y[0]) / (frame.bottom - frame.top))
         assert [sum(frame.x), sum(frame.y)] == pytest.approx([1400, 500])
@@ -208,7 +205,7 @@ def test_a_variable_that_would_look_flat_gets_a_scale_of_its_own(
 def test_names_of_lines_stand_within_the_chart(width: int) -> None:
     names = ["short", "a name that is longer", *("x" * size for size in range(20, 40, 3))]
     lines = tuple(Line(name, RAMP, RAMP, at) for at, name in enumerate(names))
-    drawing = lay_out_chart(ChartData("", lines, (0.0, 49.0), "time (s)"), width, 400)
+    drawing = ChartData("", lines, (0.0, 49.0), "time (s)").lay_out(width, 400)
     words = [
         one
         for one in drawing.shapes
@@ -222,12 +219,12 @@ def test_facets_without_room_are_not_upside_down() -> None:
     lines = tuple(Line(name, RAMP, RAMP, at) for at, name in enumerate("abcdef"))
     chart = ChartData("", lines, (0.0, 49.0), "time (s)", facets=True)
     for height in (40, 100, 200):
-        assert all(plot.top < plot.bottom for plot in lay_out_chart(chart, 60, height).plots)
+        assert all(plot.top < plot.bottom for plot in chart.lay_out(60, height).plots)
 
 
 def test_a_chart_without_samples_says_so_in_its_middle() -> None:
     line = Line("a", RAMP[:0], RAMP[:0], 0)
-    drawing = lay_out_chart(ChartData("", (line,), (0.0, 49.0), "time (s)"), 400, 300)
+    drawing = ChartData("", (line,), (0.0, 49.0), "time (s)").lay_out(400, 300)
     (frame,), (words,) = (
         drawing.plots,
         [one for one in drawing.shapes if isinstance(one, Words) and one.text == "no samples here"],
@@ -239,7 +236,7 @@ def test_a_chart_without_samples_says_so_in_its_middle() -> None:
 
 def two_facets() -> Drawing:
     lines = tuple(Line(name, RAMP, RAMP * 2, at) for at, name in enumerate("ab"))
-    return lay_out_chart(ChartData("", lines, (0.0, 49.0), "time (s)", facets=True), 400, 300)
+    return ChartData("", lines, (0.0, 49.0), "time (s)", facets=True).lay_out(400, 300)
 
 
 def test_a_chart_cut_at_an_instant_ends_there_with_a_rule() -> None:
@@ -273,6 +270,6 @@ def test_a_span_is_shaded_in_proportion_to_its_length() -> None:
     chart = build_chart(log_of({"time": [0.0, 10.0], "a": [1.0, 2.0]}), View(), 800, 400)
     whole = Span(0.0, 10.0, ("all",), "a")
     part = Span(2.0, 4.0, ("part",), "a")
-    drawing = lay_out_chart(replace(chart, spans=(whole, part)), 800, 400)
+    drawing = replace(chart, spans=(whole, part)).lay_out(800, 400)
     wide, narrow = (shape.width for shape in drawing.shapes if isinstance(shape, Shade))
     assert narrow == pytest.approx(wide / 5, rel=0.05)

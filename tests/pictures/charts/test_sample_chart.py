@@ -7,7 +7,7 @@ import pytest
 
 from tuisim.engine.runs.samples import Sample
 from tuisim.pictures.charts.axes import Limits
-from tuisim.pictures.charts.layout import Stroke, lay_out_chart
+from tuisim.pictures.charts.layout import Stroke
 from tuisim.pictures.charts.sample_chart import build_sample_chart
 
 
@@ -35,7 +35,7 @@ def test_the_line_of_a_sample_chart_stays_between_its_axes(limits: Limits, sampl
     (line,) = chart.lines
     assert np.all((line.xs >= limits[0]) & (line.xs <= limits[1]))
     assert line.ys == pytest.approx(5.0 * line.xs)
-    drawing = lay_out_chart(chart, 600, 190)
+    drawing = chart.lay_out(600, 190)
     (plot,) = drawing.plots
     for stroke in drawing.shapes:
         if isinstance(stroke, Stroke) and stroke.points[0, 1] >= plot.top:

@@ -8,9 +8,10 @@ from itertools import pairwise
 import pytest
 
 from tests.cases import for_each
+from tuisim.app.panels.world import ZOOMS
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.pictures.scene.view import SQUARE, ZOOMS, Area, Viewport, fit_field, follow_robot
+from tuisim.pictures.scene.view import SQUARE, Area, Viewport, fit_field, follow_robot
 from tuisim.terminal.pixels import CellPoints
 
 SIZE = (76, 38)

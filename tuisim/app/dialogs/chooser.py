@@ -24,8 +24,9 @@ from tuisim.app.dialogs.paths import complete_path, is_path, list_completions
 from tuisim.app.dialogs.save import parse_path
 from tuisim.app.error_words import shorten_error
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import LogError, TuisimError
+from tuisim.base.errors import ConfigError, LogError, TuisimError
 from tuisim.base.folders import user_path
+from tuisim.engine import files
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.mat_image import read_pixels
@@ -319,7 +320,6 @@ def build_program_chooser() -> Chooser:
     from tuisim.programs.program_file import list_programs
     from tuisim.settings.worlds import WorldFile
     from tuisim.tasks.goals.files import list_examples as goals_examples
-    from tuisim.tasks.goals.files import read_title
 
     examples = list_programs()
     goals = goals_examples()
@@ -337,13 +337,18 @@ def build_program_chooser() -> Chooser:
         ChoiceGroup("Logs", list_files(LOGS).entries),
         ChoiceGroup("Examples", [(str(path), name, title) for name, path, title in examples]),
         ChoiceGroup(
-            "Examples of goals", [(str(path), path.name, read_title(path)) for path in goals]
+            "Examples of goals", [(str(path), path.name, _read_title(path)) for path in goals]
         ),
     ]
     title = "Programs, worlds, goals and logs"
     suffixes = (*OPENABLE, *LOGS)
     hint = "path of a program, world, goals file or log"
     return Chooser(title, groups, path_hint=hint, read=_read_openable, suffixes=suffixes)
+
+
+def _read_title(path: Path) -> str:
+    title = files.read_file(path, ConfigError).get("title", "")
+    return title if isinstance(title, str) else ""
 
 
 def is_log(word: str) -> bool:

@@ -28,12 +28,14 @@ from tuisim.pictures.scene.off_field import describe_off_field
 from tuisim.pictures.scene.painter import Faint, ScenePainter, SceneState
 from tuisim.pictures.scene.pen import PenTrace, Piece
 from tuisim.pictures.scene.robot import choose_scale
-from tuisim.pictures.scene.view import ZOOMS, Viewport, follow_robot
+from tuisim.pictures.scene.view import Viewport, follow_robot
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.cells import MONO
-from tuisim.terminal.picture_mode import BLOCKS
-from tuisim.terminal.picture_options import CellSet
+from tuisim.terminal.picture_options import BLOCKS, CellSet
 from tuisim.terminal.pixels import CellPoints, Pixels
+
+ZOOMS = (1, 2, 4)
+"""Zoom factors, relative to the whole field."""
 
 TURN_STEP_DEG = 5.0
 """Turn of the robot per notch of the mouse wheel."""

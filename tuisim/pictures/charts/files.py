@@ -25,7 +25,6 @@ from tuisim.pictures.charts.layout import (
     Shape,
     Stroke,
     Words,
-    lay_out_chart,
 )
 
 if TYPE_CHECKING:
@@ -70,11 +69,11 @@ class ChartFormat:
 
 
 def _encode_svg(chart: ChartData, size: Size) -> bytes:
-    return draw_svg(lay_out_chart(chart, *size)).encode()
+    return draw_svg(chart.lay_out(*size)).encode()
 
 
 def _encode_png_chart(chart: ChartData, size: Size) -> bytes:
-    return encode_png(draw_image(lay_out_chart(chart, *size)))
+    return encode_png(draw_image(chart.lay_out(*size)))
 
 
 def encode_png(image: Image) -> bytes:

@@ -89,6 +89,59 @@ class ChartData:
     zoomed: bool = False
     """Whether the time range is zoomed: the vertical axis then fits the visible data."""
 
+    def lay_out(self, width: int, height: int, *, titled: bool = True) -> Drawing:
+        """Return the picture of a chart.
+
+        Args:
+            width, height: Size in pixels.
+            titled: Whether the title is above it.
+        """
+        shapes: list[Shape] = []
+        top: float = PAD
+        if titled:
+            shapes.append(
+                Words(PAD, top + LINE_PX / 2, shorten(self.title, width - 2 * PAD), strong=True)
+            )
+            top += LINE_PX + 4
+        groups = [(line,) for line in self.lines] if self.facets else [self.lines]
+        scales = [_group_lines(group, self.zoomed or self.path) for group in groups]
+        if not self.facets:
+            legend, lines = _draw_legend(self.lines, scales[0], width, top)
+            shapes += legend
+            top += lines * LINE_PX + 4
+        plots: list[Frame] = []
+        left = PAD + max(_measure_widest(each_scales.left.limits) for each_scales in scales)
+        right_px = max(
+            [3 * LETTER_PX, *(_measure_right_width(each_scales) for each_scales in scales)]
+        )
+        right = max(width - PAD - right_px, left + 1)
+        bottom = height - PAD - 2 * LINE_PX
+        each = (bottom - top) / len(groups)
+        for number, (group, scale) in enumerate(zip(groups, scales, strict=True)):
+            upper, lower = top + number * each, top + (number + 1) * each
+            if self.facets:
+                shapes.append(
+                    Words(
+                        left,
+                        upper + LINE_PX / 2,
+                        group[0].label,
+                        rgb=find_color(group[0]),
+                        strong=True,
+                    )
+                )
+                upper += LINE_PX + 4
+            last = number == len(groups) - 1
+            lower = max(lower if last else lower - _FACET_GAP_PX, upper + 1)
+            frame = _match_scales(
+                self, Frame(left, upper, right, lower, self.x_limits, scale.left.limits)
+            )
+            plots.append(frame)
+            shapes += _draw_spans(self, group, frame)
+            shapes += _draw_axes(frame, scale, group, with_x=last)
+            shapes += _draw_strokes(self, group, scale, frame)
+        shapes.append(Words((left + right) / 2, bottom + 1.7 * LINE_PX, self.x_label, "middle"))
+        return Drawing(self.title, width, height, tuple(shapes), tuple(plots))
+
 
 def add_unit(name: str) -> str:
     """Return the name of a variable with its unit, for display beside a chart; without a unit, the name alone."""
@@ -202,55 +255,6 @@ class Frame:
     def replace_y(self, limits: Limits) -> Frame:
         """Return a frame with the same rectangle and other limits of y."""
         return Frame(self.left, self.top, self.right, self.bottom, self.x, limits)
-
-
-def lay_out_chart(chart: ChartData, width: int, height: int, *, titled: bool = True) -> Drawing:
-    """Return the picture of a chart.
-
-    Args:
-        chart: The chart.
-        width, height: Size in pixels.
-        titled: Whether the title is above it.
-    """
-    shapes: list[Shape] = []
-    top: float = PAD
-    if titled:
-        shapes.append(
-            Words(PAD, top + LINE_PX / 2, shorten(chart.title, width - 2 * PAD), strong=True)
-        )
-        top += LINE_PX + 4
-    groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
-    scales = [_group_lines(group, chart.zoomed or chart.path) for group in groups]
-    if not chart.facets:
-        legend, lines = _draw_legend(chart.lines, scales[0], width, top)
-        shapes += legend
-        top += lines * LINE_PX + 4
-    plots: list[Frame] = []
-    left = PAD + max(_measure_widest(each_scales.left.limits) for each_scales in scales)
-    right_px = max([3 * LETTER_PX, *(_measure_right_width(each_scales) for each_scales in scales)])
-    right = max(width - PAD - right_px, left + 1)
-    bottom = height - PAD - 2 * LINE_PX
-    each = (bottom - top) / len(groups)
-    for number, (group, scale) in enumerate(zip(groups, scales, strict=True)):
-        upper, lower = top + number * each, top + (number + 1) * each
-        if chart.facets:
-            shapes.append(
-                Words(
-                    left, upper + LINE_PX / 2, group[0].label, rgb=find_color(group[0]), strong=True
-                )
-            )
-            upper += LINE_PX + 4
-        last = number == len(groups) - 1
-        lower = max(lower if last else lower - _FACET_GAP_PX, upper + 1)
-        frame = _match_scales(
-            chart, Frame(left, upper, right, lower, chart.x_limits, scale.left.limits)
-        )
-        plots.append(frame)
-        shapes += _draw_spans(chart, group, frame)
-        shapes += _draw_axes(frame, scale, group, with_x=last)
-        shapes += _draw_strokes(chart, group, scale, frame)
-    shapes.append(Words((left + right) / 2, bottom + 1.7 * LINE_PX, chart.x_label, "middle"))
-    return Drawing(chart.title, width, height, tuple(shapes), tuple(plots))
 
 
 def cut_drawing(drawing: Drawing, x: float) -> Drawing:

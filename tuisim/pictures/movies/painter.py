@@ -22,7 +22,6 @@ from tuisim.pictures.charts.layout import (
     Shape,
     Words,
     cut_drawing,
-    lay_out_chart,
     move_shapes,
 )
 from tuisim.pictures.charts.sample_chart import build_sample_chart
@@ -136,8 +135,8 @@ class FramePainter:
             self._world = MovingWorld(recorded, view)
         if ClipPanel.CHART in boxes:
             box = boxes[ClipPanel.CHART]
-            self._chart = lay_out_chart(
-                _build_chart(recorded, box.width, span_s), box.width, box.height, titled=False
+            self._chart = _build_chart(recorded, box.width, span_s).lay_out(
+                box.width, box.height, titled=False
             )
         if ClipPanel.ARRAYS in boxes:
             self._arrays = SensorArrays(recorded)

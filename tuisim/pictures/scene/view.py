@@ -15,9 +15,6 @@ SQUARE = CellPoints()
 """Two square pixels, one above the other."""
 
 
-ZOOMS = (1, 2, 4)
-"""Zoom factors, relative to the whole field."""
-
 _KEEP_INSIDE = 0.22
 """A following view moves once the robot is nearer to an edge than this share of its size."""
 _KEEP_ON_FLOOR = 0.15
@@ -104,7 +101,7 @@ def follow_robot(
     Args:
         width_px: Width of the picture, at least 1.
         height_px: Height of the picture, at least 1.
-        zoom: One of `ZOOMS`; 1 shows the whole field, and does not move while the robot is on it.
+        zoom: How much the field is enlarged; 1 shows the whole field, and does not move while the robot is on it.
         pose: The pose of the robot.
         previous: The viewport of the last frame, if any.
         cell: The pixels in a character cell.

@@ -161,16 +161,6 @@ def list_example_names() -> list[str]:
     return [path.name.removesuffix(_EXAMPLE) for path in list_examples()]
 
 
-def read_title(path: Path) -> str:
-    """Return the title of a goals file without checking its other keys; empty if it has none.
-
-    Raises:
-        ConfigError: the file cannot be read.
-    """
-    title = files.read_file(path, ConfigError).get("title", "")
-    return title if isinstance(title, str) else ""
-
-
 def list_examples() -> list[Path]:
     """Return the paths of the example goals files, sorted by name.
 
