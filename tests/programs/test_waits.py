@@ -140,6 +140,7 @@ def test_a_loop_that_compares_a_change_names_the_line_of_the_first_reading(
         "not entered": ("n = 9\nwhile n < 4:\n    go()", None),
         "left by a break": ("n = 0\nwhile n < 4:\n    if go(): break", None),
         "a flag": ("n = 0\nwhile n == 0:\n    go()", None),
+        "a flag that is compared": ("n = 1\nwhile n > 0:\n    go()", None),
         "a parameter": ("n = 0\ndef f(n):\n    while n < 4:\n        go()", None),
     },
 )

@@ -84,24 +84,31 @@ def _find_uncalled_method(tree: ast.Module) -> tuple[int, str] | None:
             case ast.Expr(value=ast.Attribute(attr=attr) as name) if not attr.startswith("__"):
                 words = ast.unparse(name)
                 return node.lineno, f"{words} without () does nothing: {words}() calls it"
-    if not any(isinstance(node, ast.ImportFrom) and _is_pybricks(node) for node in nodes):
-        return None
-    classes = [node for node in nodes if isinstance(node, ast.ClassDef)]
-    fields = [part for node in classes for step in node.body for part in ast.iter_child_nodes(step)]
-    own = {part.id for part in fields if isinstance(part, ast.Name)}
-    own |= {node.attr for node in nodes if isinstance(node, ast.Attribute) and is_set(node)}
-    functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
-    own |= {function.name for function in functions if function.decorator_list}
+    devices = {*_list_devices(nodes)}
     methods = [
         (value.lineno, _describe_uncalled(value))
         for _, value in _list_used(nodes)
-        if isinstance(value, ast.Attribute) and value.attr in _READ_METHODS - own
+        if isinstance(value, ast.Attribute)
+        and value.attr in _READ_METHODS
+        and not devices.isdisjoint(ast.unparse(value.value).split("."))
     ]
     return min(methods, default=None)
 
 
-def _is_pybricks(node: ast.ImportFrom) -> bool:
-    return (node.module or "").partition(".")[0] == PYBRICKS
+def _list_devices(nodes: Sequence[ast.AST]) -> Iterator[str]:
+    """Yield the names of variables and attributes with objects of classes that a program imports from Pybricks."""
+    classes = [
+        alias.asname or alias.name
+        for node in nodes
+        if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] == PYBRICKS
+        for alias in node.names
+    ]
+    for node in nodes:
+        match node:
+            case ast.Assign(targets=targets, value=ast.Call(func=ast.Name(id=name))) if (
+                name in classes
+            ):
+                yield from (_name_function(target) for target in targets)
 
 
 def _describe_uncalled(name: ast.expr) -> str:

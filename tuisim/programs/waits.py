@@ -256,9 +256,10 @@ def _build_end(
 
 
 def _is_short(number: Word | None, operator: str, limit: Word) -> bool:
-    """Return whether a number is on the wrong side of a limit, which is also a number; a flag is on no side."""
+    """Return whether a number does not meet a comparison with a limit, and neither is a flag, which may stay."""
     is_number = isinstance(number, int | float) and isinstance(limit, int | float)
-    return is_number and operator != "!=" and not COMPARE[operator](number, limit)
+    is_flag = operator == "!=" or {number, limit} == {0, 1}
+    return is_number and not is_flag and not COMPARE[operator](number, limit)
 
 
 def _list_called(loop: _Loop, tree: ast.Module) -> Iterator[int]:
