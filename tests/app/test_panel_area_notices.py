@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, cast
 
 import pytest
+from textual.geometry import Region
 from textual.pilot import Pilot
 from textual.widget import Widget
 
@@ -28,6 +30,13 @@ async def shown_row(pilot: Pilot[Any], app: LabApp, message: str) -> NoticeRow:
     return rows[0]
 
 
+def leaves_text_free(app: LabApp, row: Region) -> bool:
+    """Return whether a row covers no text of the panels on the screen."""
+    panels = app.panel_area.on_screen()
+    insides = (cast(Widget, panel).region.shrink((1, 1, 1, 1)) for panel in panels)
+    return not any(map(row.overlaps, insides))
+
+
 SHORT = "Nothing is running"
 LONG = "words of an error that names a file and a key, and says what is allowed and what is not allowed in that place"
 
@@ -47,8 +56,7 @@ async def test_a_notice_lies_on_borders_and_leaves_axis_and_keys_free(
             rows = 2 if len(message) > size[0] else 1
             assert (row.x, row.width, row.height) == (0, size[0], rows)
             assert not row.overlaps(app.key_footer.region)
-            for panel in app.panel_area.on_screen():
-                assert not row.overlaps(cast(Widget, panel).region.shrink((1, 1, 1, 1)))
+            await until(pilot, partial(leaves_text_free, app, row))
 
 
 @pytest.mark.slow

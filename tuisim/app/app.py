@@ -244,6 +244,7 @@ class LabApp(PanelMessages):
     def on_ready(self) -> None:
         if self.is_headless:
             self.pacer.asks = False
+        self.notices.leave_rows = self.panel_area.leave_rows
         self.handle_situation_change()
         self.set_timer(FIRST_PAINT_DELAY_S, self._begin)
 
@@ -637,7 +638,6 @@ class LabApp(PanelMessages):
 
     def on_panel_area_rearranged(self) -> None:
         self.mark_box()
-        self.notices.follow_panels()
         self.call_after_refresh(self.draw, force=True)
 
     def _show_program(self) -> None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Callable
 from math import inf
 from typing import Any
 
+from textual import events
 from textual.app import App
 from textual.notifications import SeverityLevel
 from textual.widgets import Static
@@ -17,8 +18,6 @@ from tuisim.terminal.textual_internals import NOTICE_LAYER, can_show_notices, is
 
 CHARACTERS_A_SECOND = 25
 """How fast a notice is read."""
-_EDGES = 3
-"""Columns of the row beside its text."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,14 +36,12 @@ class Notice:
 
 
 class NoticeRow(Static):
-    """A row with a notice, on borders of panels, so that it covers nothing else.
-
-    A notice of one row is below the panels; a longer notice is between upper and lower panels, where two rows of
-    borders meet across the whole screen.
+    """A row with a notice, on the lower borders of panels, which leave its further rows free.
 
     Args:
         notice: The notice in the row.
         ended: Called once the whole notice has been shown, or a click has closed it.
+        leave_rows: Called with the number of its further rows.
     """
 
     DEFAULT_CSS = f"""
@@ -63,13 +60,15 @@ class NoticeRow(Static):
     """
     ALLOW_SELECT = False
 
-    def __init__(self, notice: Notice, ended: Callable[[], None]) -> None:
+    def __init__(
+        self, notice: Notice, ended: Callable[[], None], leave_rows: Callable[[int], None]
+    ) -> None:
         text = " ".join(notice.message.split())
         super().__init__(text, markup=False, classes=f"-{notice.severity}")
         self.notice = notice
         self._ended = ended
-        self._columns = len(text)
-        reading_s = self._columns / CHARACTERS_A_SECOND
+        self._leave_rows = leave_rows
+        reading_s = len(text) / CHARACTERS_A_SECOND
         self._read_s = time.monotonic() + reading_s
         self._shown_s = max(reading_s, notice.timeout_s)
 
@@ -81,23 +80,10 @@ class NoticeRow(Static):
     def on_mount(self) -> None:
         if not self.notice.stays:
             self.set_timer(self._shown_s, self._ended)
-        self.place()
 
-    def on_resize(self) -> None:
+    def on_resize(self, event: events.Resize) -> None:
+        self._leave_rows(event.size.height - 1)
         self.call_after_refresh(self._leave_dialog)
-
-    def place(self) -> None:
-        """Move the row to the borders on which it belongs; if it was removed meanwhile, do nothing."""
-        if not self.is_attached:
-            return
-        screen_columns = self.screen.size.width
-        widths: Counter[int] = Counter()
-        if self._columns > screen_columns - _EDGES:
-            for panel in self.screen.query(".panel"):
-                widths[panel.region.y] += panel.region.width
-        lowest = max((y for y, width in widths.items() if width == screen_columns), default=0)
-        self.styles.dock = "top" if lowest else "bottom"
-        self.styles.margin = (lowest - 1, 0, 0, 0) if lowest else (0, 0, 1, 0)
 
     def _leave_dialog(self) -> None:
         """If the row would cover the text of a dialog, move it to the lower border of the dialog."""
@@ -119,6 +105,8 @@ class Notices:
 
     def __init__(self, app: App[Any]) -> None:
         self._app = app
+        self.leave_rows: Callable[[int], None] = lambda _: None
+        """Leaves some rows below the panels free for a notice."""
         self._row: NoticeRow | None = None
         self._waiting: deque[Notice] = deque()
         self._told: list[tuple[float, Notice]] = []
@@ -170,11 +158,6 @@ class Notices:
         self._told.clear()
         self._remove_row()
 
-    def follow_panels(self) -> None:
-        """Move the notice after the panels, and so their borders, have moved."""
-        if self._row is not None:
-            self._app.call_after_refresh(self._row.place)
-
     def follow_screen(self) -> None:
         """If the screen with the notice was closed, show the notice on the topmost screen."""
         row = self._row
@@ -191,7 +174,7 @@ class Notices:
             return
         if self._waiting:
             self._remove_row()
-            self._row = NoticeRow(self._waiting.popleft(), self._end_turn)
+            self._row = NoticeRow(self._waiting.popleft(), self._end_turn, self.leave_rows)
             self._app.screen.mount(self._row)
 
     def _end_turn(self) -> None:
@@ -201,4 +184,5 @@ class Notices:
     def _remove_row(self) -> None:
         if self._row is not None and self._row.is_attached:
             self._row.remove()
+            self.leave_rows(0)
         self._row = None

@@ -25,7 +25,7 @@ from tuisim.app.layout.arrangement import (
     stack_panels,
 )
 from tuisim.app.layout.forms import classify_size, is_single
-from tuisim.app.layout.tree import PanelLayout
+from tuisim.app.layout.tree import PanelLayout, free_rows
 from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
 from tuisim.app.panels.titles import build_title
 from tuisim.base.data_class import dataclass
@@ -119,6 +119,8 @@ class PanelArea(Container):
         self._throttle = Throttle(self, _READINGS_PERIOD_S, self._show_readings)
         self._roomy: tuple[str, int, int] | None = None
         """The panel that needs a number of columns and rows."""
+        self._free_rows = 0
+        """The number of rows below the panels that a notice covers."""
 
     # A hidden panel still gets data; a panel that was never shown is None.
 
@@ -375,7 +377,7 @@ class PanelArea(Container):
         with self.app.batch_update():
             for panel, widget in self.panels.items():
                 widget.display = panel in self.arrangement.boxes
-            for panel, box in self.arrangement.boxes.items():
+            for panel, box in free_rows(self.arrangement.boxes, self._free_rows).items():
                 styles = self._find_panel(panel).styles
                 styles.width, styles.height = box.width, box.height
                 styles.offset = (box.x, box.y)
@@ -384,6 +386,13 @@ class PanelArea(Container):
             key = fill_keys(self.app, f"{{layout-{self.preset}}}")
             self.world.name_layout("" if is_usual else f"{key} {self.preset}")
         self.post_message(self.Rearranged())
+
+    def leave_rows(self, rows: int) -> None:
+        """Leave some rows below the panels free, for a notice; none if the notice is on another screen."""
+        rows = rows if self.app.screen is self.screen else 0
+        if rows != self._free_rows:
+            self._free_rows = rows
+            self.lay_out()
 
     def _find_panel(self, panel: str) -> Widget:
         if panel not in self.panels:

@@ -6,12 +6,14 @@ import pytest
 
 from tuisim.app.layout.tree import (
     Axis,
+    PanelBox,
     PanelLayout,
     Split,
     compute_ideal_rows,
     count_fair_rows,
     count_min_columns,
     count_min_rows,
+    free_rows,
     join_nodes,
     list_panels,
 )
@@ -53,3 +55,19 @@ def test_the_fair_rows_of_a_column_count_the_worlds_ideal_rows_at_its_width() ->
 def test_a_layout_ranks_the_world_first_and_then_the_panels_asked_for() -> None:
     layout = PanelLayout(wanted=("chart",))
     assert [layout.rank(node) for node in (ABOVE, "chart", "output")] == [-1, 0, 1]
+
+
+def test_where_rows_are_left_free_panels_with_rows_to_spare_become_lower() -> None:
+    boxes = {
+        "world": PanelBox(0, 0, 80, 18),
+        "output": PanelBox(0, 18, 40, 5),
+        "instrumentation": PanelBox(40, 18, 40, 5),
+    }
+    assert free_rows(boxes, 0) == boxes
+    assert free_rows(boxes, 2) == {
+        "world": PanelBox(0, 0, 80, 16),
+        "output": PanelBox(0, 16, 40, 5),
+        "instrumentation": PanelBox(40, 16, 40, 5),
+    }
+    # No panel is made lower than it can be.
+    assert free_rows(boxes, 11) == boxes

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import field, replace
 from enum import StrEnum
 from itertools import accumulate, pairwise
 
@@ -225,3 +225,37 @@ def place(node: Node, box: PanelBox, layout: PanelLayout) -> None:
         else:
             place(part, PanelBox(x, y, box.width, size), layout)
             y += size
+
+
+def free_rows(boxes: Mapping[str, PanelBox], rows: int) -> dict[str, PanelBox]:
+    """Return boxes of panels that leave the last rows of their area free.
+
+    The panels that a horizontal line crosses become lower, and those below the line move up. The line is where the
+    panels have most rows to spare; if there is none at which each keeps its minimum height, return the boxes unchanged.
+
+    Args:
+        boxes: The boxes of panels that fill the area.
+        rows: The number of rows.
+    """
+    if rows < 1:
+        return dict(boxes)
+    best, line = 0, -1
+    for y in range(max((box.y + box.height for box in boxes.values()), default=0) - rows + 1):
+        cut = [panel for panel, box in boxes.items() if box.y < y + rows and y < box.y + box.height]
+        heights = {panel: boxes[panel].height - rows for panel in cut}
+        is_inside = all(0 <= y - boxes[panel].y <= height for panel, height in heights.items())
+        if not is_inside or any(
+            height < PANELS[panel].min_rows for panel, height in heights.items()
+        ):
+            continue
+        spare = min(height - PANELS[panel].fair_rows for panel, height in heights.items())
+        if line < 0 or spare >= best:
+            best, line = spare, y
+    return {
+        panel: box
+        if line < 0 or box.y + box.height <= line
+        else replace(box, height=box.height - rows)
+        if box.y <= line
+        else replace(box, y=box.y - rows)
+        for panel, box in boxes.items()
+    }
