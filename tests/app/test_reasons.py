@@ -276,3 +276,14 @@ async def test_a_program_that_goes_on_is_paused_and_it_says_what_that_waits_for(
         await until_state(pilot, RunPhase.PAUSED)
         await pilot.press("S")
         await until_state(pilot, RunPhase.ENDED)
+
+
+async def test_the_line_that_a_reason_names_is_shown_also_where_the_code_was_hidden() -> None:
+    long = "x = 1\n" * 40 + "tank_drive.on_for_seconds(90, 90, 9)\n"
+    async with open_lab(long, speed=0.0, size=(80, 24)) as (pilot, app):
+        await run_from_start(pilot, app, long)
+        assert not app.panel_area.is_shown("code")
+        await ask(pilot, app, "line 41: the robot left the mat")
+        await until(pilot, lambda: "▶41 tank_drive.on_for" in screen_text(app))
+        assert app.panel_area.code is not None
+        assert app.panel_area.code.cursor_line == 41

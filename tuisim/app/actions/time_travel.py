@@ -248,7 +248,11 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
         context.runs.show_earlier(earlier)
     tick = context.runs.timeline.find_tick(reason.time_s)
     context.debugger.choose_line(tick, reason.line)
+    if reason.line:
+        context.panels.open("code")
     go_to_tick(context, tick)
+    if code := context.panels.code:
+        code.name_line(tick, reason.line)
     if reason.kind is ReasonKind.RAISED and not context.runs.in_run:
         context.debugger.show_raised(reason.line)
     so_far = "So far: " if context.runs.in_run else ""

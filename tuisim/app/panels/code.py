@@ -199,6 +199,8 @@ class Code(Vertical):
         self._pause: PauseView | None = None
         self._tick = 0
         """Tick of the instant in view."""
+        self._named_line = 0, 0
+        """A tick, and a line of the run's text that a notice names there; 0 for none."""
 
     def compose(self) -> ComposeResult:
         yield self._area
@@ -348,6 +350,16 @@ class Code(Vertical):
         if self.error_line:
             self._area.move_to_code(self.error_line)
 
+    def name_line(self, tick: int, line: int) -> None:
+        """Put the cursor on a line of the run's text, and scroll to it, while a tick is in view; 0 for none."""
+        self._named_line = tick, line
+        self._go_to_named_line()
+
+    def _go_to_named_line(self) -> None:
+        tick, line = self._named_line
+        if tick == self._tick and (shown_line := self._find_shown_line(line)) and not self.typing:
+            self._area.move_to_code(shown_line)
+
     def show(self, snapshot: Snapshot) -> None:
         """Highlight the line that the program executes; in a live run, the highlight moves once in `LIT_GAP_S`."""
         in_run = snapshot.state not in (RunPhase.IDLE, RunPhase.ENDED) or snapshot.past
@@ -377,6 +389,7 @@ class Code(Vertical):
         if (lit := self._find_shown_line(line)) and not self.typing and stands:
             # The cursor moves to the highlighted line, so that the arrow keys start from this line.
             self._area.move_to_code(lit)
+            self._go_to_named_line()
 
     def show_line(self, line: int) -> None:
         """Highlight, in the shown text, the line that corresponds to a line of the run's text.
