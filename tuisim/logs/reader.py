@@ -7,7 +7,6 @@ import os
 import stat
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
@@ -251,21 +250,15 @@ def read_parts(
     Raises:
         LogError: the file cannot be read.
     """
-    with _name_in_errors(_name_source(source)):
+    title = _name_source(source)
+    try:
         if str(source) != STDIN:
             yield from _read_file(Path(source), notes, choices)
-            return
         # The standard input is None if the shell closed it.
-        if cast("Any", sys.stdin) is None:
+        elif cast("Any", sys.stdin) is None:
             raise LogError("is closed", "give a file instead of -")
-        yield from read_text_parts(sys.stdin.buffer, 0, "", notes, choices)
-
-
-@contextmanager
-def _name_in_errors(title: str) -> Iterator[None]:
-    """In a `with` block, raise each error as a LogError that names the file."""
-    try:
-        yield
+        else:
+            yield from _read_text_parts(sys.stdin.buffer, 0, "", notes, choices)
     except LogError as error:
         raise LogError(error.message, error.hint, file=title) from error
     except FileNotFoundError as error:
@@ -297,16 +290,16 @@ def _read_file(
         if regular:
             handle.seek(0)
         if (inner := unpack(head, handle, notes)) is not None:
-            yield from read_text_parts(
+            yield from _read_text_parts(
                 inner, 0, path.with_suffix("").suffix.lower(), notes, choices
             )
         else:
             size = path.stat().st_size if regular else 0
-            yield from read_text_parts(handle, size, path.suffix.lower(), notes, choices)
+            yield from _read_text_parts(handle, size, path.suffix.lower(), notes, choices)
 
 
-def read_text_parts(
-    handle: Readable, size: int, suffix: str, notes: Notes, choices: ReadChoices = NO_CHOICES
+def _read_text_parts(
+    handle: Readable, size: int, suffix: str, notes: Notes, choices: ReadChoices
 ) -> Iterator[tuple[float, pa.Table | None]]:
     """Read a text in parts: yield the fraction that has been read, and the new rows, or None if there are none.
 
