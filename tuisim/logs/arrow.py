@@ -161,6 +161,8 @@ def make_names_unique(names: Sequence[str], notes: Notes | None = None) -> list[
 
 
 _FILE_MAGIC = b"ARROW1"
+_DAMAGES = (pa.ArrowException, OSError, ValueError)
+"""Errors that damaged files raise."""
 _CUT_OFF = "the file is truncated: only the readable part was read"
 
 
@@ -185,7 +187,7 @@ def read_parquet(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
     try:
         file = pq.ParquetFile(path)
         empty = _name_columns(file.schema_arrow.empty_table(), notes)
-    except (pa.ArrowException, OSError, ValueError) as error:
+    except _DAMAGES as error:
         hint = "a truncated Parquet file cannot be read: its index is at its end"
         raise LogError(f"not a readable Parquet file: {_shorten_error(error)}", hint) from error
     with file:
@@ -197,7 +199,7 @@ def read_parquet(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
             rows = file.metadata.row_group(group).num_rows
             try:
                 part = file.read_row_group(group)
-            except (pa.ArrowException, OSError, ValueError):
+            except _DAMAGES:
                 notes.add(
                     "row is damaged and was skipped",
                     "rows are damaged and were skipped",
@@ -223,7 +225,7 @@ def read_arrow(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
         try:
             stream = pa.ipc.open_stream(source)
             empty = _name_columns(stream.schema.empty_table(), notes)
-        except (pa.ArrowException, OSError, ValueError) as error:
+        except _DAMAGES as error:
             raise LogError(f"not a readable Arrow file: {_shorten_error(error)}") from error
         yield 0.0, empty
         while True:
@@ -231,7 +233,7 @@ def read_arrow(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
                 part = _validate_batch(stream.read_next_batch())
             except StopIteration:
                 return
-            except (pa.ArrowException, OSError, ValueError):
+            except _DAMAGES:
                 notes.say(_CUT_OFF)
                 return
             yield source.tell() / size, _name_columns(part, notes)
