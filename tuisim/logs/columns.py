@@ -273,11 +273,10 @@ def list_time_columns(table: pa.Table) -> list[str]:
 
 def _list_moments(table: pa.Table) -> list[str]:
     """Return the names of the columns of dates, times or time spans, including texts with these."""
-    types = {field.name: field.type for field in table.schema}
     typed = [
-        n
-        for n, kind in types.items()
-        if pa.types.is_temporal(kind) and not pa.types.is_interval(kind)
+        field.name
+        for field in table.schema
+        if pa.types.is_temporal(field.type) and not pa.types.is_interval(field.type)
     ]
     return [*typed, *find_texts(table, is_moment)]
 
@@ -289,13 +288,13 @@ def guess_columns(table: pa.Table) -> Layout:
     for times; in a table without headings, the first column, if its numbers rise; the number of the row. A text column
     with a known name beside a column `value` has the names of variables; else each other numeric column is a variable.
     """
-    names = table.column_names
     named = _find_named_time(table)
     time = named or _find_rising(table)
-    run = "run" if "run" in names and is_numeric(table.field("run").type) else ""
+    numeric = list_numeric_columns(table.schema)
+    run = "run" if "run" in numeric else ""
     variable = _find_named(table, _VARIABLE_NAMES, is_text)
     value = _find_named(table, _VALUE_NAMES, is_numeric)
-    numeric = [n for n in names if is_numeric(table.field(n).type) and n not in (time, run)]
+    numeric = [name for name in numeric if name not in (time, run)]
     if variable and value and value != time:
         values = [value]
         sure = bool(named) or not set(numeric) - {value, *_NO_VALUES}
@@ -373,10 +372,8 @@ def find_unread_time(table: pa.Table, layout: Layout) -> str:
     """
     if layout.time:
         return ""
-    named = (
-        name for name in table.column_names if parse_time_name(name).base in {*NAMES} - {*COUNTS}
-    )
-    return next((name for name in named if is_text(table.field(name).type)), "")
+    texts = (field.name for field in table.schema if is_text(field.type))
+    return next((name for name in texts if parse_time_name(name).base in {*NAMES} - {*COUNTS}), "")
 
 
 def has_guessed_order(table: pa.Table, layout: Layout) -> bool:

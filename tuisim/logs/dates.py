@@ -88,14 +88,8 @@ def order_is_guessed(texts: Any) -> bool:
     first, second = _find_largest_parts(texts)
     if not 0 < max(first, second) <= _LAST_MONTH:
         return False
-    return (
-        int(
-            pc.count_distinct(
-                _replace_patterns(texts, ((_YEAR_AT_END + ".*", r"\1-\2-\3"),))
-            ).as_py()
-        )
-        > 1
-    )
+    dates = pc.replace_substring_regex(texts, _YEAR_AT_END + ".*", r"\1-\2-\3")
+    return bool(pc.count_distinct(dates).as_py() > 1)
 
 
 def _replace_patterns(texts: Any, changes: Sequence[tuple[str, str]]) -> Any:

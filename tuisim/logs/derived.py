@@ -102,9 +102,11 @@ def compute_derived(log: Log, definition: Definition, otherwise: str) -> list[Se
     bases = [log.series(name) for name in log.names if first in (name, name.partition(" #")[0])]
     alone = len(bases) == 1
     return [
-        replace(series, name=definition.name if alone else f"{definition.name} #{base.run}")
+        replace(
+            _compute_series(log, definition, names, base),
+            name=definition.name if alone else f"{definition.name} #{base.run}",
+        )
         for base in bases
-        for series in [_compute_series(log, definition, names, base)]
     ]
 
 

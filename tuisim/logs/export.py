@@ -211,7 +211,9 @@ def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) 
 
     return {
         **build_table_metadata(table, columns),
-        "units": {name: unit for name in columns if (unit := _find_unit(name))},
+        "units": {
+            name: unit for name in columns if (unit := _UNITS.get(name) or parse_unit(name).words)
+        },
         "runs": [
             {
                 "run": ordinal,
@@ -232,10 +234,6 @@ def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) 
 def build_table_metadata(table: str, columns: Iterable[str]) -> dict[str, Any]:
     """Return the metadata that every table has, by key: its format, its kind, and the names of its columns."""
     return {"format": LOG_FORMAT, "table": table, "columns": list(columns)}
-
-
-def _find_unit(column: str) -> str:
-    return _UNITS.get(column) or parse_unit(column).words
 
 
 Metadata = Mapping[str, Any]

@@ -198,6 +198,6 @@ def _build_wide_frame(log: Log) -> pd.DataFrame:
         return pd.DataFrame(
             {name: log.numbers(name) for name in list_numeric_columns(log.table.schema)}
         )
-    series = [member for member in map(log.series, log.names) if len(member.rows)]
+    series = [log.series(name) for name in log.sampled_names]
     moments = np.unique(np.concatenate([member.time_s for member in series]))
     return _build_sampled_frame(moments, series)

@@ -119,9 +119,9 @@ def _parse_rows(line: str) -> list[dict[str, Any]]:
 def is_json_start(lines: Sequence[str]) -> bool:
     """Return whether a text with these first lines is JSON."""
     first = lines[0].strip() if lines else ""
-    if first == "[" or first.startswith(("{", "[{")):
-        return True
-    return first.startswith("[") and _parse_value(first) is not None
+    if not first.startswith("["):
+        return first.startswith("{")
+    return first == "[" or first.startswith("[{") or _parse_value(first) is not None
 
 
 def has_objects(lines: Sequence[str]) -> bool:
@@ -171,7 +171,7 @@ class DocumentReader:
 
     def _build_table(self, value: Any) -> pa.Table | None:
         if isinstance(value, dict):
-            return self._build_table(self._list_rows(value))
+            value = self._list_rows(value)
         if not isinstance(value, list):
             raise LogError(
                 f"is a single JSON value, {shortened(json.dumps(value), 40)}, not a table", _ALLOWED
