@@ -191,14 +191,12 @@ def _split_comments(
     lines: Sequence[tuple[int, str]],
 ) -> tuple[Sequence[tuple[int, str]], Sequence[tuple[int, str]]]:
     """Return the comment lines above a table, and the other lines."""
-    texts = [text for _, text in lines]
-    sign = next((sign for sign in _COMMENT_SIGNS if texts and texts[0].startswith(sign)), "")
-    rest = [text for text in texts if not text.startswith(sign)]
-    if not sign or (sign in SEPARATORS and any(sign in text for text in rest)):
+    sign = next((sign for sign in _COMMENT_SIGNS if lines and lines[0][1].startswith(sign)), "")
+    others = [line for line in lines if not line[1].startswith(sign)]
+    if not sign or (sign in SEPARATORS and any(sign in text for _, text in others)):
         return (), lines
     comments = list(takewhile(lambda line: line[1].startswith(sign), lines))
-    below = lines[len(comments) :]
-    return comments, [line for line in below if sign != "#" or not line[1].startswith(sign)]
+    return comments, others if sign == "#" else lines[len(comments) :]
 
 
 def _read_comment(comment: tuple[int, str], below: _Line, separator: str) -> _Line | None:

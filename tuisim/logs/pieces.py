@@ -129,18 +129,13 @@ def _find_firsts(count: int, seams: IntArray) -> IntArray:
         count: The number of pieces.
         seams: The seams to join, as for `_join_seams`; a seam inside an earlier one is ignored.
     """
-    taken = []
+    firsts = np.arange(count)
     reached = -1
     for piece, after in seams.tolist():
         if piece > reached:
-            taken.append((piece, after + 1))
+            firsts[piece : after + 1] = 0
             reached = after
-    starts, stops = np.array(taken, np.int64).reshape(-1, 2).T
-    depth = np.cumsum(
-        np.bincount(starts, minlength=count + 1) - np.bincount(stops, minlength=count + 1)
-    )[:count]
-    firsts: IntArray = np.maximum.accumulate(np.where(depth, 0, np.arange(count)))
-    return firsts
+    return np.maximum.accumulate(firsts)
 
 
 def _find_continued(signal: Signal, left: Pieces, right: Pieces, min_samples: int) -> BoolArray:

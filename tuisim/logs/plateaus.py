@@ -238,20 +238,16 @@ def _choose_places(scaled: FloatArray) -> IntArray:
     chosen = np.zeros(count + 1, bool)
     chosen[[0, count]] = True
     for width in (1, 3, 8, 24):
-        positions = np.arange(width, count - width + 1)
-        step = (
-            np.abs(sums[positions + width] - 2.0 * sums[positions] + sums[positions - width])
-            / width
-        )
+        step = np.abs(sums[2 * width :] - 2.0 * sums[width:-width] + sums[: -2 * width]) / width
         step *= np.sqrt(width / 2.0)
         # Keep only the highest step within its own width, so that one edge does not give many positions.
         peak = np.ones(len(step), bool)
         for shift in range(1, width + 1):
             peak[shift:] &= step[shift:] >= step[:-shift]
             peak[:-shift] &= step[:-shift] >= step[shift:]
-        strong = np.flatnonzero(peak & (step > CERTAINTY))
+        strong = np.flatnonzero(peak & (step > CERTAINTY)) + width
         for shift in (-1, 0, 1):
-            chosen[np.clip(positions[strong] + shift, 0, count)] = True
+            chosen[np.clip(strong + shift, 0, count)] = True
     return np.flatnonzero(chosen)
 
 
@@ -347,10 +343,10 @@ def _add_ends(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
         return plateaus
     values = signal.values
     min_step = max(signal.min_step, FAR * signal.sigma)
-    first, last = 0, len(values) - 1
+    last = len(values) - 1
     before, after = plateaus[0], plateaus[-1]
     ends = (
-        (first, before["start"] - first, before["level"]),
+        (0, before["start"], before["level"]),
         (last, last + 1 - after["stop"], after["level"]),
     )
     single = [
@@ -358,9 +354,7 @@ def _add_ends(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
         for position, apart, level in ends
         if 1 <= apart <= _EDGE_SAMPLES + 1 and abs(values[position] - level) > min_step
     ]
-    added = np.array(single, FIELDS)
-    is_first = added["start"] < before["start"]
-    return np.concatenate((added[is_first], plateaus, added[~is_first]))
+    return add_apart(plateaus, np.array(single, FIELDS))
 
 
 def _extend_pieces(signal: Signal, pieces: Pieces) -> Pieces:

@@ -209,11 +209,9 @@ def find_still_parts(signal: Signal, moving: PlateauArray, cut: Pieces) -> Plate
         moving: The pieces without a level.
         cut: The pieces from which those were joined, without gaps between them.
     """
-    if not len(moving):
-        return moving
-    owners = np.maximum(np.searchsorted(moving["start"], cut[:, 0], side="right") - 1, 0)
-    chosen = (moving["start"][owners] <= cut[:, 0]) & (cut[:, 1] <= moving["stop"][owners])
-    chosen &= count_samples(cut) >= NEAR_SAMPLES
+    started = np.searchsorted(moving["start"], cut[:, 0], side="right")
+    ended = np.searchsorted(moving["stop"], cut[:, 1])
+    chosen = (started > ended) & (count_samples(cut) >= NEAR_SAMPLES)
     levels = np.add.reduceat(signal.values, cut[:, 0]) / count_samples(cut)
     rates = np.abs(np.diff(levels) / np.diff(cut.mean(axis=1)))
     slopes = np.maximum(np.append(0.0, rates), np.append(rates, 0.0))[chosen]
@@ -248,9 +246,8 @@ def _trim(values: FloatArray, parts: Pieces, far: float) -> Pieces:
 
 def add_apart(plateaus: PlateauArray, parts: PlateauArray) -> PlateauArray:
     """Return plateaus together with those of `parts` that overlap none of them, in the order of the log."""
-    after = np.searchsorted(plateaus["start"], parts["start"], side="right")
-    stops = np.append(0, plateaus["stop"])
-    starts = np.append(plateaus["start"], np.iinfo(np.int64).max)
-    free = (stops[after] <= parts["start"]) & (parts["stop"] <= starts[after])
-    both = np.concatenate((plateaus, parts[free]))
+    # All plateaus that start before such a part ends have ended before it starts.
+    started = np.searchsorted(plateaus["start"], parts["stop"])
+    ended = np.searchsorted(plateaus["stop"], parts["start"], side="right")
+    both = np.concatenate((plateaus, parts[started == ended]))
     return both[np.argsort(both["start"], kind="stable")]
