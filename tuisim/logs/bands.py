@@ -277,14 +277,17 @@ def measure_widths(values: FloatArray, driven_mm: FloatArray, levels: Levels) ->
         levels: The n levels of the samples.
     """
     rows = np.flatnonzero(np.isfinite(values))
+    # From the last sample of each level to the first of the next, each pair of neighbours has its level and its row.
     last, first = np.searchsorted(rows, np.stack((levels.stop[:-1] - 1, levels.start[1:])))
-    pairs = _find_pairs(last, first)
-    edges_mm = _find_edges(values[rows], driven_mm[rows], levels, pairs)
+    sizes = first - last
+    level = np.repeat(np.arange(len(sizes)), sizes)
+    row = np.arange(sizes.sum()) - (np.cumsum(sizes) - sizes - last)[level]
+    edges_mm = _find_edges(values[rows], driven_mm[rows], levels, level, row)
     return np.diff(edges_mm, prepend=np.nan, append=np.nan)[: len(levels.start)]
 
 
 def _find_edges(
-    values: FloatArray, driven_mm: FloatArray, levels: Levels, pairs: tuple[IntArray, IntArray]
+    values: FloatArray, driven_mm: FloatArray, levels: Levels, level: IntArray, row: IntArray
 ) -> FloatArray:
     """Return the position in mm at which samples pass the middle between each level and the next, shape (n - 1,).
 
@@ -294,12 +297,12 @@ def _find_edges(
         values: Samples, shape (m,).
         driven_mm: The distance driven at each of them, shape (m,).
         levels: The n levels of the samples.
-        pairs: The pairs of neighbouring samples between the levels, from `_find_pairs`.
+        level: The level before each pair of neighbouring samples between two levels, shape (k,).
+        row: The first sample of each of these pairs, shape (k,).
 
     Returns:
         NaN where samples of a third level lie between two levels.
     """
-    level, row = pairs
     middles = (levels.true_level[:-1] + levels.true_level[1:]) / 2.0
     apart = values[row] - middles[level]
     have_third = np.zeros(len(middles), bool)
@@ -316,17 +319,6 @@ def _find_edges(
     edges_mm[:, ~np.isfinite(edges_mm[0]) | have_third] = np.nan
     middle_mm: FloatArray = edges_mm.mean(axis=0)
     return middle_mm
-
-
-def _find_pairs(last: IntArray, first: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the pairs of neighbouring samples from the last sample of each level to the first sample of the next.
-
-    Returns:
-        For each pair, the index of the level, and the row of the pair's first sample.
-    """
-    sizes = first - last
-    level = np.repeat(np.arange(len(sizes)), sizes)
-    return level, np.arange(sizes.sum()) - (np.cumsum(sizes) - sizes - last)[level]
 
 
 def _measure_reach(levels: Levels) -> FloatArray:

@@ -177,11 +177,9 @@ def _unwrap(seconds: FloatArray, period: float, words: str) -> Times:
         words: The period in words.
     """
     with np.errstate(invalid="ignore"):
-        if not len(seconds) or not 0.9 * period < np.nanmax(seconds, initial=0.0) < period:
+        if not 0.9 * period < np.nanmax(seconds, initial=0.0) < period:
             return Times(seconds)
         wraps = np.flatnonzero(np.diff(seconds) < -0.8 * period) + 1
-    if not len(wraps):
-        return Times(seconds)
     rounds = np.zeros(len(seconds))
     rounds[wraps] = period
     return Times(seconds + np.cumsum(rounds), wraps, words)

@@ -117,7 +117,7 @@ def _join_seams(signal: Signal, pieces: Pieces, seams: IntArray, min_samples: in
         starts = pieces[firsts[seams[:, 0] - 1], 0]
         unsure = np.maximum(starts, nearest) != np.maximum(left[:, 0], nearest)
         left[:, 0] = starts
-    heads = np.flatnonzero(firsts == np.arange(len(pieces)))
+    heads = np.unique(firsts)
     tails = np.append(heads[1:], len(pieces)) - 1
     return np.stack((pieces[heads, 0], pieces[tails, 1]), axis=1)
 
@@ -171,7 +171,7 @@ class _Lines(NamedTuple):
 
 
 def _fit_lines(signal: Signal, pieces: Pieces) -> _Lines:
-    lines = _Lines(*np.empty((5, len(pieces))))
+    lines = np.empty((5, len(pieces)))
     for some, part in group_by_length(signal.values, pieces):
         weights = (~find_strays(part, signal.sigma)).astype(np.float64)
         positions = np.arange(part.shape[1], dtype=np.float64)
@@ -179,14 +179,10 @@ def _fit_lines(signal: Signal, pieces: Pieces) -> _Lines:
         place = weights @ positions / samples
         level = _sum_products(weights, part) / samples
         apart = weights * (positions - place[:, None])
-        lines.samples[some], lines.place[some], lines.level[some] = (
-            samples,
-            pieces[some, 0] + place,
-            level,
-        )
-        lines.width[some] = _sum_products(apart, apart)
-        lines.rise[some] = _sum_products(apart, part - level[:, None])
-    return lines
+        width = _sum_products(apart, apart)
+        rise = _sum_products(apart, part - level[:, None])
+        lines[:, some] = samples, pieces[some, 0] + place, level, width, rise
+    return _Lines(*lines)
 
 
 def _sum_products(left: FloatArray, right: FloatArray) -> FloatArray:

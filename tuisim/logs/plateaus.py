@@ -391,23 +391,11 @@ def _extend_starts(values: FloatArray, pieces: Pieces, limits: IntArray, near: f
     for ahead in starts - 1 - np.arange(STRAY_SAMPLES + 1)[:, None]:
         free = np.flatnonzero(ahead >= limits)
         nearest = np.minimum(starts[free] + NEAR_SAMPLES, stops[free])
-        levels = _measure_levels(values, starts[free], nearest)
-        grown = free[np.abs(values[ahead[free]] - levels) <= near]
-        starts[grown] = ahead[grown]
+        for some, part in group_by_length(values, np.stack((starts[free], nearest), axis=1)):
+            apart = np.abs(values[ahead[free[some]]] - compute_medians(part))
+            grown = free[some][apart <= near]
+            starts[grown] = ahead[grown]
     return starts
-
-
-def _measure_levels(values: FloatArray, starts: IntArray, stops: IntArray) -> FloatArray:
-    """Return the median of each span of a log, shape (n,).
-
-    Args:
-        values: The log.
-        starts, stops: The first sample of each span, and the sample after its last one, shape (n,).
-    """
-    levels = np.empty(len(starts))
-    for some, part in group_by_length(values, np.stack((starts, stops), axis=1)):
-        levels[some] = compute_medians(part)
-    return levels
 
 
 _PACKAGE_FOLDER = Path(__file__).resolve().parents[2]
