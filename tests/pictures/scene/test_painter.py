@@ -135,12 +135,12 @@ EVERYTHING = SceneState(
 @pytest.mark.parametrize(
     "view, options, checksum",
     [
-        (VIEW, {}, 1902009757),
-        (VIEW, {"for_file": True}, 2026224127),
-        (fit_field(240, 120, CellPoints(2, 4)), {}, 3898089150),
-        (fit_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 2814133913),
-        (fit_field(38, 19), {"grey": True}, 3975190403),
-        (fit_field(76, 60, CellPoints(2, 3)), {"mono": True}, 1843021782),
+        (VIEW, {}, 3027207584),
+        (VIEW, {"for_file": True}, 3186909634),
+        (fit_field(240, 120, CellPoints(2, 4)), {}, 135519599),
+        (fit_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 4029787685),
+        (fit_field(38, 19), {"grey": True}, 2589912104),
+        (fit_field(76, 60, CellPoints(2, 3)), {"mono": True}, 888471219),
         (Viewport(140, 78, 4.0, 1003 - 280.0, 507 + 156.0), {"whole_cells": True}, 3233824671),
     ],
     ids=["middle", "for a file", "octants", "coarse", "small and grey", "mono", "close"],

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import hypot
+from math import atan2, degrees, hypot
 
 import numpy as np
 import pytest
+from PIL import Image, ImageDraw
 
 from tests.pictures.scene.scenes import MIDDLE, ROBOT, WHITE, pixel, spec_of
 from tuisim.engine.core.geometry import Pose, world_point
 from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, NO_PORT
 from tuisim.pictures.scene.pictures import draw_world
-from tuisim.pictures.scene.robot import COLORED, draw_robot
+from tuisim.pictures.scene.robot import COLORED, GHOST, draw_robot
 from tuisim.pictures.scene.view import fit_field
 from tuisim.settings.robots import ROBOTS
+from tuisim.terminal.pixels import CellPoints
 
 
 def near(x_mm: float, y_mm: float, places: Sequence[tuple[float, float]]) -> bool:
@@ -82,3 +84,35 @@ def test_the_robot_is_drawn_as_large_as_what_collides(heading: int) -> None:
     corners = np.array([view.to_px(*world_point(pose, *corner)) for corner in outline.corners_mm])
     assert [cols.min(), rows.min()] == pytest.approx(corners.min(axis=0), abs=1)
     assert [cols.max() + 1, rows.max() + 1] == pytest.approx(corners.max(axis=0), abs=1)
+
+
+@pytest.mark.parametrize("cell", [CellPoints(1, 2), CellPoints(2, 2), CellPoints(2, 4)])
+@pytest.mark.parametrize("heading", range(0, 360, 19))
+def test_the_marker_of_a_small_robot_points_where_the_robot_heads(
+    cell: CellPoints, heading: int
+) -> None:
+    pose = Pose(1200, 570, float(heading))
+    view = fit_field(58 * cell.cols, 15 * cell.rows, cell)
+    picture = np.zeros((view.height_px, view.width_px, 3), np.uint8)
+
+    draw_robot(picture, view, pose, build_outline(ROBOT), COLORED)
+
+    robot, marker = picture.any(axis=2), (picture == COLORED.marker).all(axis=2)
+    (row, col), (tip_row, tip_col) = (np.argwhere(part).mean(axis=0) for part in (robot, marker))
+    aspect = view.mm_per_row / view.mm_per_px
+    shown_deg = degrees(atan2((row - tip_row) * aspect, tip_col - col))
+    assert abs((shown_deg - heading + 180) % 360 - 180) < 30
+    assert (picture == COLORED.wheel).all(axis=2).sum() >= 4 * cell.cols
+
+
+@pytest.mark.parametrize("cols", [58, 118, 198])
+@pytest.mark.parametrize("heading", range(0, 360, 19))
+def test_the_outline_of_the_robot_now_has_no_gap(cols: int, heading: int) -> None:
+    view = fit_field(2 * cols, cols, CellPoints(2, 2))
+    picture = np.zeros((view.height_px, view.width_px, 3), np.uint8)
+
+    draw_robot(picture, view, Pose(1200, 570, float(heading)), build_outline(ROBOT), GHOST)
+
+    image = Image.fromarray(picture.any(axis=2).astype(np.uint8))
+    ImageDraw.floodfill(image, (0, 0), 2)
+    assert (np.asarray(image) == 0).any(), "the ground flows into the outline"

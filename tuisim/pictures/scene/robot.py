@@ -22,13 +22,14 @@ _SAMPLES = (4, 8)
 _MIN_CELLS = 7.0
 """A robot narrower than this many cells is drawn enlarged, to be recognisable."""
 
-_MIN_PX = {1: 8.0, 2: 18.0}
-"""By the pixels across a cell: in a robot narrower than this many pixels the heading marker needs to project beyond
-the body."""
-_NOSE_PX = {1: 1.2, 2: 2.5}
-"""Pixels by which the heading marker projects, by the pixels across a cell."""
-_THIN_PX = {1: 0.4, 2: 1.0}
-"""Half of its width at the tip: in two colours a cell, less of it is lost in what is behind."""
+_DISC_CELLS = 9.5
+"""A crisp robot narrower than this many cells is a disc with a nose: a turned rectangle of few pixels has no shape."""
+_NOSE_CELLS = 1.2
+"""Cells by which the heading marker projects beyond a disc."""
+_THIN_CELLS = 0.5
+"""Half of its width at the tip of a disc."""
+_DISC_WHEEL_CELLS = 1.2
+"""Width of the wheels of a disc."""
 
 _CRISP_PX = 40.0
 """A robot narrower than this many pixels has no mixed colours: each pixel shows the part that weighs most in it, and
@@ -65,7 +66,21 @@ class RobotColors:
     has_small_edge: bool = False
     """Whether a robot of few pixels has an edge too: one without colours would not be seen without."""
     is_outline: bool = False
-    """Whether only edge and marker are drawn, so that what is below is seen."""
+    """Whether only edge and marker are drawn, in a line without gaps, so that what is below is seen."""
+
+    def choose_edge_mm(self, cell_mm: float) -> float:
+        """Return the width of the edge; in fine pixels, one thinner than a pixel would not be seen.
+
+        Args:
+            cell_mm: Width of a cell.
+        """
+        return min(self.edge_cells * cell_mm, self.edge_mm)
+
+    def choose_parts(self, outline: RobotOutline) -> RobotOutline:
+        """Return the parts of a robot that are drawn: those of an outline are neither wheels nor sensors."""
+        return (
+            replace(outline, has_wheels=False, color_sensors_mm=()) if self.is_outline else outline
+        )
 
 
 COLORED = RobotColors()
@@ -96,7 +111,7 @@ CLEARED = RobotColors((255,) * 3, (255,) * 3, (255,) * 3, (255,) * 3, has_marker
 GHOST = RobotColors(
     edge=(175, 0, 175),
     marker=(175, 0, 175),
-    edge_cells=0.5,
+    edge_cells=1.0,
     edge_mm=30.0,
     has_small_edge=True,
     is_outline=True,
@@ -147,6 +162,7 @@ def draw_robot(
             at most 2.
     """
     detail_cols = detail_cols or min(view.cell.cols, 2)
+    outline = colors.choose_parts(outline)
     scale = choose_scale(outline, view)
     col, row = view.to_px(pose.x_mm, pose.y_mm)
     is_crisp = 2 * outline.half_width_mm * scale < _CRISP_PX * view.mm_per_px
@@ -164,18 +180,14 @@ def draw_robot(
     )
     east = (_sample_places(left, right, across) - col)[None, :] * step_mm
     north = (row - _sample_places(top, bottom, down))[:, None] * row_mm
-    heading = math.radians(pose.heading_deg)
-    cos, sin = math.cos(heading), math.sin(heading)
-    side = east * sin - north * cos
-    ahead = east * cos + north * sin
-    detail_mm = step_mm * view.cell.cols / detail_cols
-    # In fine pixels, an edge thinner than a pixel would not be seen.
-    edge_mm = min(colors.edge_cells * detail_cols * detail_mm, colors.edge_mm)
-    if is_crisp and not colors.has_small_edge:
-        edge_mm = 0.0
-    parts = _classify_samples(
-        outline, side, ahead, detail_mm, detail_cols, edge_mm, has_marker=colors.has_marker
-    )
+    side, ahead = _turn_places(east, north, pose.heading_deg)
+    cell_mm = step_mm * view.cell.cols
+    detail_mm = cell_mm / detail_cols
+    edge_mm = colors.choose_edge_mm(cell_mm) if colors.has_small_edge or not is_crisp else 0.0
+    if is_crisp and 2 * outline.half_width_mm < _DISC_CELLS * cell_mm:
+        parts = _classify_disc(outline, side, ahead, cell_mm, edge_mm, colors)
+    else:
+        parts = _classify_samples(outline, side, ahead, detail_mm, detail_cols, edge_mm, colors)
     if colors.is_outline:
         parts[(parts != _EDGE) & (parts != _MARKER)] = _NONE
     else:
@@ -195,6 +207,14 @@ def _sample_places(first_px: int, end_px: int, samples: int) -> FloatArray:
     return (np.arange(first_px, end_px)[:, None] + fine).ravel()
 
 
+def _turn_places(
+    east: FloatArray, north: FloatArray, heading_deg: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return how far places are to the right of a robot's axis and ahead, from how far they are east and north."""
+    cos, sin = math.cos(math.radians(heading_deg)), math.sin(math.radians(heading_deg))
+    return east * sin - north * cos, east * cos + north * sin
+
+
 def _classify_samples(
     outline: RobotOutline,
     side: FloatArray,
@@ -202,8 +222,7 @@ def _classify_samples(
     px_mm: float,
     cell_cols: int,
     edge_mm: float,
-    *,
-    has_marker: bool,
+    colors: RobotColors,
 ) -> npt.NDArray[np.intp]:
     """Return for each sample the number of the robot's part that covers it.
 
@@ -213,7 +232,7 @@ def _classify_samples(
         px_mm: Width of a pixel.
         cell_cols: Pixels across a cell.
         edge_mm: Width of the robot's edge.
-        has_marker: Whether the robot has a heading marker.
+        colors: Of its parts.
     """
     across = np.abs(side)
     parts = np.zeros(side.shape, np.intp)
@@ -227,21 +246,46 @@ def _classify_samples(
     beside = np.abs(across - outline.half_width_mm + wheel_mm / 2) <= wheel_mm / 2
     if outline.has_wheels:
         parts[beside & (np.abs(ahead) <= outline.wheel_radius_mm)] = _WHEEL
-    # On a small robot the marker sticks out by `_NOSE_PX` and has a least width, so that the heading can be seen.
-    is_small = 2 * outline.half_width_mm < _MIN_PX[cell_cols] * px_mm
-    nose_mm = _NOSE_PX[cell_cols] * px_mm if is_small else 0.0
-    tip = front_mm + nose_mm
-    base = back_mm * 0.55
+    base_mm = back_mm * 0.55
+    length_mm = front_mm - base_mm
     # The marker is longer than wide: in an even triangle of few pixels any corner could be the tip.
-    widest_mm = min(0.62 * (outline.half_width_mm - outline.wheel_width_mm), 0.28 * (tip - base))
-    thinnest_mm = (_THIN_PX[cell_cols] if is_small else 0.4) * px_mm
-    flank = np.maximum(widest_mm * (tip - ahead) / (tip - base), thinnest_mm)
-    if has_marker:
-        parts[(ahead >= base) & (ahead <= tip) & (across <= flank)] = _MARKER
+    widest_mm = min(0.62 * (outline.half_width_mm - outline.wheel_width_mm), 0.28 * length_mm)
+    flank = np.maximum(widest_mm * (front_mm - ahead) / length_mm, 0.4 * px_mm)
+    if colors.has_marker:
+        parts[(ahead >= base_mm) & (ahead <= front_mm) & (across <= flank)] = _MARKER
     for x_mm, y_mm, radius in outline.color_sensors_mm:
         # In pixels of a whole cell a small sensor would only blur the marker.
         if 2 * radius >= 1.5 * px_mm or cell_cols > 1:
             parts[np.hypot(side - x_mm, ahead - y_mm) <= max(radius, 0.7 * px_mm)] = _SENSOR
+    return parts
+
+
+def _classify_disc(
+    outline: RobotOutline,
+    side: FloatArray,
+    ahead: FloatArray,
+    cell_mm: float,
+    edge_mm: float,
+    colors: RobotColors,
+) -> npt.NDArray[np.intp]:
+    """Return for each sample the number of the part of a disc that covers it, with arguments as `_classify_samples`."""
+    radius_mm = outline.half_width_mm
+    across = np.abs(side)
+    inside_mm = radius_mm - np.hypot(side, ahead)
+    parts = np.zeros(inside_mm.shape, np.intp)
+    parts[inside_mm >= 0] = _EDGE
+    parts[inside_mm >= edge_mm] = _BODY
+    wheel = (across >= radius_mm - _DISC_WHEEL_CELLS * cell_mm) & (np.abs(ahead) <= radius_mm / 2)
+    if outline.has_wheels:
+        parts[wheel & (across <= radius_mm)] = _WHEEL
+    for x_mm, y_mm, sensor_mm in outline.color_sensors_mm:
+        parts[np.hypot(side - x_mm, ahead - y_mm) <= max(sensor_mm, cell_mm / 2)] = _SENSOR
+    tip_mm = radius_mm + _NOSE_CELLS * cell_mm
+    # A whole marker would fill a small outline.
+    base_mm = radius_mm / 3 if colors.is_outline else -radius_mm / 2
+    flank = np.maximum(0.28 * (tip_mm - ahead), _THIN_CELLS * cell_mm)
+    if colors.has_marker:
+        parts[(ahead >= base_mm) & (ahead <= tip_mm) & (across <= flank)] = _MARKER
     return parts
 
 
