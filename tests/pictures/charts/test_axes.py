@@ -133,6 +133,11 @@ def test_axis_limits_are_extended_as_little_as_possible() -> None:
     assert axes.extend_limits((86.0, 91.0), 7) == (86.0, 92.0)
 
 
+@for_each(rows=[*range(4, 8), 9, 10, 12, 13, 14, *range(16, 40)])
+def test_the_axis_of_light_from_0_to_255_is_at_most_a_fifth_empty(rows: int) -> None:
+    assert axes.extend_limits((0.0, 255.0), rows)[1] <= 255 / 0.8
+
+
 @for_each(rows=range(7, 40))
 def test_extended_axis_limits_do_not_depend_on_the_unit(rows: int) -> None:
     for low, high in ((0.0, 60.0), (-2.0, 1.0), (85.0, 97.0)):

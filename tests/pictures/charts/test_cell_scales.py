@@ -57,14 +57,14 @@ def test_a_chart_has_one_scale_for_percent_millimetres_and_degrees_each() -> Non
     rows = text(picture)
 
     top = next(row for row in rows if row.startswith("100┤"))
-    assert re.search("├2000mm *├40° *├0.6$", top.rstrip())
+    assert re.search("├2000mm *├40° *├0.50$", top.rstrip())
     assert picture.plot is not None
     # Each line reaches from one edge of its scale to the other.
     assert [np.ptp(curve.values).round(1) for curve in picture.plot.curves] == [
         100.0,
         95.0,
         87.5,
-        83.3,
+        100.0,
     ]
 
 

@@ -28,7 +28,6 @@ from tuisim.pictures.charts.layout import (
     Drawing,
     Line,
     Rule,
-    Scales,
     Shade,
     Span,
     Stroke,
@@ -36,6 +35,7 @@ from tuisim.pictures.charts.layout import (
     cut_drawing,
     move_shapes,
 )
+from tuisim.pictures.charts.scales import Scales
 from tuisim.pictures.charts.text_chart import ChartPainter, ChartState, draw_text
 
 RAMP = np.arange(50.0)
@@ -110,9 +110,13 @@ def test_a_chart_has_the_same_scales_on_screen_and_in_a_file(columns: dict[str, 
         assert not model.traces.list_drawn()
         return
     (frame,) = drawing.plots
+    drawn_traces = model.traces.list_drawn()
+    scales = Scales.group(
+        [(trace.name, trace.values, trace.scale) for trace in drawn_traces], False
+    )
     assert (picture.plot.x_limits, picture.plot.y_limits) == (
         frame.x,
-        axes.extend_limits(frame.y, picture.rows),
+        axes.extend_limits(scales.left.ends, picture.rows),
     )
     drawn = sum(
         isinstance(shape, Stroke) and len(shape.points) and shape.points[0, 1] >= frame.top - 1
@@ -273,3 +277,23 @@ def test_a_span_is_shaded_in_proportion_to_its_length() -> None:
     drawing = replace(chart, spans=(whole, part)).lay_out(800, 400)
     wide, narrow = (shape.width for shape in drawing.shapes if isinstance(shape, Shade))
     assert narrow == pytest.approx(wide / 5, rel=0.05)
+
+
+@cases(
+    "columns, title",
+    {
+        "one": ({"time": RAMP, "a_mm": RAMP}, "a_mm (mm)"),
+        "several": ({"time": RAMP, "a_mm": RAMP, "b_mm": RAMP + 1}, "mm"),
+        "no unit": ({"time": RAMP, "a": RAMP, "b": RAMP + 1}, "value"),
+    },
+)
+def test_the_vertical_axis_of_a_file_has_a_title(columns: dict[str, object], title: str) -> None:
+    drawing = build_chart(log_of(columns), View(), 960, 420).lay_out(960, 420)
+
+    (frame,) = drawing.plots
+    titles = [
+        shape.text
+        for shape in drawing.shapes
+        if isinstance(shape, Words) and frame.top - 2 * LINE_PX < shape.y < frame.top - 8
+    ]
+    assert titles[-1] == title

@@ -23,16 +23,8 @@ def choose_step(span: float, count: int) -> float:
     return next(step * magnitude for step in _STEPS if step * magnitude >= rough * 0.999)
 
 
-def choose_limits(low: float, high: float, from_zero: bool = False) -> Limits:
-    """Return round limits around two values, so that they seldom change while values come in.
-
-    Args:
-        low: The lowest value.
-        high: The highest value.
-        from_zero: Whether to include 0.
-    """
-    if from_zero:
-        low = min(low, 0.0)
+def choose_limits(low: float, high: float) -> Limits:
+    """Return round limits around two values, so that they seldom change while values come in."""
     size = max(abs(low), abs(high), 1.0)
     if high - low < 1e-9 * size:
         # The room grows with the number: adding 1 does not change one of more than sixteen digits. It is at least 2, so
@@ -158,37 +150,35 @@ _SPARSE = {2: 0.15, 3: 0.05}
 shorter than one with more ticks to be taken instead of it. The numbers are set by eye."""
 
 
-def extend_limits(limits: Limits, rows: int) -> Limits:
+def extend_limits(ends: Limits, rows: int) -> Limits:
     """Return limits for a vertical axis on which round ticks are in the middle of rows, at equal distances.
 
-    The limits are extended as little as possible. The axis has 2 to 6 parts: it begins at the multiple of a round step
-    that is not above the values, and has as many rows between two ticks as fit. The shortest of these axes is chosen.
-    For this choice, `_SPARSE` is added to the length of an axis with few parts, and the span of the values to the
-    length of an axis with ticks in neighbouring rows.
+    The axis begins at the multiple of a round step that is not above the values, has 2 to 6 parts, and may end beyond
+    its last tick. The shortest of these axes is chosen; for this choice, `_SPARSE` is added to the length of an axis
+    with few parts, and the span of the values to the length of an axis with ticks in neighbouring rows. So the limits
+    seldom change while values come in.
 
     Args:
-        limits: The lowest and the highest value.
-        rows: Height of the canvas in characters, at least 1; if it is small, the limits are not extended.
+        ends: The lowest and the highest value.
+        rows: Height of the canvas in characters, at least 1; if it is small, the limits are those of `choose_limits`.
     """
+    low, high = limits = choose_limits(*ends)
     if rows < _MIN_ROUND_ROWS:
         return limits
-    low, high = limits
+    if ends[1] - ends[0] > _NEAR * (high - low):
+        low, high = ends
     candidates = []
-    for count in range(2, _MAX_PARTS + 1):
+    for count in range(2, _MAX_PARTS + 2):
         step = choose_step(high - low, count)
         first = math.floor(low / step + 1e-9) * step
-        parts = math.ceil((high - first) / step - 1e-9)
-        if cells := max((rows - 1) // parts, 0):
+        cells = math.floor((rows - 1) * step / (high - first) + 1e-9)
+        parts = (rows - 1) // cells if cells else 0
+        if 2 <= parts <= _MAX_PARTS:
             end = first + step * (rows - 1) / cells
-            candidates.append(
-                (
-                    (end - first) / (high - low) + _SPARSE.get(parts, 0.0) + (cells < _MIN_CELLS),
-                    first,
-                    end,
-                )
-            )
-    _, *extended = min(candidates)
-    return extended[0], extended[1]
+            length = (end - first) / (high - low)
+            sparse = _SPARSE.get(parts, 0.0) + (cells < _MIN_CELLS)
+            candidates.append((length + sparse, first, end))
+    return min(candidates)[1:] if candidates else limits
 
 
 def find_row_ticks(limits: Limits, rows: int) -> list[float]:

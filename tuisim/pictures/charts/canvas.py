@@ -284,6 +284,10 @@ def drop_hidden_points(
     return xs[moved], ys[moved]
 
 
+def _measure_ends(values: FloatArray) -> Limits:
+    return float(values.min()), float(values.max())
+
+
 def draw_xy_chart(
     xs: FloatArray,
     ys: FloatArray,
@@ -308,11 +312,9 @@ def draw_xy_chart(
     title: list[Run] = [(f"{names[1]} against {names[0]}", PLAIN)]
     if not good.any():
         return [title, [("no sample has both", AXIS)]]
-    x_limits, y_limits = (
-        axes.choose_limits(float(a[good].min()), float(a[good].max())) for a in (xs, ys)
-    )
     rows = max(height - 3, 1)
-    y_limits = axes.extend_limits(y_limits, rows)
+    x_limits = axes.choose_limits(*_measure_ends(xs[good]))
+    y_limits = axes.extend_limits(_measure_ends(ys[good]), rows)
     labels = axes.label_rows(y_limits, rows)
     left = max(map(len, labels.values())) + 1
     columns = max(width - left, 2)

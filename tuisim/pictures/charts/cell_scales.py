@@ -13,7 +13,7 @@ from tuisim.logs.magnitude import limit_drawn
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.axes import Limits
 from tuisim.pictures.charts.canvas import AXIS, BRAILLE, Curve, build_style
-from tuisim.pictures.charts.layout import Scale, Scales
+from tuisim.pictures.charts.scales import Scale, Scales
 from tuisim.pictures.charts.traces import Trace
 from tuisim.terminal.text_runs import Run
 
@@ -135,7 +135,7 @@ class CellScales:
 
 
 def _on_rows(scale: Scale, rows: int) -> Scale:
-    return replace(scale, limits=axes.extend_limits(scale.limits, rows))
+    return replace(scale, limits=axes.extend_limits(scale.ends, rows))
 
 
 def _label_scale(scale: Scale, rows: int) -> dict[int, str]:

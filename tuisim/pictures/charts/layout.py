@@ -10,11 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import printable
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.logs import units
-from tuisim.pictures.charts.axes import Limits, choose_limits, label_ticks
+from tuisim.pictures.charts.axes import Limits, label_ticks
+from tuisim.pictures.charts.scales import Scales, add_unit, find_unit
 
 COLORS: tuple[Rgb, ...] = (
     (31, 119, 180),
@@ -119,17 +118,8 @@ class ChartData:
         each = (bottom - top) / len(groups)
         for number, (group, scale) in enumerate(zip(groups, scales, strict=True)):
             upper, lower = top + number * each, top + (number + 1) * each
-            if self.facets:
-                shapes.append(
-                    Words(
-                        left,
-                        upper + LINE_PX / 2,
-                        group[0].label,
-                        rgb=find_color(group[0]),
-                        strong=True,
-                    )
-                )
-                upper += LINE_PX + 4
+            shapes.append(_title_axis(self, group, scale, upper + LINE_PX / 2))
+            upper += LINE_PX + 4
             last = number == len(groups) - 1
             lower = max(lower if last else lower - _FACET_GAP_PX, upper + 1)
             frame = _match_scales(
@@ -141,17 +131,6 @@ class ChartData:
             shapes += _draw_strokes(self, group, scale, frame)
         shapes.append(Words((left + right) / 2, bottom + 1.7 * LINE_PX, self.x_label, "middle"))
         return Drawing(self.title, width, height, tuple(shapes), tuple(plots))
-
-
-def add_unit(name: str) -> str:
-    """Return the name of a variable with its unit, for display beside a chart; without a unit, the name alone."""
-    unit = find_unit(name)
-    return printable(f"{name} ({unit})" if unit else name)
-
-
-def find_unit(name: str) -> str:
-    """Return the unit that the name of a variable implies; empty if it implies none."""
-    return units.parse_unit(name.partition(" #")[0]).sign
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,6 +236,13 @@ class Frame:
         return Frame(self.left, self.top, self.right, self.bottom, self.x, limits)
 
 
+def _title_axis(chart: ChartData, lines: Sequence[Line], scales: Scales, y: float) -> Words:
+    """Return the title above a vertical axis; that of a facet tells its line."""
+    if chart.facets:
+        return Words(PAD, y, lines[0].label, rgb=find_color(lines[0]), strong=True)
+    return Words(PAD, y, scales.left.title)
+
+
 def cut_drawing(drawing: Drawing, x: float) -> Drawing:
     """Return the picture of a chart with a vertical line at a value of x, and without the data to its right."""
     shapes: list[Shape] = []
@@ -350,99 +336,8 @@ def _draw_legend(
     return shapes, row + 1 if lines else 0
 
 
-Variable: TypeAlias = tuple[str, FloatArray, str]
-"""Name and finite values of a variable, and its scale."""
-
-_SEEN = 8.0
-"""A variable whose values reach less than 1 / this of those of another one is drawn on a scale of its own."""
-
-
-@dataclass(frozen=True, slots=True)
-class Scale:
-    """A vertical scale of a chart: its limits and its unit."""
-
-    limits: Limits
-    unit: str
-    """Unit of the scale's variables; empty if they have none, or several."""
-    names: tuple[str, ...]
-    """Names of the scale's variables."""
-
-
-@dataclass(frozen=True, slots=True)
-class Scales:
-    """The vertical scales of a chart.
-
-    Variables whose values differ much in size have scales of their own, so that none appears as a flat line.
-    """
-
-    left: Scale
-    right: tuple[Scale, ...]
-
-    @classmethod
-    def group(cls, variables: Sequence[Variable], zoomed: bool) -> Scales:
-        """Return the scales for variables.
-
-        On the left is the scale of light and of variables without a known unit, else the scale of the first variable.
-
-        Args:
-            variables: The variables.
-            zoomed: Whether the scales fit the visible data.
-        """
-        groups: dict[str, list[Variable]] = {}
-        common = next((values for _, values, scale in variables if not scale and len(values)), None)
-        for variable in variables:
-            name, values, scale = variable
-            own = not scale and common is not None and _is_flat(values, common)
-            groups.setdefault(name if own else scale, []).append(variable)
-        scales = {scale: _build_scale(group, zoomed) for scale, group in groups.items()} or {
-            "": _build_scale([], zoomed)
-        }
-        left = scales.pop("" if "" in scales else next(iter(scales)))
-        return cls(left, tuple(scales.values()))
-
-    def find_scale(self, name: str) -> Scale:
-        """Return the scale to which a variable is drawn."""
-        return next((scale for scale in self.right if name in scale.names), self.left)
-
-    def on_left(self, values: FloatArray, scale: Scale) -> FloatArray:
-        """Return values that are drawn to `scale`, converted to the left scale: to values at the same height."""
-        if scale is self.left:
-            return values
-        share = (values - scale.limits[0]) / (scale.limits[1] - scale.limits[0])
-        low, high = self.left.limits
-        return low + share * (high - low)
-
-
-def _is_flat(values: FloatArray, others: FloatArray) -> bool:
-    """Return whether one of two variables would look like a flat line if both were drawn to one scale."""
-    smaller, larger = sorted(float(np.abs(series).max(initial=0.0)) for series in (values, others))
-    return 0.0 < smaller * _SEEN < larger
-
-
-def _build_scale(variables: Sequence[Variable], zoomed: bool) -> Scale:
-    units_seen = {find_unit(name) for name, _, _ in variables}
-    names = tuple(name for name, _, _ in variables)
-    return Scale(
-        _find_limits(variables, zoomed), units_seen.pop() if len(units_seen) == 1 else "", names
-    )
-
-
 def _group_lines(lines: Sequence[Line], zoomed: bool) -> Scales:
     return Scales.group([(line.name, line.ys, line.scale) for line in lines], zoomed)
-
-
-def _find_limits(variables: Sequence[Variable], zoomed: bool) -> Limits:
-    ends = [
-        (name, float(values.min()), float(values.max()))
-        for name, values, _ in variables
-        if len(values)
-    ]
-    if not ends:
-        return 0.0, 1.0
-    from_zero = not zoomed and any(units.begins_at_zero(*end) for end in ends)
-    return choose_limits(
-        min(low for _, low, _ in ends), max(high for _, _, high in ends), from_zero
-    )
 
 
 def _measure_widest(limits: Limits) -> float:
@@ -511,6 +406,7 @@ def _draw_axes(frame: Frame, scales: Scales, lines: Sequence[Line], *, with_x: b
         for value, text in label_ticks(scale.limits, _count_labels(frame)):
             y = float(other.find_ys(value))
             shapes += [Rule(x, y, x + 4, y), Words(x + 7, y, text, rgb=rgb)]
+        shapes.append(Words(x, frame.top - LINE_PX / 2 - 4, scale.unit, rgb=rgb))
         shapes.append(Rule(x, frame.top, x, frame.bottom))
         x += _measure_widest(scale.limits) + _SCALE_GAP_PX
     return shapes + draw_borders(frame)

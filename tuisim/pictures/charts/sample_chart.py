@@ -11,7 +11,8 @@ from tuisim.engine.runs.samples import Sample
 from tuisim.logs.magnitude import limit_drawn
 from tuisim.pictures.charts.axes import Limits, choose_limits, widen_times
 from tuisim.pictures.charts.canvas import DOTS_X, DOTS_Y, drop_hidden_points
-from tuisim.pictures.charts.layout import ChartData, Line, add_unit
+from tuisim.pictures.charts.layout import ChartData, Line
+from tuisim.pictures.charts.scales import add_unit
 from tuisim.pictures.charts.traces import (
     Pyramid,
     clip_line,

@@ -25,8 +25,9 @@ from tuisim.pictures.charts.canvas import (
     draw_xy_chart,
 )
 from tuisim.pictures.charts.cell_scales import CellScales
-from tuisim.pictures.charts.layout import COLORS, ChartData, Line, Span, find_color, find_unit
+from tuisim.pictures.charts.layout import COLORS, ChartData, Line, Span, find_color
 from tuisim.pictures.charts.plot_image import Plot
+from tuisim.pictures.charts.scales import find_unit
 from tuisim.pictures.charts.traces import Trace, Traces
 from tuisim.terminal.text_runs import Run, cut
 
