@@ -104,6 +104,7 @@ def test_select_rows_gives_the_printed_lines_that_meet_a_condition(
     "text, sample",
     {
         "two words": ("Angle L: 5", "Angle_L: 5"),
+        "two blanks between them": ("Angle  L: 5", "Angle_L: 5"),
         "a unit": ("T: 5 mm", "T: 5"),
         "a rate": ("Speed: -5.5 deg/s", "Speed: -5.5"),
         "a comma": ("Licht: 3,5", "Licht: 3.5"),
@@ -132,6 +133,14 @@ def test_a_line_that_is_nearly_a_sample_is_told_with_the_sample_that_it_may_beco
 )
 def test_ordinary_text_is_not_called_nearly_a_sample(text: str) -> None:
     assert describe_near_sample([row_of(text)]) == ""
+
+
+def test_every_name_whose_lines_are_nearly_samples_is_told_once() -> None:
+    texts = ("Left: 3,5", "Colour  value: 4", "Left: 3,6", "Way: 5 mm", "Good: 5")
+    assert describe_near_sample(map(row_of, texts)) == (
+        "'Left: 3,5' in line 7, 'Colour  value: 4' in line 7, 'Way: 5 mm' in line 7 are no samples; one is one word, "
+        "a colon and a number: print 'Left: 3.5', 'Colour_value: 4', 'Way: 5'"
+    )
 
 
 def row_of(text: str) -> OutputRow:

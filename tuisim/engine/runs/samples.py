@@ -13,6 +13,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
+from tuisim.base.errors import listed
 from tuisim.engine.core.conditions import NUMBER, ValueCondition, ValueSource
 from tuisim.engine.runs.records import SAMPLE_STREAMS, OutputRow, Stream
 
@@ -29,7 +30,7 @@ _PLAIN_SAMPLE = re.compile(
 """Matches most samples in the bytes of the recording; a line that it does not match may still be a sample."""
 
 _NEAR_SAMPLE = re.compile(
-    r"(?:\^log[ \t]+)?(?P<name>[^\W\d]\w*(?: \w+){0,3}) ?:[ \t]*(?P<number>[+-]?\d+(?:[.,]\d+)?)"
+    r"(?:\^log[ \t]+)?(?P<name>[^\W\d]\w*(?: +\w+){0,3}) *:[ \t]*(?P<number>[+-]?\d+(?:[.,]\d+)?)"
     r"(?: ?(?:%|°|[A-Za-z]{1,3})(?:/s)?)?\s*"
 )
 """A name of several words, a number with a comma, or a unit behind it; also most samples."""
@@ -76,17 +77,25 @@ def parse_sample(text: str) -> tuple[str, float, float | None] | None:
 
 
 def describe_near_sample(rows: Iterable[OutputRow]) -> str:
-    """Return a text that says which of the first rows is nearly a sample and how to make it one; empty if none is."""
+    """Return a text that says which of the first rows are nearly samples and how to make them some; empty if none are.
+
+    One row is named for each name.
+    """
+    places: dict[str, str] = {}
+    remedies: list[str] = []
     for row in islice(rows, _MAX_ROWS_READ):
         if row.stream not in SAMPLE_STREAMS or not (match := _NEAR_SAMPLE.fullmatch(row.text)):
             continue
-        if parse_sample(row.text) is None:
-            name, number = "_".join(match["name"].split()), match["number"].replace(",", ".")
-            return (
-                f"{row.text.strip()!r} in line {row.line} is no sample, which is one word, a colon and a number: "
-                f"print {f'{name}: {number}'!r}"
-            )
-    return ""
+        name = "_".join(match["name"].split())
+        if name not in places and parse_sample(row.text) is None:
+            places[name] = f"{row.text.strip()!r} in line {row.line}"
+            remedies.append(repr(f"{name}: {match['number'].replace(',', '.')}"))
+    if not places:
+        return ""
+    verb = "is no sample, which is" if len(places) == 1 else "are no samples; one is"
+    return (
+        f"{listed(places.values())} {verb} one word, a colon and a number: print {listed(remedies)}"
+    )
 
 
 @dataclass(frozen=True, slots=True)
