@@ -389,6 +389,12 @@ print(ColorSensor("in2").reflected_light_intensity)
     "text, above, is_told",
     {
         "a magic line": (f"# %sim_magic -b Loop\n{READS_LIGHT}", {}, True),
+        "predefined names beside": (f"# %%sim_magic_preloaded\n{READS_LIGHT}", {}, True),
+        "predefined names alone": (
+            "# %%sim_magic_preloaded\nprint(colorLeft.reflected_light_intensity)\n",
+            {},
+            False,
+        ),
         "the brick's rules": (READS_LIGHT, {}, False),
         "a chosen profile": (f"# %sim_magic\n{READS_LIGHT}", {"profile": "robolab"}, False),
         "the course's names": (f"# %sim_magic\n{READS_LIGHT}".replace(")\n", "_pc)\n"), {}, False),

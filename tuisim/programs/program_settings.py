@@ -473,11 +473,13 @@ def _has_brick_rules(source: ProgramSource, facts: SourceFacts) -> bool:
     return facts.library is not None and not facts.of_course and not source.has_magic
 
 
-def _describe_course_rules(source: ProgramSource, facts: SourceFacts) -> str:
-    """Return which rules of the course do not apply to a program with its own imports; empty if none is relevant."""
+def _describe_course_rules(source: ProgramSource) -> str:
+    """Return by which rule of the course a program with its own imports reads light; empty if it does not."""
+    if not source.has_magic or _BRICK_LIGHT not in source.program.text:
+        return ""
+    facts = read_source_facts(source.program)
     brings_library = facts.library is Library.EV3DEV2 and facts.shown_ports is not None
-    is_surprised = brings_library and source.has_magic and not facts.of_course
-    return _COURSE_RULES if is_surprised and _BRICK_LIGHT in source.program.text else ""
+    return _COURSE_RULES if brings_library and not facts.of_course else ""
 
 
 def _describe_decision(
@@ -503,7 +505,7 @@ def _describe_decision(
     brick = "hub" if facts.robot and facts.robot.choice.spec.hub else "brick"
     rules = f"as on a {brick}{version} (profile {profile})" if profile else ""
     if not rules and "profile" in free:
-        rules = _describe_course_rules(source, facts)
+        rules = _describe_course_rules(source)
     if facts.robot and "robot" in layer:
         from tuisim.programs.robot.report import describe_robot
 
