@@ -64,6 +64,24 @@ def test_the_summary_names_ends_and_quantiles(
     assert first.split() == ["far_mm", "101", "0", *["101"] * 7]
 
 
+def test_a_batch_whose_seeds_change_nothing_says_so(
+    batch: Batch, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    note = "every seed gave the same results"
+    batch("mine.py", "--seeds", "1,2")
+    assert note not in capsys.readouterr().err
+    same = {"y_mm": 200.0, "time_s": 1.0, "variables": {}}
+
+    def run(tasks: Iterable[Task], _: int = 0) -> Iterator[Result]:
+        yield from (result_of(task, **same) for task in tasks)
+
+    monkeypatch.setattr(sweep, "run_many", run)
+    batch("mine.py", "--set", "noise.motor=0,20")
+    assert note not in capsys.readouterr().err
+    batch("mine.py", "--seeds", "1,2")
+    assert note in capsys.readouterr().err
+
+
 def test_batch_prints_its_rows_as_json(batch: Batch, capsys: pytest.CaptureFixture[str]) -> None:
     assert batch("mine.py", "--seeds", "13,14", "--json") == 1
     rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]

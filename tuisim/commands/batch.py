@@ -165,6 +165,11 @@ class _Batch:
         echo_lines(_format_summary(lines[:MAX_LINES], shutil.get_terminal_size().columns))
         if len(lines) > MAX_LINES:
             echo(f"and {len(lines) - MAX_LINES:,} more lines; --out FILE writes everything")
+        is_constant = all(line.statistics.std < _ROUNDING for line in lines)
+        if is_constant and len(frame) > 1 and self.request.plan.count_seeds() > 1:
+            echo_error(
+                "note: every seed gave the same results; they differ with noise: -N for light, -M for motors"
+            )
         run_ids = [str(row[RUN_ID]) for row in self.rows.values() if RUN_ID in row]
         if run_ids:
             command = f"tuisim analyse {' '.join(run_ids[:_MAX_OVERLAID])}{' …' * (len(run_ids) > _MAX_OVERLAID)}"
