@@ -20,8 +20,8 @@ from tuisim.tasks.lessons.story import build_story
 
 SAID: dict[str, tuple[Condition, str]] = {
     "end": (ReachCondition(x_mm=1150, at_end=True), "it ended at x = 1153 mm, y = 500 mm"),
-    "reach": (ReachCondition(x_mm=1150), "it was at x = 1153 mm, y = 500 mm at 5.42 s"),
-    "pass": (PassCondition(((1150, 500),)), "it was at x = 1153 mm, y = 500 mm at 5.42 s"),
+    "reach": (ReachCondition(x_mm=1150), "it came to the goal at 5.42 s"),
+    "pass": (PassCondition(((1150, 500),)), "it came to the goal at 5.42 s"),
     "print": (PrintCondition(("x",)), "line 3 printed it at 5.42 s, at x = 1153 mm, y = 500 mm"),
     "print lines": (
         PrintCondition(("x", "y")),

@@ -58,7 +58,8 @@ def _describe_condition(condition: Condition, event: Change, line: int) -> str:
         case ReachCondition(at_end=True):
             return f"it ended {where}"
         case ReachCondition() | PassCondition():
-            return f"it was {where} {when}"
+            # A place on the way would be taken for the place where the robot stopped.
+            return f"it came to the goal {when}"
         case PrintCondition(lines=lines):
             last = "" if len(lines) == 1 else " the last"
             return f"line {line} printed{last or ' it'} {when}, {where}"
