@@ -83,7 +83,7 @@ CASES = {
         "print = 'one'\nafter = 'never'",
         "missed",
         2.78,
-        "“never” was not met.",
+        "“never” was not met; only what comes after it counts.",
     ),
     "after a time beyond the run": ("print = 'one'\nafter = 5", "missed", 2.78, "ended before 5 s"),
     "held until a goal": (
@@ -102,7 +102,7 @@ CASES = {
         "touch_nothing = true\nuntil = 'never'",
         "missed",
         2.78,
-        "“never” was not met.",
+        "“never” was not met; until then this must hold.",
     ),
     "held until a time beyond the run": ("touch_nothing = true\nuntil = 9", "met", 2.78, ""),
     "held after a goal": (

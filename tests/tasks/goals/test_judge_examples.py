@@ -96,13 +96,13 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
             "levels": "Colour came near 3 of 8 levels: 82.7 is next, and the nearest after 100 was",
             "black": "right of x = 1520 mm.",
             "straight": "left the area at",
-            "finish": "“levels” was not met.",
+            "finish": "“Log the light of every band as Colour, in driving order” was not met;",
         },
     ),
     "log_greys, goes on": (
         "log_greys",
         {"tank_drive.off()": "tank_drive.on_for_rotations(50, 50, 2)"},
-        {"black": "of x = 1520 mm.", "straight": "“black” was not met."},
+        {"black": "of x = 1520 mm.", "straight": "“Stop on the black band” was not met;"},
     ),
     "log_greys, turns": (
         "log_greys",
@@ -116,13 +116,16 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
             "near": "At the end the robot was 126 mm from (1330, 600).",
             "no_touch": "touched the obstacle at x 1500, y 200",
             "sensor": "calls on_for_rotations",
-            "finish": "“sensor” was not met.",
+            "finish": "“Use the distance sensor instead of counting rotations” was not met;",
         },
     ),
     "stop_at_wall, too late": (
         "stop_at_wall",
         {"STOP_CM = 15": "STOP_CM = 3"},
-        {"near": "At the end", "no_touch": "“near” was not met."},
+        {
+            "near": "At the end",
+            "no_touch": "“Come to rest 5 to 20 cm in front of the wall” was not met;",
+        },
     ),
     "stop_at_wall, never stops": (
         "stop_at_wall",
@@ -134,10 +137,10 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         {"steering = GAIN * (left - right)": "steering = 0"},
         {
             "round": "",
-            "stick": "“round” was not met.",
+            "stick": "its upper and its right side” was not met;",
             "on_the_line": "",
             "stop": "At the end",
-            "finish": "“round” was not met.",
+            "finish": "its upper and its right side” was not met;",
         },
     ),
     "square, wrong corners": (
@@ -163,9 +166,9 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         {'    print("side"': '    print("side" + 1'},
         {
             "corners": "after place 1",
-            "closed": "“far corner” was not met.",
+            "closed": "“far corner” was not met;",
             "sides": "of the picture",
-            "finish": "“far corner” was not met.",
+            "finish": "“far corner” was not met;",
             "far corner": "came no nearer",
         },
     ),
@@ -175,8 +178,8 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         {
             "house": "of the picture is drawn",
             "roof": "to place 2 of 2",
-            "said": "“roof” was",
-            "finish": "“roof” was",
+            "said": "“The top of the roof is drawn after the floor” was",
+            "finish": "“The top of the roof is drawn after the floor” was",
         },
     ),
     "draw_house, says nothing": (

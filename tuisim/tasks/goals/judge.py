@@ -262,6 +262,11 @@ class _Judge:
         happened = self._change(outcome.happened, outcome.state) if outcome.happened else None
         return Judgement(goal, changes, outcome.reason, self._find_line(outcome), happened)
 
+    def _quote(self, name: str) -> str:
+        """Return a goal in quotes: its sentence, but only its name if it has none, or is hidden."""
+        goal = self._goals[name]
+        return f"“{name if goal.hidden else goal.say.removesuffix('.') or name}”"
+
     def _change(self, moment: EvidencePoint, state: GoalState) -> Change:
         # A moment after the last tick has no record, so the last one is used.
         tick = max(0, min(moment.tick, self._evidence.last.tick))
@@ -306,9 +311,8 @@ class _Judge:
                 if first.state is GoalState.OPEN:
                     return _Outcome(GoalState.OPEN, reason=f"“{name}” is not met yet.")
                 if first.state is GoalState.MISSED:
-                    return _Outcome(
-                        GoalState.MISSED, first.moment, f"“{name}” was not met.", first.line
-                    )
+                    why = f"{self._quote(name)} was not met; only what comes after it counts."
+                    return _Outcome(GoalState.MISSED, first.moment, why, first.line)
                 start = first.moment
             case float() | int() as time_s:
                 moment = self._evidence.find_earlier_moment(time_s)
@@ -394,7 +398,8 @@ class _Judge:
         if not self._evidence.ended:
             return _Outcome(GoalState.OPEN, reason=finding.reason, line=finding.line or 0)
         if isinstance(goal.until, str):
-            return _Outcome(GoalState.MISSED, self._evidence.last, f"“{goal.until}” was not met.")
+            why = f"{self._quote(goal.until)} was not met; until then this must hold."
+            return _Outcome(GoalState.MISSED, self._evidence.last, why)
         return _Outcome(GoalState.MET, self._evidence.last, line=None)
 
     def _judge_combined(self, condition: AllOf | AnyOf | NoneOf, goal: Goal) -> _Outcome:
