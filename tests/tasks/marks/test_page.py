@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from tests.tasks.marks.test_copies import LINE, OTHER, RENAMED
 from tests.tasks.marks.test_sheet import OUTCOMES, SHEET, STUDENTS
 from tuisim.tasks.marks.copies import find_similar
-from tuisim.tasks.marks.page import build_page, compute_distribution, compute_goal_statistics
+from tuisim.tasks.marks.page import (
+    build_page,
+    compute_distribution,
+    compute_goal_statistics,
+    group_reasons,
+)
 from tuisim.tasks.marks.sheet import build_sheet
 
 
@@ -16,6 +22,25 @@ def test_goal_statistics_count_who_met_them_and_why_others_missed() -> None:
     assert (place.met, place.partly, wall.met, wall.partly) == (1, 1, 3, 0)
     assert (place.mean, wall.mean) == ((7 + 5.25) / 5, 9 / 5)
     assert place.reasons[0] == ("it stopped 40 mm away", 3)
+
+
+def test_reasons_that_differ_only_in_measurements_are_one_with_ranges() -> None:
+    reasons = [
+        *("it was 405 mm left of x = 1430 mm", "it was 1,077.5 mm left of x = 1430 mm"),
+        *("it was 17 mm right of x = 1430 mm", "“corner 1” was missed", "“corner 2” was missed"),
+    ]
+    assert group_reasons(reasons) == (
+        ("it was 405 to 1,077.5 mm left of x = 1430 mm", 2),
+        ("it was 17 mm right of x = 1430 mm", 1),
+        ("“corner 1” was missed", 1),
+        ("other reasons", 1),
+    )
+
+
+def test_words_between_backticks_are_code_on_the_page_of_marks() -> None:
+    columns = [replace(each, say="Print `Colour: <` and ` at last.") for each in SHEET.columns]
+    page = build_page(replace(SHEET, columns=tuple(columns)))
+    assert "Print <code>Colour: &lt;</code> and ` at last." in page
 
 
 def test_the_distribution_of_points_counts_every_student() -> None:

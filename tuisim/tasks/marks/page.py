@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
@@ -19,6 +20,8 @@ from tuisim.tasks.marks.sheet import Cell, Sheet, SheetRow
 _MIN_STUDENTS = 3
 """Fewer have no statistics of points."""
 MAX_REASONS = 3
+_NUMBER = re.compile(r"“[^”]*”|(?<![\w.])-?\d[\d,]*(?:\.\d+)?(?![\w.]*\w)")
+"""A number in a reason, or a name in quotes, whose numbers are no measurements."""
 BINS = 10
 
 
@@ -38,7 +41,7 @@ class GoalStatistics:
     mean: float
     """Mean points."""
     reasons: tuple[tuple[str, int], ...]
-    """The most frequent reasons of those who missed it, each with the number of students."""
+    """The most frequent reasons of those who missed it, each with the number of students, see `group_reasons`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,9 +185,40 @@ def compute_goal_statistics(sheet: Sheet) -> tuple[GoalStatistics, ...]:
         partly = sum(0 < cell.met < row.runs for row, cell in cells)
         points = [cell.points for _, cell in cells if not math.isnan(cell.points)]
         mean = math.fsum(points) / len(points) if points else 0.0
-        reasons = Counter(cell.reason for _, cell in cells if cell.reason).most_common(MAX_REASONS)
-        statistics.append(GoalStatistics(goal, met, partly, mean, tuple(reasons)))
+        reasons = group_reasons(cell.reason for _, cell in cells if cell.reason)
+        statistics.append(GoalStatistics(goal, met, partly, mean, reasons))
     return tuple(statistics)
+
+
+def group_reasons(reasons: Iterable[str]) -> tuple[tuple[str, int], ...]:
+    """Return the most frequent kinds of reasons, each with its number, and then the number of all others.
+
+    Reasons of one kind differ only in numbers, which become ranges, such as `stopped 5 to 40 mm away`.
+    """
+    groups: dict[str, list[str]] = {}
+    for reason in reasons:
+        kind = _NUMBER.sub(lambda match: match[0] if match[0][0] == "“" else "#", reason)
+        groups.setdefault(kind, []).append(reason)
+    kinds = sorted(groups.values(), key=len, reverse=True)
+    counts = [(_join_reasons(each), len(each)) for each in kinds[:MAX_REASONS]]
+    others = sum(map(len, kinds[MAX_REASONS:]))
+    return (*counts, *([("other reasons", others)] if others else []))
+
+
+def _join_reasons(reasons: Sequence[str]) -> str:
+    """Return reasons of one kind as one, with a range in place of each number in which they differ."""
+    columns = zip(*map(_NUMBER.findall, reasons), strict=True)
+    ranges = iter([sorted(set(column), key=_read_number) for column in columns])
+
+    def join(_: re.Match[str]) -> str:
+        numbers = next(ranges)
+        return numbers[0] if len(numbers) == 1 else f"{numbers[0]} to {numbers[-1]}"
+
+    return _NUMBER.sub(join, reasons[0])
+
+
+def _read_number(text: str) -> float:
+    return float(text.replace(",", "")) if text[0] != "“" else 0.0
 
 
 def compute_distribution(sheet: Sheet) -> tuple[tuple[float, float, int], ...]:
