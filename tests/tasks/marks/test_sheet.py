@@ -323,6 +323,7 @@ def test_feedback_says_only_once_why_a_program_does_not_compile() -> None:
     )
     text = build_feedback(SHEET, row, TEXT)
     assert text.count("was never closed") == 1 and "Line 2:" not in text and "[missed]" in text
+    assert "times, each time" not in text
 
 
 def test_feedback_names_an_error_without_control_characters() -> None:

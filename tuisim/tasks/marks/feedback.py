@@ -92,6 +92,9 @@ def _build_feedback(sheet: Sheet, row: SheetRow, source: str) -> str:
 
 
 def _describe_frequency(row: SheetRow) -> list[str]:
+    if any(cell.reason.startswith(UNCOMPILED) for cell in row.cells):
+        # It never began.
+        return []
     if row.stopped_early:
         return ["Your program ran once: it would not end in other runs either.", ""]
     if row.runs < 2:

@@ -17,6 +17,7 @@ from tuisim.base.errors import printable, shortened
 from tuisim.base.faults import UNJUDGED
 from tuisim.base.source import source_lines, user_python_path
 from tuisim.engine.protocol import End
+from tuisim.tasks.goals.judge import UNCOMPILED
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.goals.spec import AllOf
 from tuisim.tasks.goals.trial_world import TrialWorld
@@ -101,9 +102,11 @@ class Outcome:
     def gave_up(self) -> bool:
         """Whether the program hung, flooded or died without meeting a goal, so that further runs would only cost time.
 
-        The result is False if it has met a goal that gives points, since the other runs show whether it meets that goal
-        again.
+        So does one that does not compile. The result is False if it has met a goal that gives points, since the other
+        runs show whether it meets that goal again.
         """
+        if any(goal.reason.startswith(UNCOMPILED) for goal in self.goals):
+            return True
         return self.end in _GIVEN_UP and not any(
             goal.met and not goal.is_penalty for goal in self.goals
         )
