@@ -30,6 +30,7 @@ from tuisim.commands.echo import (
     echo_lines,
     echo_wrapped,
     echo_written,
+    is_watched,
     tell,
 )
 from tuisim.commands.exit_status import Interrupted, raise_signals
@@ -221,6 +222,8 @@ def _mark(marking: Marking, arguments: Arguments) -> int:
     _tell_strangers(marking, arguments.roster)
     marking.read_programs()
     isolate = _should_isolate(arguments)
+    if is_watched():
+        echo_error(f"marking: {marking.size_words}")
     with Progress("marking", in_lines=True):
         try:
             with raise_signals():

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError
+from tuisim.base.errors import ConfigError, counted
 from tuisim.engine import files
 from tuisim.engine.runs.child.isolation import MOST_BYTES
 from tuisim.engine.runs.handle import RunOptions
@@ -265,6 +265,14 @@ class Marking:
                 counts[name] = count_runs(self.outcomes[name], plan)
                 total = sum(counts.values())
                 tell(f"run {done} of {total}", done, total)
+
+    @property
+    def size_words(self) -> str:
+        """How many runs the marking has at most, such as `40 runs: 2 programs × 20 seeds`."""
+        entries, seeds, worlds = len(self._entries), len(self._plan.seeds), len(self._plan.worlds)
+        words = f"{counted(entries, 'program')} × {counted(seeds, 'seed')}"
+        words += f" × {worlds} worlds" if worlds > 1 else ""
+        return f"{counted(entries * seeds * worlds, 'run')}: {words}"
 
     @property
     def missing(self) -> list[tuple[str, Outcome]]:
