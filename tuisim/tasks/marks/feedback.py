@@ -76,6 +76,8 @@ def _build_feedback(sheet: Sheet, row: SheetRow, source: str) -> str:
         parts += [_wrap(f"Your program did not run to its end: {row.failure}"), ""]
         parts += [f"    {line}" for line in source_lines(row.error)[-MAX_ERROR_LINES:]]
         parts += [""] if row.error else []
+    if row.diagnosis:
+        parts += [_wrap(f"What went wrong, with seed {row.seed}: {row.diagnosis}."), ""]
     if row.refusal:
         parts += [_wrap(f"Your program would not run on a brick: {row.refusal}"), ""]
     quoted = source_lines(source)

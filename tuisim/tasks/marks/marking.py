@@ -331,6 +331,11 @@ class Marking:
         """
         request = self._request
         sources = [student.text for student in self.students]
+        if request.exports or request.feedback or request.gradebooks:
+            # Imported on demand: a marking that writes no files needs no reasons.
+            from tuisim.tasks.marks.diagnosis import add_diagnoses
+
+            sheet = add_diagnoses(sheet)
         for target in request.exports:
             if target.suffix.lower() in EXPORTERS:
                 yield target, partial(export_marks, sheet, target)

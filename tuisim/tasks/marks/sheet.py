@@ -76,6 +76,8 @@ class SheetRow:
     """Whether that was only in a hidden world."""
     error: str = ""
     """The traceback of that run; empty if it has none."""
+    diagnosis: str = ""
+    """The first reason why that run went wrong, see `find_diagnosis`; empty if none was looked for or found."""
     runs: int = 0
     stopped_early: bool = False
     """Whether further seeds were left out, because the program hung, flooded or died."""
