@@ -139,8 +139,8 @@ def test_a_space_stands_between_each_label_and_its_value() -> None:
         colors={"left": ColorReading(255.0, 255.0, 255.0), "right": ColorReading(0.0, 0.0, 255.0)}
     )
     assert [row for row in text(on_white, 26, 14) if "red" in row] == [
-        "Sensor1 red  100 mean  100",
-        "Sensor2 red  0.0 mean 33.3",
+        "left  red  100 mean  100",
+        "right red  0.0 mean 33.3",
     ]
 
 
@@ -148,7 +148,7 @@ def test_a_space_stands_between_each_label_and_its_value() -> None:
 def test_names_of_motors_and_sensors_in_the_readings_are_not_cut(width: int, height: int) -> None:
     rows = "\n".join(text(moment(), width, height))
 
-    for name in ("LeftMotor", "RightMotor", "Sensor1", "Sensor2", "Ultrasonic"):
+    for name in ("LeftMotor", "RightMotor", "left", "right", "Ultrasonic"):
         assert name in rows
 
 
@@ -159,19 +159,19 @@ def test_names_of_motors_and_sensors_in_the_readings_are_not_cut(width: int, hei
             "reflected_light_intensity",
             "red 220/255 mean 86.3 %",
             "red 220/255 White",
-            "Sensor1 220/255",
+            "left 220/255",
         ),
         "percent": (
             "reflected_light_intensity_pc",
             "red 86.3 % mean 86.3 %",
             "red 86.3 % White",
-            "in2 86.3%",
+            "left 86.3%",
         ),
         "mean": (
             "full_reflected_light_intensity",
             "mean 86.3 % red 86.3 %",
             "mean 86.3 % White",
-            "in2 86.3%",
+            "left 86.3%",
         ),
     },
 )
@@ -188,12 +188,12 @@ def test_a_light_is_shown_in_the_unit_that_the_program_reads(
 def test_a_hub_shows_the_light_of_all_channels_which_its_program_reads_before_the_red_one() -> None:
     seen = LightSeen(ColorReading(185.0, 0.0, 75.0, is_hubs=True), LightRead.REFLECTION, 100)
     lines = (
-        build_sensor_lines("Sensor1", "C", seen, 44)[0],
-        build_sensor_line("Sensor1", "C", seen, 40),
+        build_sensor_lines("left", "C", seen, 44)[0],
+        build_sensor_line("left", "C", seen, 40),
     )
     words = [" ".join("".join(part for part, _ in line).split()) for line in lines]
-    assert words[0] == "Sensor1 mean 33 % red 72.5 %"
-    assert words[1].startswith("Sensor1 mean 33 %")
+    assert words[0] == "left C mean 33 % red 72.5 %"
+    assert words[1].startswith("left C mean 33 %")
 
 
 def test_readings_stand_beside_the_names_of_their_parts() -> None:
@@ -202,9 +202,9 @@ def test_readings_stand_beside_the_names_of_their_parts() -> None:
     assert rows == [
         "LeftMotor tacho 1234 525 °/s",
         "RightMotor tacho -57 -512 °/s",
-        "Sensor1 red 86.3 % mean 86.3 %",
+        "left in2 red 86.3 % mean 86.3 %",
         "color (220, 220, 220) White",
-        "Sensor2 red 0.0 % mean 33.3 %",
+        "right in3 red 0.0 % mean 33.3 %",
         "color (0, 0, 255) Blue",
         "Ultrasonic 134.2 cm 1342 mm",
         "Gyro -90° rate 12 °/s",
@@ -272,9 +272,8 @@ def test_the_readings_say_how_the_run_ended() -> None:
 @pytest.mark.parametrize("height", [4, 5])
 def test_names_of_colors_take_a_row_that_is_free(height: int) -> None:
     rows = text(moment(), 40, height)
-    assert rows[3].split() == ["in2", "White", "in3", "Blue"]
+    assert rows[3].split() == ["left", "White", "right", "Blue"]
     assert not any("White" in row for row in text(moment(), 40, 3))
-    assert text(moment(), 45, height)[3].split() == ["Sensor1", "White", "Sensor2", "Blue"]
 
 
 @pytest.mark.parametrize("size", [(20, 6), (26, 9), (44, 14)], ids=str)
@@ -297,8 +296,9 @@ async def test_readings_of_an_earlier_moment_are_wiped_from_the_panel() -> None:
         app.panel.show(BARE)
         await pilot.pause()
 
+        rows = text(BARE, 40, 11)
         assert [row.rstrip() for row in screen_text(app)] == [
-            row.rstrip() for row in text(BARE, 40, 11)
+            row.rstrip() for row in [*rows, *[""] * (11 - len(rows))]
         ]
 
 
@@ -320,11 +320,11 @@ def test_further_motors_and_sensors_have_rows_in_the_readings() -> None:
 @pytest.mark.parametrize(
     "width, height, shown",
     [
-        (78, 2, "L R Sensor1 Sensor2 US Gyro x y"),
-        (46, 3, "L R in2 in3 US Gyro x y h"),
-        (38, 2, "L R Sensor1 Sensor2 US Gyro"),
-        (30, 2, "L R in2 in3"),
-        (78, 1, "L R Sensor1 Sensor2"),
+        (78, 2, "L R left right US Gyro x y"),
+        (46, 3, "L R left right US Gyro x y h"),
+        (38, 2, "L R left right US Gyro"),
+        (30, 2, "L R left right"),
+        (78, 1, "L R left right"),
     ],
 )
 def test_in_few_lines_the_readings_stand_side_by_side(width: int, height: int, shown: str) -> None:
@@ -368,3 +368,9 @@ def test_states_of_motor_drivers_have_rows_of_their_own_if_they_fit() -> None:
     assert len(shown) == 14
     assert text(HELD, 48, 11)[0].endswith("-304 °/s  holding   ")
     assert text(HELD, 46, 3)[0].startswith("L  1234 holding ")
+
+
+def test_a_sensor_that_the_robot_does_not_have_takes_no_row() -> None:
+    for height in (5, 7, 11, 14):
+        rows = "\n".join(text(BARE, 40, height))
+        assert "Ultrasonic" not in rows and "US" not in rows and "Gyro" not in rows, height

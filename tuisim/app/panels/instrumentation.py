@@ -7,7 +7,6 @@ import itertools
 from tuisim.app.panels.instrumentation_lines import (
     COLUMN,
     MAX_NAME_CELLS,
-    PORT_CELLS,
     VALUE,
     WARNING,
     add_states,
@@ -74,8 +73,14 @@ def build_subtitle(now: Snapshot, height: int) -> str:
 
 
 def _is_small(now: Snapshot, height: int) -> bool:
+    return height < _count_rows(now)
+
+
+def _count_rows(now: Snapshot) -> int:
+    """Return the number of rows in which each part of the robot has one row, and pose, clock and state, too."""
     robot = now.spec.robot
-    return height < 7 + len(robot.color_sensors) + len(robot.extra_motors) + len(now.further)
+    ranging = (robot.ultrasonic is not None) + (robot.gyro is not None)
+    return 5 + ranging + len(robot.color_sensors) + len(robot.extra_motors) + len(now.further)
 
 
 def build_lines(now: Snapshot, width: int, height: int) -> list[Line]:
@@ -93,20 +98,21 @@ def build_lines(now: Snapshot, width: int, height: int) -> list[Line]:
     further = [*build_extra_motor_lines(now, width), *_build_sensor_lines(now, width)]
     if _is_small(now, height):
         short = [build_sensor_line(*sensor, width) for sensor in sensors]
-        whole = [*motors, *short, _build_ranging_line(now, width), _place_and_time(now, width)]
+        whole = [*motors, *short, *_build_ranging_line(now, width), _place_and_time(now, width)]
         whole += further
         return whole if len(whole) <= height else _build_columns_text(now, width, max(height, 1))
-    ranging = [_build_ultrasonic_line(now, width), _build_gyro_line(now, width), *further]
+    ranging = [*_build_ranging_lines(now, width), *further]
     rest = [
         *ranging,
         _build_pose_line(now, width),
         _build_clock_line(now, width),
         _build_state_line(now, width),
     ]
-    if height < 7 + 2 * len(sensors) + len(further):
+    rows = _count_rows(now) + len(sensors)
+    if height < rows:
         return [*motors, *(build_sensor_line(*sensor, width) for sensor in sensors), *rest]
     full = [line for sensor in sensors for line in build_sensor_lines(*sensor, width)]
-    if height < 10 + 2 * len(sensors) + len(further):
+    if height < rows + 3:
         return [*motors, *full, *rest]
     return [*motors, [], *full, [], *ranging, [], *rest[len(ranging) :]]
 
@@ -132,8 +138,7 @@ def _build_tall_lines(now: Snapshot, width: int, height: int) -> list[Line]:
         [line for pair in zip(wheels, drivers, strict=False) for line in pair],
         [line for sensor in list_seen(now) for line in build_sensor_lines(*sensor, width)],
         [
-            _build_ultrasonic_line(now, width),
-            _build_gyro_line(now, width),
+            *_build_ranging_lines(now, width),
             *(line for pair in zip(extra, drivers[2:], strict=False) for line in pair),
             *_build_sensor_lines(now, width),
         ],
@@ -183,34 +188,31 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
     """Return the readings in columns, with as much detail as the width allows.
 
     In a narrow panel, the first of these choices that is enough is left out: the names of colours; only the pose; both;
-    these and the speeds; whole columns. Colour sensors are named if that fits, and otherwise have their ports.
+    these and the speeds; whole columns.
     """
     for detail, with_pose in ((2, True), (1, True), (2, False), (1, False), (0, False)):
         columns, sensing = _arrange_cells(now, height, detail)
         widths = [max(_measure_line(cell) for cell in column) for column in columns]
         needed = widths if with_pose else widths[:sensing]
-        if _measure_columns(needed) <= width:
+        gap = _GAP if _measure_columns(needed, _GAP) <= width else 1
+        if _measure_columns(needed, gap) <= width:
             break
-    named, _ = _arrange_cells(now, height, detail, with_sensor_names=True)
-    named_widths = [max(_measure_line(cell) for cell in column) for column in named]
-    if is_named := _measure_columns(named_widths[: len(needed)]) <= width:
-        columns, widths = named, named_widths
     lines: list[Line] = [[] for _ in range(height)]
     used = 0
     for column, cells in zip(widths, columns, strict=True):
-        if used and used + _GAP + column > width:
+        if used and used + gap + column > width:
             break
         for row, line in enumerate(lines):
             cell = cells[row] if row < len(cells) else []
             line += [
-                format_unit(" " * _GAP * bool(used)),
+                format_unit(" " * gap * bool(used)),
                 *cell,
                 format_unit(" " * (column - _measure_line(cell))),
             ]
-        used += column + _GAP * bool(used)
+        used += column + gap * bool(used)
     if detail < 2 and (below := max(map(len, columns))) < height:
-        lines[below] = _build_color_names(now, width, with_sensor_names=is_named)
-    if used < _measure_columns(widths):
+        lines[below] = _build_color_names(now, width)
+    if used < _measure_columns(widths, gap):
         _add_pose(lines, columns[:sensing], columns[sensing:], width)
     return lines
 
@@ -237,17 +239,17 @@ def _add_pose(
             return
 
 
-def _measure_columns(widths: list[int]) -> int:
-    return sum(widths) + _GAP * (len(widths) - 1)
+def _measure_columns(widths: list[int], gap: int) -> int:
+    return sum(widths) + gap * (len(widths) - 1)
 
 
-def _build_color_names(now: Snapshot, width: int, *, with_sensor_names: bool) -> Line:
+def _build_color_names(now: Snapshot, width: int) -> Line:
     """Return one line with the names of the colours that the sensors see, as many as fit."""
     line: Line = []
-    for name, port, seen in list_seen(now):
+    for name, _, seen in list_seen(now):
         more = [
             format_unit(" " * _GAP * bool(line)),
-            format_label(f"{name if with_sensor_names else port} ", PORT_CELLS),
+            format_label(f"{name} ", 0),
             format_value(f"{seen.color.name if seen else '–':<{MAX_NAME_CELLS}}"),
         ]
         if _measure_line(line) + _measure_line(more) <= width:
@@ -255,23 +257,17 @@ def _build_color_names(now: Snapshot, width: int, *, with_sensor_names: bool) ->
     return line
 
 
-def _arrange_cells(
-    now: Snapshot, height: int, detail: int, *, with_sensor_names: bool = False
-) -> tuple[list[list[Line]], int]:
+def _arrange_cells(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]], int]:
     """Return the readings as columns of cells, and how many of these columns the motors and sensors fill.
 
     Args:
         now: The instant.
         height: Most cells of a column.
         detail: 2 with speeds and names of colours, 1 without names, 0 without both.
-        with_sensor_names: Whether the colour sensors have their names, and not their ports.
     """
     robot = now.spec.robot
     motors = build_motor_cells(now, with_speed=detail > 0)
-    sensors = [
-        build_color_cell(name if with_sensor_names else port, seen, detail > 1)
-        for name, port, seen in list_seen(now)
-    ]
+    sensors = [build_color_cell(name, seen, detail > 1) for name, _, seen in list_seen(now)]
     ranging: list[Line] = []
     if now.ultrasonic_mm is not None:
         ranging.append(
@@ -300,27 +296,33 @@ def _measure_line(line: Line) -> int:
     return sum(len(text) for text, _ in line)
 
 
-def _build_ultrasonic_line(now: Snapshot, width: int) -> Line:
-    if now.ultrasonic_mm is None:
-        return [format_label("Ultrasonic"), format_unit("none")]
-    centimetres = f"{now.ultrasonic_mm / 10:.1f}"
+def _build_ranging_lines(now: Snapshot, width: int) -> list[Line]:
+    """Return a line for the ultrasonic sensor and one for the gyro, if the robot has them."""
+    lines = []
+    if now.ultrasonic_mm is not None:
+        lines.append(_build_ultrasonic_line(now.ultrasonic_mm, width))
+    if now.spec.robot.gyro is not None:
+        lines.append(_build_gyro_line(now, width))
+    return lines
+
+
+def _build_ultrasonic_line(far_mm: int, width: int) -> Line:
+    centimetres = f"{far_mm / 10:.1f}"
     return fit_line(
         width,
         (
             format_label("Ultrasonic"),
-            *format_values(f"{centimetres:>6}", " cm", f"{now.ultrasonic_mm:8d}", " mm"),
+            *format_values(f"{centimetres:>6}", " cm", f"{far_mm:8d}", " mm"),
         ),
         (
             format_label("Ultrasonic", 11),
-            *format_values(f"{centimetres:>5}", "cm", f"{now.ultrasonic_mm:5d}", "mm"),
+            *format_values(f"{centimetres:>5}", "cm", f"{far_mm:5d}", "mm"),
         ),
         (format_label("Ultrasonic", 11), format_value(centimetres), format_unit("cm")),
     )
 
 
 def _build_gyro_line(now: Snapshot, width: int) -> Line:
-    if now.spec.robot.gyro is None:
-        return [format_label("Gyro"), format_unit("none")]
     return fit_line(
         width,
         (
@@ -433,11 +435,14 @@ def _build_state_line(now: Snapshot, width: int) -> Line:
     )
 
 
-def _build_ranging_line(now: Snapshot, width: int) -> Line:
-    centimetres = "–" if now.ultrasonic_mm is None else f"{now.ultrasonic_mm / 10:.1f}"
-    angle = "–" if now.spec.robot.gyro is None else f"{now.gyro_deg}"
+def _build_ranging_line(now: Snapshot, width: int) -> list[Line]:
+    """Return one line for the ultrasonic sensor and the gyro, or none if the robot has neither."""
+    if now.ultrasonic_mm is None or now.spec.robot.gyro is None:
+        return _build_ranging_lines(now, width)
+    centimetres = f"{now.ultrasonic_mm / 10:.1f}"
+    angle = f"{now.gyro_deg}"
     far = format_value(f"{centimetres:>6}")
-    return fit_line(
+    line = fit_line(
         width,
         (
             format_label("Ultrasonic"),
@@ -463,6 +468,7 @@ def _build_ranging_line(now: Snapshot, width: int) -> Line:
         (format_label("US", 2), far, format_unit("cm G "), format_value(angle), format_unit("°")),
         (format_label("US", 2), far, format_unit("cm")),
     )
+    return [line]
 
 
 def _place_and_time(now: Snapshot, width: int) -> Line:

@@ -15,7 +15,7 @@ from tuisim.engine.core.motor_columns import STATE_BITS
 from tuisim.engine.core.sensors.color import ColorReading, LightRead
 from tuisim.engine.core.state import MotorValues
 from tuisim.programs.facts import read_facts
-from tuisim.terminal.text_runs import Line, Run
+from tuisim.terminal.text_runs import Line, Run, cut
 
 LABEL = Style(color=palette.LABEL)
 VALUE = Style(color=palette.WHITE, bold=True)
@@ -58,8 +58,10 @@ def format_values(*texts: str) -> list[Run]:
 MAX_NAME_CELLS = 7
 """Cells for the name of a colour, so that readings do not move when a sensor sees another colour."""
 
-PORT_CELLS = 4
-"""Cells for a port of the EV3, such as `in2`, and the space after it."""
+_NAME_CELLS = 6
+"""Cells for the name of a sensor, such as `right`, and the space after it."""
+_MAX_SENSOR_CELLS = 8
+"""Maximum cells for the name of a sensor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,38 +93,35 @@ class LightSeen:
 
 
 def list_seen(now: Snapshot) -> list[tuple[str, str, LightSeen | None]]:
-    """Return a label such as `Sensor1`, the port and the reading of each colour sensor.
-
-    A reading is None while the mat is unknown.
-    """
+    """Return the name, the port and the reading of each colour sensor; a reading is None while the mat is unknown."""
     robot = now.spec.robot
     reads = read_facts(now.program).find_light_reads(robot) if now.program else {}
     lines: list[tuple[str, str, LightSeen | None]] = []
-    for number, sensor in enumerate(robot.color_sensors, 1):
+    for sensor in robot.color_sensors:
         color = now.colors.get(sensor.name)
         read = reads.get(sensor.name, LightRead.PERCENT)
         seen = LightSeen(color, read, now.spec.profile.reflected_max) if color else None
-        lines.append((f"Sensor{number}", sensor.port, seen))
+        lines.append((cut(sensor.name, _MAX_SENSOR_CELLS), sensor.port, seen))
     return lines
 
 
-def build_color_cell(label: str, seen: LightSeen | None, with_name: bool) -> Line:
+def build_color_cell(name: str, seen: LightSeen | None, with_color: bool) -> Line:
     """Return the reading of a colour sensor as a cell of a column.
 
     Args:
-        label: Port or name of the sensor.
+        name: The name of the sensor.
         seen: Its reading; None while the mat is unknown.
-        with_name: Whether to add the name of the colour.
+        with_color: Whether to add the name of the colour.
     """
     if seen is None:
-        return [format_label(f"{label} ", PORT_CELLS), format_unit("–")]
+        return [format_label(f"{name} ", _NAME_CELLS), format_unit("–")]
     cell: Line = [
-        format_label(f"{label} ", PORT_CELLS),
+        format_label(f"{name} ", _NAME_CELLS),
         format_value(seen.value),
         format_unit(seen.unit),
         build_swatch(seen.color),
     ]
-    return [*cell, format_value(f" {seen.color.name:<{MAX_NAME_CELLS}}")] if with_name else cell
+    return [*cell, format_value(f" {seen.color.name:<{MAX_NAME_CELLS}}")] if with_color else cell
 
 
 def build_sensor_lines(
@@ -130,7 +129,7 @@ def build_sensor_lines(
 ) -> tuple[Line, Line]:
     """Return the reading of a colour sensor in two lines; the second line has the channels and the colour."""
     if seen is None:
-        return [format_label(name), format_unit("–")], []
+        return [format_label(f"{name} {port}"), format_unit("–")], []
     color = seen.color
     value = seen.value
     unit = seen.unit if seen.read is LightRead.REFLECTED else " %"
@@ -143,7 +142,7 @@ def build_sensor_lines(
     first = fit_line(
         width,
         (
-            format_label(name),
+            format_label(f"{name} {port} "),
             format_unit(f"{words[0]} "),
             format_value(value),
             format_unit(f"{unit}  {words[1]} "),
@@ -151,7 +150,7 @@ def build_sensor_lines(
             format_unit(" %"),
         ),
         (
-            format_label(name, 8),
+            format_label(f"{name} ", _NAME_CELLS),
             format_unit(words[0]),
             format_value(short_value),
             format_unit(f" {words[1]}"),
@@ -163,12 +162,7 @@ def build_sensor_lines(
             format_unit(f" {words[1]}"),
             format_value(short_other),
         ),
-        (
-            format_label(port, PORT_CELLS - 1),
-            format_value(short_value),
-            format_unit(f" {words[1]}"),
-            format_value(short_other),
-        ),
+        (format_label(name, _NAME_CELLS - 1), format_value(short_value), format_unit("%")),
     )
     wide = f"{color.rgb}"
     narrow = wide.replace(" ", "")
@@ -194,28 +188,20 @@ def build_sensor_lines(
 def build_sensor_line(name: str, port: str, seen: LightSeen | None, width: int) -> Line:
     """Return the reading of a colour sensor in one line."""
     if seen is None:
-        return fit_line(
-            width,
-            (format_label(name, 9), format_unit("–")),
-            (format_label(port, PORT_CELLS), format_unit("–")),
-        )
+        return [format_label(f"{name} ", _NAME_CELLS), format_unit("–")]
+    label = format_label(f"{name} ", _NAME_CELLS)
     after = (build_swatch(seen.color), format_value(f" {seen.color.name}"))
     return fit_line(
         width,
         (
-            format_label(name),
+            format_label(f"{name} {port} "),
             format_unit(f"{seen.word} "),
             format_value(seen.value),
             format_unit(f"{seen.unit:>2}  "),
             *after,
         ),
-        (format_label(name, 9), format_value(seen.value), format_unit(f"{seen.unit} "), *after),
-        (
-            format_label(port, PORT_CELLS),
-            format_value(seen.value),
-            format_unit(seen.unit),
-            *after,
-        ),
+        (label, format_value(seen.value), format_unit(f"{seen.unit} "), *after),
+        (label, format_value(seen.value), format_unit(seen.unit)),
     )
 
 
