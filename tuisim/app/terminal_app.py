@@ -338,7 +338,7 @@ class TerminalApp(BufferedApp):
         self.push_screen(Palette(host.ACTIONS.values(), host.find_situation()), handle_choice)
 
     def _ask_guide(self, host: ActionHost, question: str) -> None:
-        """Open the guide with the results for a question."""
+        """Open the guide with a page, or with the results for a question."""
         from tuisim.app.guide.screen import GuideScreen
 
         host.action_act("help")

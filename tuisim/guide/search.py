@@ -20,6 +20,7 @@ from itertools import pairwise, takewhile
 from pathlib import Path
 from statistics import median
 from textwrap import indent
+from threading import Lock
 from typing import TypeAlias
 
 from tuisim.base.data_class import dataclass
@@ -286,8 +287,17 @@ def _pair_heads(passages: Sequence[str]) -> Iterator[tuple[str, str]]:
             yield passage, head
 
 
+_LOCK = Lock()
+
+
+def load_index() -> _Index:
+    """Return the index of the guide; a second call waits for a first one that builds it in another thread."""
+    with _LOCK:
+        return _build_index()
+
+
 @cache
-def _load_index() -> _Index:
+def _build_index() -> _Index:
     return _Index()
 
 
@@ -365,7 +375,7 @@ def search(question: str) -> list[SearchResult]:
         question: Words; a word that is on no page may be the beginning of another, or mistyped. If the question is
             about several things, the best answers to its parts follow the first two.
     """
-    index = _load_index()
+    index = load_index()
     rows = _rank_passages(index, question)
     part_rows = [
         row for part in _split_question(question) for row in _rank_passages(index, part)[:1]

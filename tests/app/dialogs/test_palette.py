@@ -8,7 +8,7 @@ from textual.widgets import Input
 from tests.app.app_help import open_lab, until, until_shown
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
-from tuisim.app.dialogs.palette import Entry, ThemeChooser, find_entries
+from tuisim.app.dialogs.palette import Entry, ThemeChooser, find_entries, list_guide_pages
 from tuisim.app.guide.screen import GuideScreen
 
 ENTRIES = [
@@ -43,6 +43,15 @@ ENTRIES = [
 )
 def test_words_that_people_use_find_an_action(typed: str, first: str) -> None:
     assert find_entries(ENTRIES, typed)[0].id == first
+
+
+def test_pages_of_the_guide_are_found_by_their_words_after_all_actions() -> None:
+    listed = find_entries([*list_guide_pages(), *ENTRIES], "gyro")
+    assert [entry.id for entry in listed][:3] == [
+        "panel-instrumentation",
+        "?how-sensors-see",
+        "?motion-and-drift",
+    ]
 
 
 def test_the_palette_finds_nothing_for_an_unknown_word() -> None:

@@ -223,7 +223,7 @@ async def test_the_guide_lists_the_keys_of_the_focused_panel_first(
 
 
 @pytest.mark.slow
-async def test_a_slow_search_of_the_guide_says_that_it_is_searching(
+async def test_a_slow_search_of_the_guide_says_that_it_is_searching_beside_the_whole_page(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     go_on = Event()
@@ -233,9 +233,11 @@ async def test_a_slow_search_of_the_guide_says_that_it_is_searching(
         return search(question)
 
     monkeypatch.setattr("tuisim.app.guide.screen.search", search_slowly)
-    async with open_guide() as (pilot, screen):
+    async with open_guide(size=SMALL) as (pilot, screen):
+        columns = screen.query_one("#page").size.width
         await pilot.press("slash", *"save", "space", *"the", "space", *"program")
-        await until(pilot, lambda: screen_text(lab(pilot)).count("searching …") == 2)
+        await until(pilot, lambda: "searching …" in screen_text(lab(pilot)))
+        assert screen.query_one("#page").size.width == columns
         go_on.set()
         await until(pilot, lambda: screen.answers != [])
         await until(pilot, lambda: "searching …" not in screen_text(lab(pilot)))

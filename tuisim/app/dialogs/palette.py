@@ -17,6 +17,7 @@ from tuisim.app import design
 from tuisim.app.action import Action
 from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog
 from tuisim.base import palette
+from tuisim.guide.catalogue import load_pages
 from tuisim.terminal.text_runs import cut
 
 _WIDTH = 74
@@ -25,6 +26,8 @@ _BESIDE = 10
 _OUTSIDE = 4
 """Cells beside the frame in a narrow terminal."""
 _SHOW = "show or hide "
+GUIDE_PREFIX = "?"
+"""Before the name of a page of the guide or words for it, where a palette returns the id of an action."""
 _QUESTION_WORDS = (
     "how",
     "what",
@@ -67,7 +70,8 @@ def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
 
     The first entries are those whose title, or what follows "Show or hide" in it, starts with the text. Then come those
     with each word at the start of a word of the title, then those with all words in title and group, then those with
-    all words among their further words. Among equals, entries that show or hide something are first.
+    all words among their further words. Among equals, entries that show or hide something are first. Pages of the guide
+    are last.
     """
     typed_words = typed.lower().rstrip("?").split()
     words = [word for word in typed_words if word not in _QUESTION_WORDS] or typed_words
@@ -78,7 +82,7 @@ def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
         for word in words
     ]
 
-    def rank(entry: Entry) -> tuple[int, bool]:
+    def rank(entry: Entry) -> tuple[bool, int, bool]:
         title, title_and_group = entry.title.lower(), f"{entry.title} {entry.group}".lower()
         fits = (
             title.removeprefix(_SHOW).startswith(" ".join(words)),
@@ -86,7 +90,8 @@ def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
             all(word in title_and_group for word in words),
             set(words) <= {*entry.words.split()},
         )
-        return fits.index(True) if True in fits else len(fits), not title.startswith(_SHOW)
+        step = fits.index(True) if True in fits else len(fits)
+        return entry.id.startswith(GUIDE_PREFIX), step, not title.startswith(_SHOW)
 
     matches = [
         candidate for candidate in entries if all(word in texts[candidate.id] for word in words)
@@ -176,14 +181,11 @@ def _build_line(entry: Entry, cells: int) -> Text:
     return line
 
 
-GUIDE_PREFIX = "?"
-"""Before words for the guide, where a palette returns the id of an action."""
-
-
 class Palette(SearchList):
     """The command palette: returns the id of the chosen action. Actions that work now come first.
 
-    If no action contains the typed words, it returns `GUIDE_PREFIX` and these words, for a search of the guide.
+    A search also lists pages of the guide, last. For a page it returns `GUIDE_PREFIX` and the page's name; if nothing
+    contains the typed words, `GUIDE_PREFIX` and these words, for a search of the guide.
     """
 
     TITLE_TEXT: str = "Commands"
@@ -206,10 +208,24 @@ class Palette(SearchList):
         )
         super().__init__(sorted(entries, key=lambda entry: not entry.works))
 
+    def _list(self, typed: str) -> None:
+        # The pages are read only for a search, so that the palette opens at once.
+        if typed and not self._entries[-1].id.startswith(GUIDE_PREFIX):
+            self._entries = [*self._entries, *list_guide_pages()]
+        super()._list(typed)
+
     def handle_unfound(self, typed: str) -> None:
         """Close with the typed words for a search of the guide."""
         if typed:
             self.dismiss(GUIDE_PREFIX + typed)
+
+
+def list_guide_pages() -> list[Entry]:
+    """Return the pages of the guide as entries of a palette."""
+    return [
+        Entry(GUIDE_PREFIX + page.name, page.title, "Guide", words=f"{page.about} {page.words}")
+        for page in load_pages().values()
+    ]
 
 
 class ThemeChooser(SearchList):

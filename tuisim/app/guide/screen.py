@@ -23,7 +23,7 @@ from tuisim.app.guide.answers import AnswerList, name_answer
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.guide.catalogue import CONTENTS, load_pages
-from tuisim.guide.search import SearchResult, search
+from tuisim.guide.search import SearchResult, load_index, search
 from tuisim.guide.text import NO_WORDS, draw_page, find_passage_end, find_rows
 from tuisim.terminal.text_runs import Line
 
@@ -280,6 +280,8 @@ class GuideScreen(Dialog[None]):
     def on_mount(self) -> None:
         super().on_mount()
         self._contents.show_all(self._keys.title)
+        # The first search needs the index, which takes a second to build.
+        background.run(self, load_index, lambda _: None, group="index")
         if self._at_first:
             self._search.value = self._at_first
             self._search.focus()
@@ -288,8 +290,15 @@ class GuideScreen(Dialog[None]):
         self.call_after_refresh(self._contents.go_to, self.place)
 
     def ask(self, question: str) -> None:
-        """Let the guide begin with the search for a question; to be called before the screen is shown."""
-        self._at_first = question
+        """Let the guide begin with a page, or the search for a question; to be called before the screen is shown.
+
+        Args:
+            question: The name of the page, or the question.
+        """
+        if question in load_pages():
+            self._topic = Topic(question)
+        else:
+            self._at_first = question
 
     @property
     def _contents(self) -> _Contents:
@@ -328,7 +337,9 @@ class GuideScreen(Dialog[None]):
         return self.query_one("#both").size
 
     def on_descendant_focus(self, event: events.DescendantFocus) -> None:
-        self._arrange(event.widget is self._page)
+        # While a search begins, the page stays as it is until there are results.
+        if event.widget is not self._search or self._found:
+            self._arrange(event.widget is self._page)
 
     def _arrange(self, reading: bool) -> None:
         """Show either the answers of a search or a page; without a search, show the contents as well if there is room.
@@ -403,10 +414,7 @@ class GuideScreen(Dialog[None]):
             self._arrange(self._page.has_focus)
             self._tell_answered()
             return
-        if not self._found:
-            self._contents.say(_SEARCHING)
         self._frame(reading=False)
-        # The first search takes long: it loads every command to build the page about commands.
         work: Callable[[], list[SearchResult]] = partial(search, question)
         background.run(self, work, partial(self._answer, question), group="search", exclusive=True)
 
