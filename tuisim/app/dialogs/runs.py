@@ -76,7 +76,7 @@ def _format_date(run: RunInfo) -> str:
         return run.created[:16]
 
 
-_COLUMNS = {"run": 5, "when": 11, "program": 12, "mat": 10, "end": 9, "s": 6, "samples": 7}
+_COLUMNS = {"run": 5, "when": 11, "program": 12, "mat": 10, "end": 10, "s": 6, "samples": 7}
 """Columns of the list and their widths in cells; a note may follow them."""
 _MORE_CELLS = {"program": 10, "mat": 5}
 """How much wider a column is in a wide terminal."""
@@ -116,7 +116,9 @@ def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
 
 def build_header(columns: int) -> str:
     """Return the line with the headings of the list of runs, for a terminal with this number of columns."""
-    names = " ".join(_arrange({name: name for name in _COLUMNS}, columns).values())
+    names = " ".join(
+        _arrange({name: name for name in _COLUMNS} | {"run": "run "}, columns).values()
+    )
     return f"{names}  note" if columns >= _MIN_NOTE_COLUMNS else names
 
 
@@ -173,7 +175,7 @@ class RunChooser(ListDialog):
     """
 
     DEFAULT_CSS = f"""
-    RunChooser .heads {{ height: 1; text-wrap: nowrap; color: {palette.SOFT}; }}
+    RunChooser .heads {{ height: 1; padding-left: 1; text-wrap: nowrap; color: {palette.SOFT}; }}
     RunChooser OptionList {{ text-wrap: nowrap; text-overflow: ellipsis; }}
     RunChooser .way {{ height: 7; margin-top: 1; padding-left: 1; }}
     RunChooser PixelView {{ width: 25; height: 7; margin-right: 2; }}
