@@ -24,7 +24,6 @@ from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.standstill import find_standstill
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.reasons.blank_mat import describe_blank_mat
-from tuisim.tasks.reasons.cut_moves import list_cut_moves, list_parted_moves
 from tuisim.tasks.reasons.run_data import RunData
 from tuisim.tasks.reasons.subjects import Subject
 from tuisim.tasks.reasons.unmet import (
@@ -304,11 +303,16 @@ def _find_mistaken(data: RunData) -> Iterator[Reason]:
 
     The program turned the wheels by an angle meant for the robot, counted a band twice, or cut off a move, for example.
     """
-    from tuisim.tasks.reasons import misuses, named_aims
+    from tuisim.tasks.reasons import cut_moves, misuses, named_aims
     from tuisim.tasks.reasons.unwatched import list_mistaken_turns
 
     for search in (
-        *(list_mistaken_turns, list_cut_moves, list_parted_moves, list_recounts),
+        *(
+            cut_moves.list_cut_moves,
+            cut_moves.list_parted_moves,
+            list_mistaken_turns,
+            list_recounts,
+        ),
         *(misuses.list_stale_reads, misuses.list_lone_stops, misuses.list_lost_values),
         *(named_aims.list_spins, named_aims.list_wrong_bands, named_aims.list_wrong_units),
     ):
@@ -337,6 +341,8 @@ def _find_slips(data: RunData) -> Iterator[Reason]:
 
 def _find_ended(data: RunData) -> Iterator[Reason]:
     """Yield a reason if the program ended too early or left motors turning."""
+    from tuisim.tasks.reasons.cut_moves import list_cut_moves
+
     run = data.run
     if (early := find_early_end(data)) and not find_first(list_cut_moves, data):
         yield _build_reason(ReasonKind.ENDED, early)
