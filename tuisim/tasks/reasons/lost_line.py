@@ -207,7 +207,10 @@ def _see_line(
     if not len(there) or np.ptp(there) < _MIN_CONTRAST_PC:
         return None
     middle = (there.min() + there.max()) / 2
-    limits = np.quantile(there[there > middle], _GROUND_SHARE) - _DARKER_PC, middle
+    bright = np.sort(there[there > middle])
+    # This is `np.quantile`, which imports `numpy.ma`.
+    ground = np.interp(_GROUND_SHARE * (len(bright) - 1), np.arange(len(bright)), bright)
+    limits = ground - _DARKER_PC, middle
     edges, middles = (
         [is_on & (percent < limit) for percent, is_on in zip(light, on, strict=True)]
         for limit in limits

@@ -11,7 +11,7 @@ from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.programs import uses
 from tuisim.programs.facts import LoopEnd
-from tuisim.tasks.reasons.run_data import RunData, Series
+from tuisim.tasks.reasons.run_data import RunData, Series, list_distinct
 from tuisim.tasks.reasons.unmet import Unmet, name_goal, round_value
 
 if TYPE_CHECKING:
@@ -118,7 +118,7 @@ def _find_next_reading(data: RunData, line: int, tick: int) -> int:
 
     If there is no further reading, the result is the number of ticks in the recording.
     """
-    ports = np.unique(data.readings["port"][data.readings["line"] == line])
+    ports = list_distinct(data.readings["port"][data.readings["line"] == line])
     ticks = data.reading_ticks[np.isin(data.readings["port"], ports)]
     later = ticks[ticks > tick]
     return int(later[0]) if len(later) else len(data.records)

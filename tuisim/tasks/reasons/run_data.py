@@ -175,9 +175,7 @@ class RunData:
     @cached_property
     def decides_by_light(self) -> bool:
         """Whether the program does more with the light and colours that it reads than show or store them."""
-        import numpy as np
-
-        lines = np.unique(self._recorded.find(MODES_BY_KIND["color"])["line"])
+        lines = list_distinct(self._recorded.find(MODES_BY_KIND["color"])["line"])
         return any(
             self.facts.find_question(line).decides for line in lines[:_MAX_READING_LINES].tolist()
         )
@@ -200,7 +198,7 @@ class RunData:
 
         ticks = self.reading_ticks[self.readings["line"] == line]
         # The last reading may lie in the tick that the end of the program cut off.
-        return np.unique(np.minimum(ticks, len(self.records) - 1))
+        return list_distinct(np.minimum(ticks, len(self.records) - 1))
 
     def measure_ticks(self, loop: LoopEnd, ticks: Array) -> Series | None:
         """Return the values that a comparison would read at some ticks; None as for `measure`.
@@ -231,10 +229,8 @@ class RunData:
             records: The records, structured as `TICK_FIELDS`; they need not be those of the run.
             ticks: The ticks of the records.
         """
-        import numpy as np
-
         rows = self.readings[self.readings["line"] == loop.read_line]
-        ports = [READING_PORTS[port] for port in np.unique(rows["port"])]
+        ports = [READING_PORTS[port] for port in list_distinct(rows["port"])]
         sensors = [each for each in self.run.spec.robot.sensors if each.port in ports]
         if not len(records) or not len(rows):
             return None
@@ -317,6 +313,16 @@ class RunData:
         robot = self.run.spec.robot
         wheels = {robot.left_port: "left", robot.right_port: "right"}
         return wheels.get(ports[0], "") if len(ports) == 1 and robot.gear_ratio == 1 else ""
+
+
+def list_distinct(values: Array) -> Array:
+    """Return the distinct values in an array of small whole numbers, ascending.
+
+    Unlike this, `np.unique` imports `numpy.ma`, which takes longer than a search for reasons.
+    """
+    import numpy as np
+
+    return np.flatnonzero(np.bincount(values))
 
 
 def describe_place(port: str) -> str:

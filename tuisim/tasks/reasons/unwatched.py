@@ -16,11 +16,11 @@ from tuisim.engine.runs.sensor_arrays import measure_quiet_color
 from tuisim.programs.facts import ProgramThreshold
 from tuisim.programs.moves import WheelTurn, list_wheel_turns
 from tuisim.tasks.reasons.lost_line import MIN_READINGS, is_on_mat
+from tuisim.tasks.reasons.run_data import RunData, list_distinct
 from tuisim.tasks.reasons.unmet import Unmet
 
 if TYPE_CHECKING:
     from tuisim.engine.core.spec import ColorSensorSpec
-    from tuisim.tasks.reasons.run_data import RunData
 
     Array = NDArray[Any]
 
@@ -90,7 +90,7 @@ def list_unwatched(data: RunData) -> Iterator[Unmet]:
     passes = [
         unwatched
         for sensor in data.run.spec.robot.color_sensors
-        if len(ticks := np.unique(data.light_ticks[sensor.name])) >= MIN_READINGS
+        if len(ticks := list_distinct(data.light_ticks[sensor.name])) >= MIN_READINGS
         for threshold in thresholds.get(sensor.name, ())
         if not threshold.is_aim
         for unwatched in _list_passes(data, sensor, threshold, ticks)
