@@ -236,6 +236,16 @@ async def test_page_keys_scroll_the_text_beside_every_panel(
                 await until(pilot, lambda: "Line 0\n" in shown(app), panel)
 
 
+async def test_a_question_stays_in_view_when_a_panel_opens_below_it(tmp_path: Path) -> None:
+    async with open_lab(with_lines(opened(tmp_path), 5), size=SMALL) as (pilot, app):
+        await until(pilot, lambda: "Line 0" in shown(app) and "What is it?" in shown(app))
+        await pilot.press("X")
+        await until(
+            pilot, lambda: app.panel_area.is_shown("positioning") and "Line 0" not in shown(app)
+        )
+        assert "1. Think" in shown(app) and "What is it?" in shown(app)
+
+
 @pytest.mark.slow
 async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Path) -> None:
     async with open_lab(with_lines(opened(tmp_path), 60), size=(200, 60)) as (pilot, app):

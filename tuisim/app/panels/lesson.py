@@ -48,6 +48,8 @@ class LessonPanel(LinesPanel, can_focus=True):
         self._first = self._top
         """First row of the text that is shown; -1: the title of the step, whatever the size."""
         self._picture = LessonPicture([])
+        self._rows = 0
+        """The height at which the text was last drawn."""
         self._is_typing = False
 
     def watch_has_focus(self, _has_focus: bool) -> None:
@@ -89,7 +91,13 @@ class LessonPanel(LinesPanel, can_focus=True):
             away = Away.EDITOR
         else:
             away = Away.NO
-        self._picture = draw_lesson(self._content, page, self._first, size.width, size.height, away)
+        rows = size.height
+        is_cut = rows < self._rows and not self._picture.below and page == self._content.page
+        self._rows = rows
+        if is_cut and self._content.asks:
+            # A panel that opens below must not cover the question: the title of its step comes first.
+            self._first = -1
+        self._picture = draw_lesson(self._content, page, self._first, size.width, rows, away)
         if self._first >= 0:
             self._first = self._picture.first
         self._text.set_lines(self._picture.lines)

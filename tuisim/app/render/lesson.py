@@ -91,6 +91,15 @@ class LessonView:
         return 0 if self.lesson is None else len(self.lesson.steps)
 
     @property
+    def asks(self) -> bool:
+        """Whether the step to do is a question."""
+        return bool(
+            self.lesson
+            and self.at is not None
+            and isinstance(self.lesson.steps[self.at].check, QuestionCheck)
+        )
+
+    @property
     def page(self) -> int:
         """The number of the page to show, from 0: that of the step to do, or the last page if no step is to be done."""
         return self.last_page if self.at is None else self.at
