@@ -10,10 +10,9 @@ from tuisim.app.snapshot import describe_busy_loop
 from tuisim.base.data_class import dataclass
 from tuisim.engine import protocol
 from tuisim.engine.core.spec import RunSpec
-from tuisim.engine.runs.push import find_push
+from tuisim.engine.runs.contacts import LEFT_FIELD, find_push, find_standstill, has_left_field
 from tuisim.engine.runs.records import OutputRow
 from tuisim.engine.runs.samples import describe_near_sample
-from tuisim.engine.runs.standstill import LEFT_FIELD, find_standstill, has_left_field
 from tuisim.engine.runs.views import TelemetryView
 from tuisim.programs.plugged_words import describe_newest
 

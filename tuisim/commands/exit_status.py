@@ -13,16 +13,17 @@ from tuisim.base.errors import SIGNALLED, counted
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.protocol import NO_ANSWER, End, describe_state
-from tuisim.engine.runs.push import Push, find_push
-from tuisim.engine.runs.records import Stream
-from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.samples import counts_of, describe_near_sample
-from tuisim.engine.runs.standstill import (
+from tuisim.engine.runs.contacts import (
     LEFT_FIELD,
+    Push,
     Standstill,
+    find_push,
     find_standstill,
     has_left_field,
 )
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.samples import counts_of, describe_near_sample
 from tuisim.programs.plugged_words import describe_plugged
 from tuisim.tasks.reasons.reason import describe_end
 

@@ -74,7 +74,11 @@ class MotorLaw(StrEnum):
     @property
     def is_measured(self) -> bool:
         """Whether robots behave as measured on real bricks, and not as a course or another simulator defines."""
-        return self not in (MotorLaw.BRICK, MotorLaw.NBEV3DEVSIM)
+        return self not in DRIVEN_LAWS
+
+
+DRIVEN_LAWS = frozenset({MotorLaw.BRICK, MotorLaw.NBEV3DEVSIM})
+"""The laws of motors that run as they are told, without a control."""
 
 
 _OLD = "measured on the old simulator"

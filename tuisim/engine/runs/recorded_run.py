@@ -21,12 +21,12 @@ from tuisim.engine.core.state import Instant, MotorValues
 from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, TICK_RECORD
 from tuisim.engine.protocol import SetButtons, UserAction
 from tuisim.engine.runs.command_events import CommandIndex
+from tuisim.engine.runs.contacts import touches_solid
 from tuisim.engine.runs.motor_records import read_motor_values
 from tuisim.engine.runs.records import SAMPLE_STREAMS, TEXT_STREAMS, Mark, OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun, find_noise, restore_program
 from tuisim.engine.runs.samples import parse_sample
 from tuisim.engine.runs.side_files import read_actions
-from tuisim.engine.runs.standstill import touches_solid
 from tuisim.engine.runs.tick_changes import apply_commands, find_pen
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import Program
 from tuisim.engine.core.commands.calls import Call, SimulationCommand
-from tuisim.engine.core.commands.table import DRIVEN_LAWS, obey
+from tuisim.engine.core.commands.table import obey
 from tuisim.engine.core.motors import find_top_speed_dps
 from tuisim.engine.core.pen_marks import PenMarks
-from tuisim.engine.core.profile import NS_PER_S, MotorLaw
+from tuisim.engine.core.profile import DRIVEN_LAWS, NS_PER_S, MotorLaw
 from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.simulation import Simulation, build_simulation

@@ -7,8 +7,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from tuisim.engine.core.commands.calls import Call, SimulationCommand, Values
-from tuisim.engine.core.commands.table import DRIVEN_LAWS
-from tuisim.engine.core.profile import MotorLaw
+from tuisim.engine.core.profile import DRIVEN_LAWS, MotorLaw
 from tuisim.engine.core.servo.settings import COUNTS_PER_DEG
 from tuisim.engine.core.servo.trajectory import MILLI
 from tuisim.engine.core.state import Instant

@@ -18,10 +18,9 @@ from tuisim.base.errors import LogError
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.protocol import End
+from tuisim.engine.runs.contacts import find_push, find_standstill
 from tuisim.engine.runs.diff import find_first_difference_s, is_repeat
-from tuisim.engine.runs.push import find_push
 from tuisim.engine.runs.records import Stream
-from tuisim.engine.runs.standstill import find_standstill
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.reasons.blank_mat import describe_blank_mat
 from tuisim.tasks.reasons.run_data import RunData

@@ -14,7 +14,7 @@ from tuisim.engine.core.commands import driver, robot, servo
 from tuisim.engine.core.commands.calls import MAX_NUMBER, MAX_VALUES, Call, Values
 from tuisim.engine.core.motors import MEDIUM_MAX_SPEED_DPS
 from tuisim.engine.core.plugged import PART_CODES
-from tuisim.engine.core.profile import MotorLaw
+from tuisim.engine.core.profile import DRIVEN_LAWS, MotorLaw
 from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.settings import FULL_ACTUATION
 
@@ -115,7 +115,6 @@ def compute_scale(call: int, values: Sequence[float]) -> float:
 Range = tuple[float, float]
 
 ALL_LAWS = frozenset(MotorLaw)
-DRIVEN_LAWS = frozenset({MotorLaw.BRICK, MotorLaw.NBEV3DEVSIM})
 PYBRICKS_4 = frozenset({MotorLaw.PYBRICKS_4})
 SERVO_LAWS = frozenset({MotorLaw.PYBRICKS, MotorLaw.PYBRICKS_4})
 _ANY: Range = -MAX_NUMBER, MAX_NUMBER

@@ -11,7 +11,7 @@ from tuisim.engine.core.drift_spec import DriftSpec
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
-from tuisim.engine.runs.push import find_push
+from tuisim.engine.runs.contacts import find_push
 
 WORLD = WorldSpec(start=Pose(82.0, 500.0, 180.0), solid=True)
 """A corner meets the wall in a quarter turn to the right."""

@@ -14,7 +14,7 @@ from tuisim.app.run_update import describe_contacts
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
-from tuisim.engine.runs.standstill import find_standstill, has_left_field
+from tuisim.engine.runs.contacts import find_standstill, has_left_field
 
 Record = Callable[..., Recorder]
 
