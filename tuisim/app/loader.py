@@ -85,7 +85,7 @@ class Loader:
             if self.world_file is not None:
                 self._read_world(self.world_file)
             if program and program.path:
-                self._note_program(*_split_source(_read_program(program.path)))
+                self._note_program(*_split_source(_read_program(program.path, True)))
         except TuisimError:
             pass  # It was read a moment ago and is invalid now: the next check reports that.
         self._follow()
@@ -215,7 +215,7 @@ class Loader:
             self._app.complain(error)
 
     def _open_program(self, path: str) -> None:
-        decided = self._open_source(source := _read_program(path))
+        decided = self._open_source(source := _read_program(path, True))
         self._app.say(f"{source.program.name} is open: {{run}} runs it")
         self.tell(decided)
 
@@ -539,10 +539,10 @@ class Loader:
         self.tell(decided)
 
 
-def _read_program(path: str) -> ProgramSource:
+def _read_program(path: str, is_unfinished: bool = False) -> ProgramSource:
     from tuisim.programs.program_file import read_program
 
-    return read_program(user_path(path))
+    return read_program(user_path(path), is_unfinished=is_unfinished)
 
 
 def _split_source(source: ProgramSource) -> tuple[Program, Mapping[str, Any]]:

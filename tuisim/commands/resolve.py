@@ -229,7 +229,9 @@ def prepare_app(
     is_new = (
         can_begin and path.suffix == ".py" and not os.path.lexists(path) and path.parent.is_dir()
     )
-    source = build_program("", path, path.name) if is_new else read_program(path)
+    source = (
+        build_program("", path, path.name) if is_new else read_program(path, is_unfinished=True)
+    )
     mats = Settings.merge(_select_defaults(world, config), source.options, arguments.settings)[
         "mats"
     ]

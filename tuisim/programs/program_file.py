@@ -16,7 +16,6 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import (
     BackgroundError,
     ConfigError,
-    TuisimError,
     closest,
     did_you_mean,
     nearest,
@@ -111,18 +110,32 @@ class Mistake:
     message: str
 
 
+def find_wrong_option(text: str, name: str) -> Mistake | None:
+    """Return what is wrong with an option in a program's magic line, except for an unknown mat; None if nothing is.
+
+    Args:
+        text: The program.
+        name: The name of its file.
+    """
+    try:
+        find_magic(text, name)
+    except ConfigError as error:
+        line = int(error.file.rpartition(" ")[2])
+        return Mistake(line, str(error).removeprefix(f"{name}, "))
+    return None
+
+
 def find_mistake(text: str, name: str, mats: str | None = None) -> Mistake | None:
-    """Return the syntax error of a program, or the wrong mat in its magic line; None if it can run.
+    """Return what is wrong in the magic line of a program, or its syntax error; None if it can run.
 
     Args:
         text: The text of the file; a magic line is allowed.
         name: Name of the file, for the message.
         mats: A further folder with mats of the user; None for none.
     """
-    try:
-        source = parse_program(text, name)
-    except TuisimError as error:
-        return Mistake(0, str(error))
+    if mistake := find_wrong_option(text, name):
+        return mistake
+    source = parse_program(text, name)
     if fault := find_fault(source.program.text):
         message, line = fault
         return Mistake(line, f"line {line}: {message}" if line else message)
@@ -374,18 +387,26 @@ def has_library_import(text: str) -> bool:
     return False
 
 
-def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
+def parse_program(
+    text: str, name: str, path: str = "", *, is_unfinished: bool = False
+) -> ProgramSource:
     """Return a program from its text.
 
     Args:
         text: The text.
         name: The name of its file, for errors.
         path: The file, beside which its modules are; empty for none.
+        is_unfinished: Whether to accept a wrong magic line, without its options, so that it can be corrected.
 
     Raises:
         ConfigError: its magic line is wrong.
     """
-    magic = find_magic(text, name)
+    try:
+        magic = find_magic(text, name)
+    except ConfigError:
+        if not is_unfinished:
+            raise
+        return ProgramSource(Program(name, text, "preloaded", path), has_magic=True)
     if magic is None:
         return ProgramSource(Program(name, text, choose_prelude(text, path), path))
     if not magic.comment:
@@ -401,11 +422,7 @@ def parse_unfinished(text: str, name: str) -> Program:
 
     Without a magic line and imports of a library, the program has the default prelude.
     """
-    try:
-        source = parse_program(text, name)
-    except ConfigError:
-        # The magic line is not finished, so the default prelude is used.
-        return Program(name, text, "preloaded")
+    source = parse_program(text, name, is_unfinished=True)
     if source.has_magic or has_library_import(text):
         return source.program
     return replace(source.program, prelude="preloaded")
@@ -422,7 +439,9 @@ def find_program(word: str) -> Path:
     return path
 
 
-def read_program(path: Path, *, as_python: bool = False, alone: bool = False) -> ProgramSource:
+def read_program(
+    path: Path, *, as_python: bool = False, alone: bool = False, is_unfinished: bool = False
+) -> ProgramSource:
     """Read a program file; names of files in its magic line are relative to its folder.
 
     Args:
@@ -430,6 +449,7 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
         as_python: Whether to accept a file that is not UTF-8: wrong bytes become lone surrogates, and the program
             raises Python's own error when it is run. If this is False, such a file raises ConfigError.
         alone: Whether other files in its folder are not its modules, as in a folder with the files of a whole class.
+        is_unfinished: As in `parse_program`.
 
     Raises:
         ConfigError: the file is missing, a directory, not Python text or too large, or its magic line is wrong.
@@ -452,7 +472,7 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
     other = _OTHER_TEXTS.get(path.suffix.lower())
     if other and not _is_python(text):
         raise ConfigError(f"is {other}, not a program in Python", hint, file=file_name)
-    return build_program(text, path, path.name, alone=alone)
+    return build_program(text, path, path.name, alone=alone, is_unfinished=is_unfinished)
 
 
 def _is_python(text: str) -> bool:
@@ -463,7 +483,14 @@ def _is_python(text: str) -> bool:
     return True
 
 
-def build_program(text: str, path: Path | None, name: str, *, alone: bool = False) -> ProgramSource:
+def build_program(
+    text: str,
+    path: Path | None,
+    name: str,
+    *,
+    alone: bool = False,
+    is_unfinished: bool = False,
+) -> ProgramSource:
     """Return a program from a text, as `read_program` does from a file.
 
     Args:
@@ -472,13 +499,14 @@ def build_program(text: str, path: Path | None, name: str, *, alone: bool = Fals
             program has no file.
         name: Its name, for errors and tables.
         alone: As in `read_program`.
+        is_unfinished: As in `parse_program`.
 
     Raises:
         ConfigError: its magic line is wrong.
     """
     # With `alone`, the program gets a path inside its own file, where Python finds no modules beside it.
     where = path / name if path and alone else path
-    source = parse_program(text, name, str(where) if where else "")
+    source = parse_program(text, name, str(where) if where else "", is_unfinished=is_unfinished)
     return replace(
         source, options=resolve_files(path.parent if path else Path.cwd(), source.options)
     )

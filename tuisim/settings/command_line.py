@@ -198,7 +198,23 @@ def _convert_error(error: click.UsageError, ctx: click.Context) -> ConfigError:
     text = text.replace("not a valid float", "no number").replace("valid integer", "whole number")
     if isinstance(error, click.BadParameter) and error.param:
         return ConfigError(text, see, key=error.param.opts[0])
-    return ConfigError(text[:1].lower() + text[1:], see)
+    return ConfigError(text[:1].lower() + text[1:], _explain_case(ctx, text) or see)
+
+
+def _explain_case(ctx: click.Context, text: str) -> str:
+    """Return a hint if an option is followed by a value that it does not take, but the other case of its letter does.
+
+    Args:
+        ctx: The command with its words.
+        text: The error, which contains the value in parentheses.
+    """
+    options = {flag: param for param in ctx.command.params for flag in param.opts}
+    for flag, value in pairwise(ctx.meta[_WORDS]):
+        other = options.get(flag.swapcase())
+        if f"({value})" in text and flag in options and getattr(other, "needs_value", False):
+            meaning = getattr(other, "help", "").partition(".")[0]
+            return f"did you mean {flag.swapcase()} {value}? {flag.swapcase()}: {meaning}"
+    return ""
 
 
 class Command(click.Command):

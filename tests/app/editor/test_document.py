@@ -365,3 +365,18 @@ async def test_saving_a_program_begun_in_an_empty_file_asks_nothing(
         await typed(pilot, code, "x", "ctrl+s")
         await until(pilot, lambda: path.exists() and path.read_text() == "x")
         assert not app.document.dirty
+
+
+async def test_a_program_with_a_wrong_option_in_its_first_line_opens_but_does_not_run(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "prog.py"
+    path.write_text("# %%sim_magic_preloaded -A 90\n" + TEXT)
+    async with open_code(own(tmp_path / "other.py")) as (pilot, app, code):
+        open_path(app.context, str(path))
+        await until(pilot, lambda: code.error_line == 1)
+        assert program_of(app).name == "prog.py"
+        app.clear_notifications()
+        await pilot.press("R")
+        await until(pilot, lambda: any("cannot run: line 1" in text for text in notices(app)))
+        assert app.run_controller.run is None

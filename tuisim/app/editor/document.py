@@ -22,7 +22,7 @@ from tuisim.app.editor.text_file import (
 from tuisim.app.editor.text_lines import LineMap, count_differing_lines
 from tuisim.base.errors import ConfigError, TuisimError, counted
 from tuisim.base.source import source_lines
-from tuisim.programs.program_file import describe_new_file, find_wrong_mat
+from tuisim.programs.program_file import describe_new_file, find_wrong_mat, find_wrong_option
 from tuisim.settings.options import Settings
 
 if TYPE_CHECKING:
@@ -335,7 +335,7 @@ class Document:
             # A new program is in no file, so it counts as unsaved once it has run.
             self._saved = ""
         is_applied = self._is_applied
-        if is_applied and not self._lacks_mat:
+        if is_applied and not self._lacks_options:
             return True
         # A typing error in the magic line must not change the mat.
         if mistake := self._find_mistake():
@@ -364,11 +364,13 @@ class Document:
         return f"{self._name} cannot run: {mistake.message}"
 
     @property
-    def _lacks_mat(self) -> bool:
-        """Whether the program was opened without the mat that its magic line names, because that mat is wrong.
+    def _lacks_options(self) -> bool:
+        """Whether the program was opened without options of its magic line, because they are wrong.
 
-        It is False once the user has chosen another mat.
+        The user can choose another mat in place of a wrong one.
         """
+        if find_wrong_option(self._text, self._name):
+            return True
         settings = self._run_controller.next_run.settings
         is_usual = settings["background"] == Settings()["background"]
         return is_usual and find_wrong_mat(self._text, self._name, settings["mats"]) is not None
