@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import Any, ClassVar, Generic, TypeVar
 
-from rich.console import Console
+from rich.console import Console, Group
 from rich.style import Style
 from rich.table import Table
 from rich.text import Text
@@ -449,17 +449,23 @@ def _distribute_groups(groups: list[_Group], count: int) -> list[list[_Group]]:
     return columns + [[] for _ in range(count - len(columns))]
 
 
-def _build_column(groups: list[_Group]) -> Table:
-    table = Table.grid(padding=(0, 2))
-    table.add_column(justify="right", style="bold")
-    table.add_column()
+_KEY_CELLS = 9
+"""Width of the keys of a group; longer ones, of a few groups, do not widen the other groups."""
+
+
+def _build_column(groups: list[_Group]) -> Group:
+    tables = []
     for group, keys in groups:
+        table = Table.grid(padding=(0, 2))
+        table.add_column(justify="right", style="bold", min_width=_KEY_CELLS)
+        table.add_column()
         if group:
             table.add_row("", Text(group, f"bold {palette.BLUE}"))
         for key, title in keys:
             table.add_row(Text(key), Text(title))
         table.add_row()
-    return table
+        tables.append(table)
+    return Group(*tables)
 
 
 def group_keys(actions: Iterable[Action[Any, Any]]) -> dict[str, list[KeyWord]]:
