@@ -60,6 +60,8 @@ def test_most_lines_of_code_are_whole_in_a_medium_terminal() -> None:
     assert layout.boxes["code"].width - 2 >= 59 and layout.boxes["code"].height - 2 >= 14
     # The end of a run, with the lines before it.
     assert layout.boxes["output"].height - 2 >= 4
+    # Tick boxes, seven rows of curves, from which on the ticks are round numbers, and times.
+    assert layout.boxes["chart"].height - 2 >= 9
 
 
 @in_each_size

@@ -225,10 +225,10 @@ def _place_wide(
 
 _STRIP_ROWS = 12
 _LOW_CODE_STRIP_ROWS = 13
-_CODE_STRIP_ROWS = 16
+_CODE_STRIP_ROWS = 17
 """Rows of the strip below the board: for chart and output beside each other, and beside code on a low and a high
 screen."""
-_CHART_ROWS = 10
+_CHART_ROWS = 11
 _CHART_SHARE = 5 / 8
 """Share of the width that the chart gets beside the output."""
 _MAX_EMPTY_ROWS = 3
