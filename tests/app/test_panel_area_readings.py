@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.app.app_help import ENDLESS, open_lab, until, until_shown
 from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.instrumentation import Instrumentation
@@ -32,3 +34,16 @@ async def test_all_panels_show_readings_of_the_same_instant() -> None:
         await pilot.press("S")
         await until(pilot, lambda: run.state == RunPhase.ENDED)
         await until_shown(pilot, f"{run.timeline.newest / run.timeline.tick_hz:.2f} s")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size, shares", [((120, 40), True), ((80, 24), False)])
+async def test_enlarged_readings_share_a_high_screen_with_the_world(
+    size: tuple[int, int], shares: bool
+) -> None:
+    async with open_lab("x = 1\n", size=size) as (pilot, app):
+        app.panel_area.maximize("instrumentation")
+        await pilot.pause()
+        boxes = app.panel_area.arrangement.boxes
+        assert [*boxes] == (["world", "instrumentation"] if shares else ["instrumentation"])
+        assert boxes["instrumentation"].height >= 16

@@ -46,6 +46,8 @@ if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
 
 PanelWidget = TypeVar("PanelWidget", bound=Widget)
+_READINGS_ROWS = 36
+"""In an area of so many rows, all readings have room below the world."""
 _STACKED_ROWS = 18
 """In a lower area there is no room for a lesson below a panel that needs the whole width."""
 
@@ -349,6 +351,10 @@ class PanelArea(Container):
                 return [panel, "lesson"], []
             self.alone = panel if chosen == [panel] else ""
             return chosen, []
+        if self.alone == "instrumentation" and height >= _READINGS_ROWS:
+            # The readings have no use for all rows: the world is above them.
+            self.is_stacked = True
+            return ["world", self.alone], []
         if self.alone or self.is_single:
             return [self.alone or self.front], []
         return chosen, fill
