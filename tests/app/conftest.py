@@ -45,14 +45,17 @@ def _keys_are_heard_before_a_test_goes_on() -> Iterator[None]:
         yield
 
 
-@pytest.fixture(scope="session", autouse=True)
-def _apps_are_drawn_once_for_a_key() -> Iterator[None]:
-    """Draw an app in memory after each key and wait of a test, not for each change in between, which nobody sees.
+@pytest.fixture(autouse=True)
+def _apps_are_drawn_only_where_it_matters(
+    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Draw an app in memory where a test looks at its screen, and in slow tests also after each key and wait.
 
-    That takes two fifths of what most of the tests of the app cost.
+    To draw each change, which nobody sees, takes half of what most of the tests of the app cost.
     """
     draw = Compositor.render_update
     wait = Pilot._wait_for_screen
+    is_slow = request.node.get_closest_marker("slow") is not None
 
     def render_update(compositor: Compositor, *words: Any, **options: Any) -> Any:
         # What has changed stays marked until it is drawn.
@@ -60,14 +63,12 @@ def _apps_are_drawn_once_for_a_key() -> Iterator[None]:
 
     async def wait_for_screen(pilot: Pilot[Any], timeout: float = 30.0) -> bool:
         has_settled = await wait(pilot, timeout)
-        if pilot.app.is_headless and pilot.app.screen_stack:
+        if is_slow and pilot.app.is_headless and pilot.app.screen_stack:
             draw(pilot.app.screen._compositor, screen_stack=pilot.app._background_screens)
         return has_settled
 
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Compositor, "render_update", render_update)
-        patch.setattr(Pilot, "_wait_for_screen", wait_for_screen)
-        yield
+    monkeypatch.setattr(Compositor, "render_update", render_update)
+    monkeypatch.setattr(Pilot, "_wait_for_screen", wait_for_screen)
 
 
 @pytest.fixture(scope="session", autouse=True)
