@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ast
 import io
+import re
 import tokenize
 from collections.abc import Iterator
 from functools import cache, cached_property
+from itertools import accumulate
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -22,6 +24,9 @@ LAYOUT = {
 }
 PROGRAMS = frozenset({"brick_programs", "pybricks_programs", "real_programs"})
 """Folders with programs as other people write them."""
+
+PIECE = re.compile(r"\w+|[^\w\s]")
+"""A token is at least one of these."""
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -58,6 +63,11 @@ class Source:
             for token in tokens
             if token.type not in LAYOUT and token.start not in alone
         ]
+
+    @cached_property
+    def most_tokens(self) -> list[int]:
+        """How many tokens there can be at most before each line, and in all: counted far faster, with comments."""
+        return [0, *accumulate(len(PIECE.findall(line)) for line in self.text.split("\n"))]
 
     @property
     def attributes(self) -> Iterator[ast.Attribute]:
