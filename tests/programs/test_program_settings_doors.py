@@ -210,6 +210,7 @@ WITH_WORLD = ("a world", "a world in the app", "a task", "a batch of a task", "m
 """There is no floor around the mat in a world or a task that does not say so."""
 
 
+@pytest.mark.quick_cases("pybricks-*", "tyre-*")
 @pytest.mark.parametrize("program, option", TABLE)
 def test_command_app_notebook_and_api_give_a_program_the_same_run(
     program: str, option: str, folder: Path
@@ -222,6 +223,7 @@ def test_command_app_notebook_and_api_give_a_program_the_same_run(
     assert [door for door, spec in runs.items() if spec != given[door]] == []
 
 
+@pytest.mark.quick_cases("tyre-*")
 @pytest.mark.parametrize(
     "program, option", [pair for pair in TABLE if pair[0] in ("tyre", "reversed", "arm")]
 )
