@@ -89,6 +89,7 @@ def block(language: str, holding: str) -> str:
     return str(found)
 
 
+@pytest.mark.slow
 def test_the_readmes_first_program_runs_also_with_the_readmes_robot_file(
     tmp_path: Path, here: Command
 ) -> None:

@@ -48,6 +48,7 @@ def test_installed_copy_runs_its_own_programs(installed: Path, tmp_path: Path) -
     assert (done.returncode, done.stdout.splitlines()[-1]) == (0, "color_name: White"), done.stderr
 
 
+@pytest.mark.slow
 def test_wheel_holds_every_mat_program_style_and_module(installed: Path) -> None:
     for folder, pattern in (
         ("backgrounds", "*.png"),

@@ -236,6 +236,7 @@ def test_several_runs_stand_side_by_side(here: Command, tmp_path: Path, driven: 
     assert {"Colour #1", "Colour #2"} <= set(page.section["Statistics"])
 
 
+@pytest.mark.slow
 def test_a_run_without_samples_shows_its_telemetry(
     here: Command, home: Path, tmp_path: Path
 ) -> None:

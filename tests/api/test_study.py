@@ -265,6 +265,7 @@ def test_an_experiment_with_wrong_arguments_is_refused_before_anything_runs(
         tuisim.experiment(**{"program": PROGRAM, **given})
 
 
+@pytest.mark.slow
 def test_an_experiment_warns_once_of_what_varies_without_effect() -> None:
     robots = [tuisim.Robot(wheel_diameter_mm=43.2), tuisim.Robot("Small_Robot", weight="heavy")]
     with pytest.warns(UserWarning) as warnings:

@@ -153,6 +153,7 @@ async def test_stepping_back_a_line_shows_its_values_again() -> None:
         await press(pilot, app, "n", 3)
 
 
+@pytest.mark.slow
 async def test_looking_at_an_earlier_line_keys_ask_for_a_branch_and_move_no_robot() -> None:
     async with open_lab(COUNTS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 3)

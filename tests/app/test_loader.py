@@ -279,7 +279,7 @@ WRONG = [
 ]
 
 
-@pytest.mark.quick_cases("mine.toml")
+@pytest.mark.slow
 @pytest.mark.parametrize("name, text, said", WRONG, ids=[name for name, _, _ in WRONG])
 async def test_a_file_that_becomes_faulty_on_disk_is_told_and_the_former_one_stays(
     name: str, text: str, said: str, folder: Path

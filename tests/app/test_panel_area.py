@@ -114,6 +114,7 @@ async def test_a_large_terminal_edits_in_a_high_panel_beside_the_world() -> None
         assert boxes["world"].x == boxes["code"].width
 
 
+@pytest.mark.slow
 def test_panels_and_what_they_ask_are_imported_when_they_are_shown() -> None:
     code = "import sys, tuisim.app.app; print({'tuisim.app.panels.chart', 'jedi'} & {*sys.modules})"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)

@@ -10,6 +10,7 @@ from tuisim.app.panels.instrumentation import Instrumentation
 from tuisim.app.snapshot import RunPhase
 
 
+@pytest.mark.slow
 async def test_all_panels_show_readings_of_the_same_instant() -> None:
     async with open_lab(ENDLESS, autorun=True, speed=1.0, size=(200, 60)) as (pilot, app):
         area = app.panel_area

@@ -73,7 +73,7 @@ async def _go_to_past(pilot: Pilot[None], app: LabApp) -> dict[str, list[str]]:
     return _texts(app)
 
 
-@pytest.mark.quick_cases("nbev3devsim")
+@pytest.mark.slow
 @pytest.mark.parametrize("profile", ["nbev3devsim", "ev3"])
 async def test_changing_the_next_runs_settings_does_not_change_panels_about_the_last_run(
     profile: str,

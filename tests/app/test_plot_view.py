@@ -65,6 +65,7 @@ def _characters(pilot: Pilot[Any], view: PlotView) -> str:
     return "".join(line[x : x + width] for line in lines[y : y + height])
 
 
+@pytest.mark.slow
 async def test_a_screenshot_shows_a_pixel_chart_in_characters() -> None:
     async with on_wire(LabApp(settings(panels_on=frozenset({"chart"}))), "truecolor") as pilot:
         await answered(pilot, "\x1b[?1;2c")

@@ -36,6 +36,7 @@ def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLORTERM", "truecolor")
 
 
+@pytest.mark.slow
 async def test_the_screenshot_key_saves_the_screen_and_names_the_files(tmp_path: Path) -> None:
     async with open_lab(size=(100, 30)) as (pilot, app):
         await until(

@@ -24,9 +24,7 @@ def stored(name: str) -> Image.Image:
         return image.copy()
 
 
-@pytest.mark.quick_cases(
-    "Grey_bands", "Lollipop", "MNIST_Digits", "Two_shapes", "Line_Following_Test"
-)
+@pytest.mark.quick_cases("Grey_bands", "Lollipop", "Two_shapes")
 @pytest.mark.parametrize("name", MATS)
 def test_each_mats_stored_picture_equals_a_fresh_drawing(name: str) -> None:
     assert stored(name).mode == "RGB"

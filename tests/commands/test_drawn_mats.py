@@ -42,6 +42,7 @@ def test_bands_of_a_drawn_mat_have_the_stated_edges_and_greys() -> None:
         assert np.diff(edges).min() > 40
 
 
+@pytest.mark.slow
 def test_the_line_of_a_drawn_mat_is_unbroken_and_stays_on_the_mat() -> None:
     for seed in SEEDS:
         mat = generate_mat("line", seed)

@@ -46,6 +46,7 @@ def test_bands_under_noise_keep_their_names_and_order(here: Command) -> None:
         assert band["true_level"] == pytest.approx(band["grey_percent"], abs=2.0)
 
 
+@pytest.mark.slow
 def test_a_bands_level_and_true_level_are_the_same_in_shell_report_and_app(
     here: Command, tmp_path: Path
 ) -> None:

@@ -51,6 +51,7 @@ def test_honest_programs_end_the_same_in_batch_marking_app_and_notebook(
     assert {name: found.get(name) for name in programs if found.get(name) != in_run[name]} == {}
 
 
+@pytest.mark.slow_cases("mark")
 @pytest.mark.parametrize("host", ["batch", "mark"])
 def test_a_few_honest_programs_end_the_same_in_run_batch_and_marking(
     host: str, tmp_path: Path

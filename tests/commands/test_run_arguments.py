@@ -109,6 +109,7 @@ def test_arguments_in_a_world_file_that_are_no_list_of_texts_are_refused(
     assert (done.returncode, done.stderr.strip()) == (2, f"tuisim: lab.toml: {message}")
 
 
+@pytest.mark.slow_cases("*-batch")
 @pytest.mark.parametrize("command", ["run", "batch"])
 @pytest.mark.parametrize("profile, is_told", [("ev3", True), ("robolab", False)])
 def test_a_weight_that_the_profile_does_not_use_is_told(

@@ -189,7 +189,7 @@ DAMAGES: dict[str, Callable[[Path], None]] = {
 }
 
 
-@pytest.mark.quick_cases("zeros")
+@pytest.mark.slow
 @cases("damage", DAMAGES)
 def test_a_damaged_cache_file_is_made_again(
     home: Path, tmp_path: Path, damage: Callable[[Path], None]

@@ -73,7 +73,14 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 
 
 @pytest.mark.slow_cases(
-    "README", "experiments", "marking", "measuring-bands", "motion-and-drift", "python"
+    "README",
+    "experiments",
+    "goal-files",
+    "marking",
+    "measuring-bands",
+    "motion-and-drift",
+    "pybricks",
+    "python",
 )
 @pytest.mark.parametrize("name", WITH_BLOCKS)
 def test_each_code_block_of_the_guide_runs_and_prints_what_it_says(

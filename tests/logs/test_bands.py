@@ -170,6 +170,7 @@ def short_log(seed: int) -> NDArray[np.float64]:
     return values + rng.normal(0.0, rng.choice([0.0, 0.4]), len(values))
 
 
+@pytest.mark.slow_cases("made")
 @pytest.mark.parametrize(
     "make, sums",
     [

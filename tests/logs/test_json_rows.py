@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, times, values
 
@@ -115,6 +117,7 @@ CASES: dict[str, Case] = {
 }
 
 
+@pytest.mark.slow_cases("a line of more than a megabyte")
 @cases("name, content, expected", CASES)
 def test_a_json_document_is_read_as_a_log_of_rows_or_columns(
     tmp_path: Path, name: str, content: bytes, expected: Read | str

@@ -30,6 +30,7 @@ def list_failures(verdicts: Iterable[Verdict]) -> str:
     return "\n".join([*map(str, ranks.items()), *(text for *_, text in sorted(wrong)[:MAX_SHOWN])])
 
 
+@pytest.mark.slow
 def test_randomly_drawn_log_files_are_read_as_they_were_written(tmp_path: Path) -> None:
     seeds = [*QUICK_SEEDS, *FAILED_SEEDS]
     failures = list_failures(read_file(draw(seed), tmp_path) for seed in seeds)

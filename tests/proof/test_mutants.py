@@ -38,6 +38,7 @@ def test_a_mutant_changes_only_its_operator_and_keeps_line_numbers() -> None:
     assert product.text.endswith("\n)\ny = 4\n")
 
 
+@pytest.mark.slow
 def test_a_seed_draws_the_same_mutants() -> None:
     drawn = draw_mutants(["engine/core", "tuisim/pictures/scene"], 7, 300)
     assert (len(drawn), {mutant.room for mutant in drawn}) == (

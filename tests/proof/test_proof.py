@@ -27,6 +27,12 @@ FEWER = {"clients": 3}
 """Of each kind, and of those whose cases take seconds; `python -m tests.proof` runs many more."""
 
 
+@pytest.mark.slow_cases(
+    "damage-run:3463462202:text",
+    "damage-run:183:text",
+    "damage-run:369608953:text",
+    "damage-run:1180655197:text",
+)
 @pytest.mark.parametrize(("name", "case"), FOUND, ids=lambda word: word)
 def test_each_case_that_once_found_a_fault_finds_none_now(name: str, case: str) -> None:
     assert kind.fault_of(KINDS[name], case) == ""
@@ -106,6 +112,7 @@ def test_a_case_of_the_proof_that_uses_too_much_memory_is_ended(
     assert "TooLargeError: has grown by more than 4 MB" in fault
 
 
+@pytest.mark.slow
 def test_processes_of_the_proof_run_with_garbage_collection_enabled() -> None:
     words = "import gc, tests.proof.clients; print(gc.isenabled())"
     done = subprocess.run(

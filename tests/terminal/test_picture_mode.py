@@ -136,7 +136,7 @@ def _reversed_on(sent: str) -> list[str]:
     return [row.strip() for row in rows]
 
 
-@pytest.mark.quick_cases("the cursor in a field")
+@pytest.mark.slow
 @cases(
     "keys, lit",
     {

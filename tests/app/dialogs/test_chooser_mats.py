@@ -92,7 +92,7 @@ async def enter_path(pilot: Pilot[None], path: Path) -> None:
     await pilot.press("enter")
 
 
-@pytest.mark.quick_cases("missing")
+@pytest.mark.slow
 @pytest.mark.parametrize("content", [None, "no picture"], ids=["missing", "text"])
 async def test_choosing_a_file_that_is_no_image_keeps_the_mat_and_says_why(
     content: str | None, tmp_path: Path
@@ -132,7 +132,7 @@ async def choose(pilot: Pilot[None], name: str) -> None:
     await pilot.press("enter")
 
 
-@pytest.mark.quick_cases("--mats")
+@pytest.mark.slow
 @pytest.mark.parametrize("named", [False, True], ids=["usual folder", "--mats"])
 async def test_mats_of_ones_own_are_listed_by_name(named: bool, home: Path, tmp_path: Path) -> None:
     folder = tmp_path / "pics" if named else home / "backgrounds"

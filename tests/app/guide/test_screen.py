@@ -253,6 +253,7 @@ async def test_the_best_answers_are_in_sight_below_each_other(size: tuple[int, i
         assert shown == answers[: len(shown)] and len(shown) >= (3 if size != (40, 12) else 1)
 
 
+@pytest.mark.quick_cases("row")
 @cases(
     "question, passage",
     {

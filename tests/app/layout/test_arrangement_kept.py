@@ -29,6 +29,7 @@ def test_a_saved_layout_is_loaded_again() -> None:
     assert load_layout(TerminalSize.SMALL) == KeptLayout(Preset.DRIVE, {"output": False})
 
 
+@pytest.mark.slow
 async def test_panels_are_kept_for_the_next_start_only_by_the_key_that_says_so() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await pilot.press("X", "i", "i")

@@ -206,9 +206,10 @@ async def test_a_panel_that_a_lessons_step_asks_for_is_closed_when_the_step_begi
 BESIDE = [name for name in PANELS if name not in ("lesson", "settings")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "panels",
-    [("debug", "output"), pytest.param(BESIDE, marks=pytest.mark.slow)],
+    [("debug", "output"), BESIDE],
     ids=["two", "every one"],
 )
 async def test_page_keys_scroll_the_text_beside_every_panel(

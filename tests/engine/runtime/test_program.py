@@ -71,7 +71,6 @@ ENDS = {
     "2 GiB at once",
     "deadlock",
     "spin",
-    "a line without an end",
 )
 @cases("text, end, exit_code", ENDS)
 @pytest.mark.usefixtures("real_start")

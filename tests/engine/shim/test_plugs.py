@@ -176,6 +176,7 @@ def test_a_program_that_asks_for_parts_late_runs_with_them_plugged_in(
     assert list_parts(done.run.plugged) == late.parts
 
 
+@pytest.mark.slow_cases("after a menu", "wheels too late")
 @pytest.mark.parametrize("name", ["late, after driving", "wheels too late", "after a menu"])
 def test_a_program_that_asks_for_parts_late_runs_the_same_in_every_way(
     home: Path, tmp_path: Path, name: str

@@ -197,7 +197,7 @@ def test_each_golden_set_of_settings_builds_the_recorded_run(
     assert differences(case["gives"], outcome) == {}
 
 
-@pytest.mark.quick_cases("everything in a world", "a cell with noise")
+@pytest.mark.quick_cases("a cell with noise")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_each_golden_program_gives_its_recorded_output(name: str, folder: Path) -> None:
     case = CASES[name]

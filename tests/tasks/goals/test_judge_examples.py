@@ -72,6 +72,7 @@ def test_every_example_of_goals_is_complete() -> None:
         assert path.read_text(encoding="utf-8").isascii()
 
 
+@pytest.mark.slow_cases("until_black", "name_colour", "bumper")
 @pytest.mark.parametrize("name", ["bumper", "log_greys", "name_colour", "until_black"])
 def test_constants_of_the_first_world_do_not_pass(name: str, here: Command, tmp_path: Path) -> None:
     here("run", EXAMPLES[name])

@@ -134,6 +134,7 @@ def test_the_signal_that_killed_a_forked_run_is_known(warm: WarmProcess) -> None
     assert (ended.end, handle._process.returncode) == ("crashed", -signal.SIGSEGV)
 
 
+@pytest.mark.slow
 def test_the_warm_process_ends_with_its_host(warm: WarmProcess) -> None:
     warm.close()
     assert warm._process.returncode == 0
