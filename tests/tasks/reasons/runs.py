@@ -14,7 +14,7 @@ from tuisim.settings.build import build_run_spec
 from tuisim.settings.presses import press_actions
 
 PROGRAMS = Path(__file__).parents[3] / "programs"
-LIMIT_S = 30.0
+LIMIT_S = 8.0
 """Simulated seconds after which a run ends."""
 
 

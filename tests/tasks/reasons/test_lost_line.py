@@ -127,21 +127,21 @@ WRONG = {
 @pytest.mark.quick_cases("edge", "stays inside")
 @pytest.mark.parametrize("name", GOOD)
 def test_a_robot_that_follows_its_line_is_not_said_to_have_lost_it(name: str) -> None:
-    assert lost_in(run_text(GOOD[name])) == []
+    assert lost_in(run_text(GOOD[name], limit_s=30.0)) == []
 
 
 @pytest.mark.quick_cases("the sign of two sensors")
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_program_is_told_where_it_lost_the_line(name: str) -> None:
     text, time_s, words = WRONG[name]
-    first = lost_in(run_text(text))[0]
+    first = lost_in(run_text(text, limit_s=30.0))[0]
     assert words in first.text
     assert first.words.startswith(time_s)
 
 
 def test_a_line_lost_and_seen_again_is_told_with_the_time() -> None:
     text = EDGE.format(seconds=18, left=20, right=5)
-    reason = lost_in(run_text(text))[0]
+    reason = lost_in(run_text(text, limit_s=30.0))[0]
     assert "saw it again after" in reason.text
     assert reason.line == 3
 

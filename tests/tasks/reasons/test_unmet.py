@@ -74,7 +74,7 @@ VAIN = {
     ),
     "rotations for degrees": (
         f"{BANDS}tank_drive.on_for_rotations(20, 20, 360)\n",
-        "360 rotations of the wheels: they had turned 1",
+        "360 rotations of the wheels: they had turned 4",
     ),
 }
 
