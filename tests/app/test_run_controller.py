@@ -19,6 +19,7 @@ from tests.app.app_help import (
     until_shown,
     until_state,
 )
+from tuisim.app import run_controller
 from tuisim.app.app import LabApp
 from tuisim.app.panels.code import Code
 from tuisim.app.panels.output import Answer
@@ -238,3 +239,13 @@ async def test_on_a_slow_link_a_paused_or_stopped_world_is_drawn_finely_at_once(
             await pilot.press(key)
             await until(pilot, lambda word=word: app.key_footer._status.startswith(word))  # type: ignore[misc]
             assert not world.is_coarse
+
+
+async def test_a_run_in_the_app_ends_at_a_limit_and_says_so(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert run_controller.TIME_LIMIT_S == 3600
+    monkeypatch.setattr(run_controller, "TIME_LIMIT_S", 1.0)
+    async with open_lab(ENDLESS, autorun=True, speed=0.0) as (pilot, _):
+        await until_state(pilot, RunPhase.ENDED)
+        await until_shown(pilot, "stopped at the limit of 1 s simulated time")

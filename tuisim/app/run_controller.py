@@ -40,6 +40,9 @@ if TYPE_CHECKING:
 FIRST_LINE = (0, 1)
 """Tick and ordinal at which the first line of a program is about to run."""
 
+TIME_LIMIT_S = 3600.0
+"""Simulated time that a run may take: at full speed, a blocked robot would fill the disk within minutes."""
+
 ROWS_A_POLL = 4000
 """Most output rows that one poll reads, so that a flood of prints does not block the app."""
 
@@ -146,7 +149,7 @@ class RunController:
     def build_snapshot(self) -> Snapshot:
         """Return the state of robot and run at the instant in view, for the panels."""
         timeline = self.timeline
-        recording = self.timeline.recording
+        recording = timeline.recording
         spec = self.spec
         newest = recording.telemetry.last() if recording else None
         past = timeline.at is not None
@@ -156,7 +159,7 @@ class RunController:
             record = timeline.record()
         instant, line, pen_down = self._find_moment(record)
         state = self.state
-        face = timeline.face(now_tick if timeline.at is None else timeline.at)
+        face = timeline.face(timeline.tick if past else now_tick)
         hz = timeline.tick_hz
         turns = face.extrapolate_turns(instant.tick / hz, hz) if record else ()
         if record and (present := self._find_present(record)):
@@ -321,7 +324,11 @@ class RunController:
     @property
     def _options(self) -> RunOptions:
         return RunOptions(
-            live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True
+            live=True,
+            speed=self.speed,
+            time_limit_s=TIME_LIMIT_S,
+            stall_limit_s=0.0,
+            asks_user=True,
         )
 
     def start_branch(self, branch: Branch) -> None:
