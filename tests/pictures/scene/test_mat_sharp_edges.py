@@ -68,3 +68,16 @@ def test_a_mats_line_is_drawn_up_to_the_area_that_it_ends_at() -> None:
     line = picture[rows[0] : rows[-1] + 1].min(axis=(0, 2))
     first = int(np.nonzero(line[40:] == 0)[0][0]) + 40
     assert (line[40:first] < 200).all()
+
+
+@pytest.mark.parametrize("by_mm", range(0, 40, 5))
+def test_a_dot_of_a_mat_has_no_spike_at_its_top_or_bottom(by_mm: int) -> None:
+    mat = field()
+    rows, cols = np.ogrid[:1143, :2362]
+    mat[np.hypot(rows - 507 - by_mm, cols - 909 - by_mm) < 50] = (255, 0, 0)
+    is_red = (drawn(mat, (124, 30)) == (255, 0, 0)).all(axis=2)
+    share = 1 - drawn(mat, (124, 30), exact=True)[..., 1] / 255
+    widths = is_red.sum(axis=1)
+    assert widths.max() >= 4
+    spikes = is_red & (widths == 1)[:, None]
+    assert (share[spikes] >= 0.5).all(), "a point that is mostly white is red"

@@ -135,12 +135,12 @@ EVERYTHING = SceneState(
 @pytest.mark.parametrize(
     "view, options, checksum",
     [
-        (VIEW, {}, 3027207584),
+        (VIEW, {}, 15489762),
         (VIEW, {"for_file": True}, 3186909634),
         (fit_field(240, 120, CellPoints(2, 4)), {}, 135519599),
-        (fit_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 4029787685),
-        (fit_field(38, 19), {"grey": True}, 2589912104),
-        (fit_field(76, 60, CellPoints(2, 3)), {"mono": True}, 888471219),
+        (fit_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 929788647),
+        (fit_field(38, 19), {"grey": True}, 2203019224),
+        (fit_field(76, 60, CellPoints(2, 3)), {"mono": True}, 991141988),
         (Viewport(140, 78, 4.0, 1003 - 280.0, 507 + 156.0), {"whole_cells": True}, 3233824671),
     ],
     ids=["middle", "for a file", "octants", "coarse", "small and grey", "mono", "close"],

@@ -196,17 +196,44 @@ def _find_lines(mean: _Numbers, ground: _Numbers, way: _Numbers) -> _Flags:
     is_line = np.zeros(mean.shape[:2], bool)
     # Off the mat, there is no part of a line.
     padded = np.pad(mean, _PAD, constant_values=np.nan)
+
+    def measure(down: int, right: int) -> _Numbers:
+        share: _Numbers = ((_shift(padded, down, right) - ground) * way).sum(axis=2)
+        return np.nan_to_num(share)
+
     for down, right in ((1, 0), (0, 1)):
         last, before, share, after, next_after = (
-            np.nan_to_num(((_shift(padded, step * down, step * right) - ground) * way).sum(axis=2))
-            for step in (-2, -1, 0, 1, 2)
+            measure(step * down, step * right) for step in (-2, -1, 0, 1, 2)
         )
         is_best = (share > before) & (share >= after)
         covers = share + np.maximum(before, after) >= _MIN_SHARE
         # A line between two rows of pixels covers both rows; at the end of an edge, all pixels on one side are covered.
         beside = np.maximum(np.minimum(last, before), np.minimum(after, next_after))
-        is_line |= is_best & covers & (share - beside >= _MIN_SHARE / 2)
+        is_line |= (
+            is_best
+            & covers
+            & (share - beside >= _MIN_SHARE / 2)
+            & ~_is_tip(measure, share, down, right)
+        )
     return is_line
+
+
+def _is_tip(
+    measure: Callable[[int, int], _Numbers], share: _Numbers, down: int, right: int
+) -> _Flags:
+    """Return which pixels are the tip of an area, such as a disc: on one side of it is the area, on the other nothing.
+
+    Args:
+        measure: Returns how much of each pixel's neighbour, some pixels down and to the right, has the line's colour.
+        share: How much of each pixel has it.
+        down, right: The way across a line.
+    """
+    is_tip = np.zeros(share.shape, bool)
+    for side in (-1, 1):
+        row, col = side * right, side * down
+        corners = np.minimum(measure(row + down, col + right), measure(row - down, col - right))
+        is_tip |= (corners > share) & (measure(-row, -col) < share / 2)
+    return is_tip
 
 
 def _shift(padded: _Numbers, down: int, right: int) -> _Numbers:
