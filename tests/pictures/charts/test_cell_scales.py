@@ -109,4 +109,10 @@ def test_each_lines_last_value_stands_at_its_end(
 @pytest.mark.parametrize("value", [99.5, 100.0])
 def test_the_chart_keeps_its_columns_when_labels_get_longer(value: float) -> None:
     made = traces({"Colour": [0.0, 100.0, value]})
-    assert ChartPainter().paint(made, ChartState(), 80, 14).columns == 70
+    assert ChartPainter().paint(made, ChartState(), 80, 14).columns == 69
+
+
+def test_a_blank_keeps_the_last_value_apart_from_the_end_of_its_line() -> None:
+    rows = text(ChartPainter().paint(traces({"darkest": [0.0]}), ChartState(), 80, 14))
+
+    assert any(row.rstrip().endswith(" 0") for row in rows)

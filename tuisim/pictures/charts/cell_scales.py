@@ -125,7 +125,8 @@ class CellScales:
         ]
         if self.ends_width:
             text, style = self.ends.get(row, ("", AXIS))
-            line.append((text.ljust(self.ends_width), style))
+            # A blank keeps a value apart from the end of its line, whose dots would look like a colon.
+            line.append((f" {text}".ljust(self.ends_width), style))
         for labels, style in zip(self.labels[1:], self.styles[1:], strict=True):
             text = labels.get(row, "")
             line += [("├" if text else "│", AXIS), (text.ljust(_measure_width(labels) - 1), style)]
@@ -179,7 +180,7 @@ def _place_end_values(
         )
         # The labels of the limits count for the width, too, so that the canvas keeps its size while values come in.
         width = max(width, *(len(text + scale.unit) for text in texts))
-    return _separate_rows(ends, rows), width
+    return _separate_rows(ends, rows), width + 1 if ends else 0
 
 
 def _round_value(value: float, scale: Scale) -> str:
