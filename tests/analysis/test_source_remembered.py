@@ -9,7 +9,7 @@ import pytest
 
 from tests.cases import cases
 from tuisim.analysis import source
-from tuisim.analysis.source import LogRequest, find_choices, request_file
+from tuisim.analysis.source import LogRequest, find_choices
 from tuisim.app.analyser.screen import read_doubtful
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.settings.preferences import find_preferences_file, keep
@@ -79,18 +79,18 @@ def test_a_damaged_file_of_remembered_choices_raises_no_error(text: str, file: P
     status = file.stat()
     text = text.replace("FILE", str(file)).replace("SIZE", str(status.st_size))
     find_preferences_file().write_text(text.replace("DATE", str(status.st_mtime_ns)))
-    assert request_file(str(file)) == LogRequest(str(file))
+    assert LogRequest.restore(str(file)) == LogRequest(str(file))
     LogRequest(str(file)).remember(CHOICES)
     assert find_choices(str(file)) == CHOICES
 
 
 def test_remembered_choices_apply_when_none_are_given_and_a_note_says_so(file: Path) -> None:
     LogRequest(str(file)).remember(CHOICES)
-    *_, opened = request_file(str(file)).open_pieces()
+    *_, opened = LogRequest.restore(str(file)).open_pieces()
     assert opened.log.series("light").time_s[-1] == pytest.approx(0.16)
     options = "--time boot --unit ms --header 1 --separator semicolon --decimal ,"
     assert opened.log.notes[0].startswith(f"read as chosen in the analyser: {options} (")
-    *_, opened = request_file(str(file), ReadChoices(time="")).open_pieces()
+    *_, opened = LogRequest.restore(str(file), ReadChoices(time="")).open_pieces()
     assert opened.log.series("light").time_s[-1] == 8
     assert opened.log.notes == ()
 
@@ -114,7 +114,7 @@ def test_a_file_read_by_guesses_is_shown_first_until_choices_are_kept(
     assert (read_doubtful(LogRequest(str(file))) is not None) is is_shown
     assert read_doubtful(LogRequest(str(file), choices=ReadChoices(time=""))) is None
     LogRequest(str(file)).remember(NO_CHOICES)
-    assert read_doubtful(request_file(str(file))) is None
+    assert read_doubtful(LogRequest.restore(str(file))) is None
 
 
 def test_how_to_read_stored_runs_and_pipes_is_not_asked() -> None:

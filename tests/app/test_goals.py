@@ -29,7 +29,7 @@ from tuisim.app.snapshot import RunPhase
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
-from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.goals.files import GoalsFile
 
 GOALS = """\
 title = "There and done"
@@ -67,7 +67,7 @@ def task(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def with_goals(path: Path, text: str | None = None, **more: Any) -> AppSettings:
     """What the command makes of `tuisim PROGRAM --goals FILE`."""
-    goals = load_goals(path)
+    goals = GoalsFile.load(path)
     chosen = {"panels_on": frozenset({"goals"}), "speed": 0.0, **more}
     made = settings(text, goals=goals, world_file=path, **chosen)
     return replace(made, spec=build_run_spec(Settings.merge(goals.settings)))

@@ -28,7 +28,7 @@ from tuisim.app.notices import NoticeRow
 from tuisim.app.reason_tour import ReasonTour
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.runs.handle import RunOptions
-from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.reasons.reason import Reason, ReasonKind
 
 STRAIGHT = "tank_drive.on_for_seconds(20, 20, 1)\n"
@@ -156,7 +156,7 @@ async def test_missed_goals_of_the_open_goal_file_are_among_the_reasons(tmp_path
     path.write_text(GOALS, encoding="utf-8")
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
         await run_from_start(pilot, app, STRAIGHT)
-        app.goals.change(load_goals(path))
+        app.goals.change(GoalsFile.load(path))
         await ask(pilot, app, "a goal was missed: ")
 
 

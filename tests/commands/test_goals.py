@@ -16,7 +16,7 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 from tuisim.settings.worlds import WorldFile, save_world
-from tuisim.tasks.goals.files import list_example_names, load_goals
+from tuisim.tasks.goals.files import GoalsFile, list_example_names
 from tuisim.tasks.goals.judge import judge
 
 GOALS = """\
@@ -239,7 +239,10 @@ def test_goals_judge_only_a_limited_number_of_printed_rows(
     monkeypatch.setattr("tuisim.tasks.goals.evidence.MAX_ROWS", 5)
     run = Run(RunStore(), world(), "")
     run.do([says("x")] * 9 + [says("done")])
-    assert [each.state for each in judge(load_goals(task).goals, run.end())] == ["missed", "missed"]
+    assert [each.state for each in judge(GoalsFile.load(task).goals, run.end())] == [
+        "missed",
+        "missed",
+    ]
 
 
 @pytest.mark.slow
@@ -254,7 +257,7 @@ def test_the_lines_printed_by_goals_mat_can_be_used_in_a_task(task: Path, here: 
     done = here("goals", "mat", "bands", "--seed", "7")
     assert (done.returncode, done.stderr) == (0, "")
     task.write_text(GOALS + done.stdout)
-    (other,) = load_goals(task).worlds[1:]
+    (other,) = GoalsFile.load(task).worlds[1:]
     assert other.hidden and (task.parent / "bands-7.png").read_bytes().startswith(b"\x89PNG")
     build_run_spec(Settings.merge(other.settings))
 
@@ -283,4 +286,4 @@ def test_saving_a_world_into_a_goal_file_keeps_the_goals(task: Path) -> None:
     spec = build_run_spec(Settings.merge(WorldFile.load(task).settings))
     save_world(spec, task)
     assert build_run_spec(Settings.merge(WorldFile.load(task).settings)) == spec
-    assert [goal.name for goal in load_goals(task).goals] == ["there", "said"]
+    assert [goal.name for goal in GoalsFile.load(task).goals] == ["there", "said"]

@@ -37,7 +37,7 @@ from tuisim.settings.profiles import load_profile
 from tuisim.settings.robots import ROBOTS, RobotChoice, save_robot
 from tuisim.settings.shared_options import parse_words
 from tuisim.settings.worlds import WorldFile, save_world
-from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.goals.files import GoalsFile
 
 Write = Callable[[str, str], str]
 
@@ -539,7 +539,7 @@ def test_the_toml_files_printed_in_the_guide_can_be_used_together(tmp_path: Path
     assert load_obstacles(str(tmp_path / "obstacles.toml")) == (Obstacle(900, 500, 200, 100),)
     explorer = RobotChoice.load(str(tmp_path / "explorer.toml")).spec
     assert [sensor.name for sensor in explorer.sensors] == ["left", "middle", "back", "bumper"]
-    assert [goal.name for goal in load_goals(tmp_path / "bands_goals.toml").goals] == [
+    assert [goal.name for goal in GoalsFile.load(tmp_path / "bands_goals.toml").goals] == [
         "levels",
         "black",
         "finish",

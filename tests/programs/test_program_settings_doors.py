@@ -21,7 +21,7 @@ from tuisim.programs.program_settings import build_program_settings, find_free_p
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.magic_line import parse_line
 from tuisim.settings.options import Settings
-from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.marks.entries import build_entries
 from tuisim.tasks.marks.students import find_students
 
@@ -190,7 +190,7 @@ def runs_of(folder: Path, program: str, option: Option) -> dict[str, RunSpec]:
     runs["simulate"] = outside.of_choices("p.py", option.choices).specs[0]
     students = find_students(["class"]).students
     for door, goals, above in (("mark", "g.toml", given), ("mark in a world", "t.toml", {})):
-        (entry,), _ = build_entries(students, load_goals(folder / goals), above)
+        (entry,), _ = build_entries(students, GoalsFile.load(folder / goals), above)
         runs[door] = entry.specs[0]
     return runs | runs_in_app(read_program(folder / "p.py"), option)
 

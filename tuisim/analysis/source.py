@@ -45,12 +45,6 @@ class _Reading:
     choices: ReadChoices = NO_CHOICES
 
 
-def request_file(file: str, choices: ReadChoices = NO_CHOICES) -> LogRequest:
-    """Return the request to open a file; without choices, the request has those that were made for the file before."""
-    remembered = find_choices(file) if choices == NO_CHOICES else None
-    return LogRequest(file, choices=remembered or choices, is_remembered=remembered is not None)
-
-
 def find_choices(file: str) -> ReadChoices | None:
     """Return the stored choices of how to read a file; None if there are none, or the file has changed since."""
     reading = _look_up(file)
@@ -140,6 +134,12 @@ class LogRequest:
         for loaded in read_pieces(self.file, self.choices):
             if loaded.log is not None:
                 yield OpenedLog(self, self.mark(loaded.log), (), loaded.part, loaded.done)
+
+    @classmethod
+    def restore(cls, file: str, choices: ReadChoices = NO_CHOICES) -> LogRequest:
+        """Return the request to open a file; without choices, it has those that were made for the file before."""
+        remembered = find_choices(file) if choices == NO_CHOICES else None
+        return cls(file, choices=remembered or choices, is_remembered=remembered is not None)
 
 
 @dataclass(frozen=True, slots=True)

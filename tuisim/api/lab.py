@@ -26,7 +26,7 @@ from tuisim.engine.runs.stepped_run import SteppedRun
 from tuisim.settings.build import build_run_spec, extract_settings, list_ineffective
 from tuisim.settings.options import Settings
 from tuisim.settings.robots import ROBOTS
-from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.goals.live import LiveGoals, check_goals
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ class Lab:
         chosen = read_options({"robot": robot, "seed": seed, "profile": profile})
         in_world = read_world(world, None)
         if goals is not None:
-            task = load_goals(goals)
+            task = GoalsFile.load(goals)
             check_goals(task.goals)
             self._goals = task.goals
             in_world = task.settings if world is None else in_world

@@ -12,7 +12,7 @@ from tuisim.api.keywords import check_keywords
 from tuisim.api.measures import show_progress
 from tuisim.base.errors import HostError
 from tuisim.engine.runs.child.isolation import check_isolation
-from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.marks.marking import MarkRequest
 from tuisim.tasks.task import TIME_LIMIT_S
 
@@ -58,7 +58,7 @@ def mark(
         LogError: a recording cannot be written.
         KeyboardInterrupt: ctrl-C; the runs have been stopped.
     """
-    task = load_goals(goals)
+    task = GoalsFile.load(goals)
     if isolate:
         check_isolation()
     named = [folders] if isinstance(folders, str | Path) else folders

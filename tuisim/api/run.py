@@ -130,7 +130,7 @@ class Run:
         """
         import pandas as pd
 
-        from tuisim.tasks.goals.files import load_goals
+        from tuisim.tasks.goals.files import GoalsFile
         from tuisim.tasks.goals.judge import judge
         from tuisim.tasks.goals.judgement import GoalState
 
@@ -143,7 +143,7 @@ class Run:
                 "reason": each.reason,
                 "line": each.line,
             }
-            for each in judge(load_goals(goals).goals, self.stored)
+            for each in judge(GoalsFile.load(goals).goals, self.stored)
         )
 
     def picture(self) -> Image:

@@ -31,7 +31,7 @@ from tuisim.engine.protocol import End
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import check_target
 from tuisim.programs.program_file import ProgramSource
-from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.task import MAX_JOBS, Keep, Value
 
 if TYPE_CHECKING:
@@ -188,7 +188,7 @@ class Study:
         }
         if SEED in self._parameters:
             raise ConfigError("the seed varies by seeds=", key="parameters")
-        self._task = load_goals(goals) if goals is not None else None
+        self._task = GoalsFile.load(goals) if goals is not None else None
         self._options = build_run_options(
             timeout_s, answers or (self._task.answers if self._task else ())
         )

@@ -420,9 +420,9 @@ class Loader:
                 self.goals.change(goals)
             return True
         if path == self.goals.path:
-            from tuisim.tasks.goals.files import load_goals
+            from tuisim.tasks.goals.files import GoalsFile
 
-            self.goals.change(load_goals(path))
+            self.goals.change(GoalsFile.load(path))
             return True
         fields = [
             field

@@ -214,9 +214,9 @@ def _is_in_browser() -> bool:
 def _load_goals(word: str | None) -> GoalsFile | None:
     if word is None:
         return None
-    from tuisim.tasks.goals.files import load_goals
+    from tuisim.tasks.goals.files import GoalsFile
 
-    return load_goals(word)
+    return GoalsFile.load(word)
 
 
 def _load_world_goals(world: WorldFile | None, mats: str | None) -> GoalsFile | None:

@@ -31,7 +31,7 @@ from tuisim.engine.runs.handle import RunOptions
 from tuisim.logs.export import LISTED, check_target
 from tuisim.settings.command_line import Arguments, WordType, argument, option
 from tuisim.settings.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, is_world_name
-from tuisim.tasks.goals.files import GoalsFile, load_goals
+from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.task import Keep
 
 _GRID = "Parameters"
@@ -118,7 +118,7 @@ def read_request(arguments: Arguments) -> Request:
     """
     file = _take_batch_file(arguments)
     named = arguments.goals or file.goals or _find_goals_world(arguments)
-    goals = load_goals(named) if named else None
+    goals = GoalsFile.load(named) if named else None
     subjects = _prepare_subjects(arguments, file, goals)
     typed = _parse_choices(arguments)
     free_choices = {name: choice for name, choice in file.choices.items() if name not in typed}

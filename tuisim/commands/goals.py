@@ -31,7 +31,7 @@ from tuisim.settings.build import build_run_spec, extract_settings
 from tuisim.settings.command_line import Group, WordType, argument, command, option
 from tuisim.settings.options import START, Settings
 from tuisim.settings.presses import press_actions
-from tuisim.tasks.goals.files import GoalsFile, list_example_names, load_goals
+from tuisim.tasks.goals.files import GoalsFile, list_example_names
 from tuisim.tasks.goals.judge import judge
 from tuisim.tasks.goals.judgement import (
     GoalState,
@@ -69,7 +69,7 @@ _MARKS = {
 )
 def check(goals_path: str, words: Sequence[str], as_json: bool) -> int:
     """Judge runs by a goals file and print the judgements; return 0 if every goal is met, else 1."""
-    file = load_goals(goals_path)
+    file = GoalsFile.load(goals_path)
     all_met = True
     with Progress("goals check"):
         store = RunStore()
@@ -231,7 +231,7 @@ def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, 
     """Run programs that do not do a task and print the points that they get; return 1 if one gets too many, else 0."""
     from tuisim.tasks.marks.trial import run_trial
 
-    task = load_goals(goals_path)
+    task = GoalsFile.load(goals_path)
     every_seed = parse_seeds(seeds, "--seeds")
     with Progress("goals try"):
         trial = run_trial(task, wrong, every_seed, time_limit_s=timeout, jobs=jobs)

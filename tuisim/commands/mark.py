@@ -47,7 +47,7 @@ from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.settings.command_line import Arguments, WordType, argument, command, option
 from tuisim.settings.options import APP, PANEL, parse
 from tuisim.settings.shared_options import build_shared_options
-from tuisim.tasks.goals.files import GoalsFile, load_goals
+from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.marks.marking import GRADEBOOKS, Marking, MarkRequest
 from tuisim.tasks.marks.sheet import Sheet
 from tuisim.tasks.task import TIME_LIMIT_S, Keep
@@ -191,7 +191,7 @@ def mark(**given: Any) -> int:
         LogError: the journal or a recording cannot be read or written.
     """
     arguments = Arguments(**given)
-    task = load_goals(Path(arguments.goals))
+    task = GoalsFile.load(Path(arguments.goals))
     seeds = parse_seeds(arguments.seeds, "--seeds")
     _check(arguments, task)
     request = MarkRequest(

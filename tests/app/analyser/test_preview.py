@@ -13,7 +13,7 @@ from textual.widgets import Select, Static
 
 from tests.app.app_help import until
 from tests.cases import cases
-from tuisim.analysis.source import find_choices, request_file
+from tuisim.analysis.source import LogRequest, find_choices
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.analyser.preview import PreviewDialog
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
@@ -30,7 +30,7 @@ FILES = {
 @asynccontextmanager
 async def previewed(file: Path) -> AsyncIterator[tuple[Pilot[Any], PreviewDialog]]:
     """The analyser that shows how a file is read, before it opens."""
-    async with AnalyserApp(request_file(str(file))).run_test(size=(80, 24)) as pilot:
+    async with AnalyserApp(LogRequest.restore(str(file))).run_test(size=(80, 24)) as pilot:
         await until(pilot, lambda: isinstance(pilot.app.screen, PreviewDialog))
         dialog = pilot.app.screen
         assert isinstance(dialog, PreviewDialog)
@@ -41,7 +41,7 @@ async def previewed(file: Path) -> AsyncIterator[tuple[Pilot[Any], PreviewDialog
 
 async def open_again(file: Path) -> tuple[str, ...]:
     """Open a file that need not be asked about; return what is noted of it."""
-    async with AnalyserApp(request_file(str(file))).run_test(size=(80, 24)) as pilot:
+    async with AnalyserApp(LogRequest.restore(str(file))).run_test(size=(80, 24)) as pilot:
         await until(pilot, lambda: analyser(pilot).is_open)
         return analyser(pilot).model.log.notes
 

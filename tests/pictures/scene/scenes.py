@@ -12,13 +12,13 @@ from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, 
 from tuisim.pictures.scene.painter import ScenePainter
 from tuisim.pictures.scene.pen import PenTrace
 from tuisim.pictures.scene.pictures import build_world_view
-from tuisim.pictures.scene.view import Viewport, fit_field
+from tuisim.pictures.scene.view import Viewport
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 from tuisim.terminal.pixels import Pixels
 
 WHITE: Pixels = np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
-VIEW = fit_field(160, 78)
+VIEW = Viewport.fit_field(160, 78)
 ROBOT = RobotSpec()
 MIDDLE = Pose(1200, 570, 30)
 CORNERS = [(x_mm, y_mm) for x_mm in (0, FIELD_WIDTH_MM) for y_mm in (0, FIELD_HEIGHT_MM)]

@@ -8,7 +8,7 @@ import pytest
 from tests.cases import for_each
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM
 from tuisim.pictures.scene.mat import MatPictures, shrink
-from tuisim.pictures.scene.view import Viewport, fit_field
+from tuisim.pictures.scene.view import Viewport
 from tuisim.terminal.glyphs import build_glyph_set
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import CellPoints, Pixels
@@ -21,7 +21,7 @@ def mat(ground: int = 255) -> Pixels:
 
 
 def test_a_plain_mat_stays_plain_and_what_is_off_it_is_outside() -> None:
-    picture = shrink(mat(211), fit_field(76, 54), OUTSIDE)
+    picture = shrink(mat(211), Viewport.fit_field(76, 54), OUTSIDE)
 
     assert set(map(tuple, picture.reshape(-1, 3).tolist())) == {(211, 211, 211), OUTSIDE}
     assert tuple(picture[0, 0]) == OUTSIDE
@@ -31,7 +31,7 @@ def test_a_plain_mat_stays_plain_and_what_is_off_it_is_outside() -> None:
 def test_a_mat_drawn_in_dots_or_signs_ends_at_a_cells_border(size: tuple[int, int]) -> None:
     cols, rows = size
     picture = shrink(
-        mat(), fit_field(2 * cols, 4 * rows, CellPoints(2, 4)), OUTSIDE, whole_cells=True
+        mat(), Viewport.fit_field(2 * cols, 4 * rows, CellPoints(2, 4)), OUTSIDE, whole_cells=True
     )
 
     cells = picture.reshape(rows, 4, cols, 2, 3)
@@ -48,7 +48,9 @@ def test_light_lines_on_a_dark_mat_are_drawn_as_clearly_as_the_reverse() -> None
     for row, col, thick in ((100, 90, 6), (400, 700, 14), (801, 1501, 40)):
         pixels[row : row + thick] = 30
         pixels[:, col : col + thick] = 90
-    light, dark = (shrink(one, fit_field(96, 50), OUTSIDE) for one in (pixels, 255 - pixels))
+    light, dark = (
+        shrink(one, Viewport.fit_field(96, 50), OUTSIDE) for one in (pixels, 255 - pixels)
+    )
     on_mat = (light != OUTSIDE).any(axis=2)
     assert on_mat.mean() > 0.8
     assert np.abs(light[on_mat] + dark[on_mat].astype(int) - 255).max() <= 1
@@ -69,7 +71,7 @@ def test_a_thin_line_of_a_mat_is_drawn_without_gaps(
         pixels[row, round(col - thick / 2) : round(col + thick / 2)] = 0
 
     glyphs = build_glyph_set(cells)
-    view = fit_field(
+    view = Viewport.fit_field(
         size[0] * glyphs.cols, size[1] * glyphs.rows, CellPoints(glyphs.cols, glyphs.rows)
     )
     picture = shrink(pixels, view, OUTSIDE)[..., 0].astype(int)
@@ -94,7 +96,7 @@ def test_a_thin_line_of_a_mat_is_drawn_without_gaps(
 
 @pytest.mark.parametrize("size", [(156, 34), (152, 40), (304, 76)], ids=str)
 def test_a_thin_black_line_is_black_wherever_it_lies(size: tuple[int, int]) -> None:
-    view = fit_field(*size, CellPoints(2, 2))
+    view = Viewport.fit_field(*size, CellPoints(2, 2))
     for start_mm in range(500, 540, 7):
         for axis in (0, 1):
             pixels = mat()
@@ -117,6 +119,6 @@ def test_a_view_finer_than_the_mat_repeats_pixels() -> None:
 
 def test_the_mats_picture_for_a_view_is_computed_once() -> None:
     pictures = MatPictures(mat(), OUTSIDE)
-    view = fit_field(40, 20)
+    view = Viewport.fit_field(40, 20)
 
     assert pictures.picture(view) is pictures.picture(view)

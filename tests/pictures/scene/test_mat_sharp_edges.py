@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tuisim.pictures.scene.mat import shrink
-from tuisim.pictures.scene.view import fit_field
+from tuisim.pictures.scene.view import Viewport
 from tuisim.terminal.pixels import CellPoints, Pixels
 
 OUTSIDE = (1, 2, 3)
@@ -19,7 +19,7 @@ def field() -> Pixels:
 
 
 def drawn(mat: Pixels, size: tuple[int, int], *, exact: bool = False) -> Pixels:
-    return shrink(mat, fit_field(*size, BLOCKS), OUTSIDE, exact=exact)
+    return shrink(mat, Viewport.fit_field(*size, BLOCKS), OUTSIDE, exact=exact)
 
 
 def colors_of(picture: Pixels) -> set[tuple[int, ...]]:

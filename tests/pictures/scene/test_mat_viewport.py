@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.cases import cases
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.pictures.scene.view import fit_field, follow_robot
+from tuisim.pictures.scene.view import Viewport, follow_robot
 
 
 @cases(
@@ -21,7 +21,7 @@ from tuisim.pictures.scene.view import fit_field, follow_robot
     },
 )
 def test_fit_field_shows_the_whole_field_in_its_proportions(width: int, height: int) -> None:
-    view = fit_field(width, height)
+    view = Viewport.fit_field(width, height)
 
     left, bottom = view.to_px(0, 0)
     right, top = view.to_px(FIELD_WIDTH_MM, FIELD_HEIGHT_MM)
@@ -38,7 +38,7 @@ def test_fit_field_shows_the_whole_field_in_its_proportions(width: int, height: 
     st.integers(1, 80),
 )
 def test_to_mm_inverts_to_px(x_mm: float, y_mm: float, width: int, rows: int) -> None:
-    view = fit_field(width, 2 * rows)
+    view = Viewport.fit_field(width, 2 * rows)
 
     assert view.to_mm(*view.to_px(x_mm, y_mm)) == pytest.approx((x_mm, y_mm), abs=1e-6)
 

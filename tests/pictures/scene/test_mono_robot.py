@@ -12,7 +12,7 @@ from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.pictures.scene.mono_robot import draw_body
 from tuisim.pictures.scene.pen import choose_pen_rgb
-from tuisim.pictures.scene.view import fit_field
+from tuisim.pictures.scene.view import Viewport
 from tuisim.terminal.glyphs import GLYPHS, SIGNS
 from tuisim.terminal.pixels import CellPoints
 
@@ -22,7 +22,7 @@ COLS = 50
 
 @for_each(heading=range(0, 360, 45))
 def test_the_robot_in_signs_has_a_sign_of_its_own(heading: int) -> None:
-    view = fit_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
+    view = Viewport.fit_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
     signs = draw_body(view, Pose(1181, 571, heading), build_outline(RobotSpec()))
 
     assert {GLYPHS[cell >> 48] for cell in signs.values()} == {"&"}
@@ -63,7 +63,7 @@ def test_the_pens_colour_is_drawn_so_that_it_shows_on_any_ground(
 def test_the_robots_pointer_drawn_in_signs_shows_its_heading(
     heading: float, shown: list[str]
 ) -> None:
-    view = fit_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
+    view = Viewport.fit_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
 
     signs = draw_pointer(view, Pose(1181.0, 571.0, heading), 3.2 * 2 * view.mm_per_px, "O")
 

@@ -7,7 +7,7 @@ import pytest
 
 from tuisim.engine.core.geometry import Pose
 from tuisim.pictures.scene.off_field import describe_off_field, draw_arrow
-from tuisim.pictures.scene.view import fit_field
+from tuisim.pictures.scene.view import Viewport
 
 
 @pytest.mark.parametrize(
@@ -38,7 +38,7 @@ def test_the_side_is_told_in_a_narrow_panel_too(pose: Pose, width: int, words: s
     "pose", [Pose(-2000.0, 500.0, 0.0), Pose(500.0, 9000.0, 0.0), Pose(9000.0, -9000.0, 0.0)]
 )
 def test_the_arrow_to_a_robot_out_of_view_is_at_the_edge_towards_it(pose: Pose) -> None:
-    view = fit_field(80, 40)
+    view = Viewport.fit_field(80, 40)
     picture = np.zeros((40, 80, 3), np.uint8)
     draw_arrow(picture, view, pose, 5.0, (255, 255, 255))
     rows, cols = np.nonzero(picture[..., 0])
@@ -49,5 +49,5 @@ def test_the_arrow_to_a_robot_out_of_view_is_at_the_edge_towards_it(pose: Pose) 
 
 def test_no_arrow_points_to_a_robot_in_view() -> None:
     picture = np.zeros((40, 80, 3), np.uint8)
-    draw_arrow(picture, fit_field(80, 40), Pose(-60.0, 500.0, 0.0), 5.0, (255, 255, 255))
+    draw_arrow(picture, Viewport.fit_field(80, 40), Pose(-60.0, 500.0, 0.0), 5.0, (255, 255, 255))
     assert not picture.any()

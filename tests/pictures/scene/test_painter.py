@@ -28,7 +28,7 @@ from tuisim.pictures.scene.painter import (
 )
 from tuisim.pictures.scene.pen import PenTrace, Piece
 from tuisim.pictures.scene.robot import COLORED
-from tuisim.pictures.scene.view import Viewport, fit_field
+from tuisim.pictures.scene.view import Viewport
 from tuisim.terminal.pixels import CellPoints, Pixels
 
 HERE = Pose(1000.0, 500.0, 0.0)
@@ -94,7 +94,9 @@ def test_an_infrared_sensor_is_drawn_at_its_position_on_the_robot() -> None:
     assert at(painter().paint(CLOSE, SceneState(TOUCHES, HERE)), 1030, 450, CLOSE) == COLORED.spot
 
 
-@pytest.mark.parametrize("view", [fit_field(38, 19), VIEW, CLOSE], ids=["small", "middle", "close"])
+@pytest.mark.parametrize(
+    "view", [Viewport.fit_field(38, 19), VIEW, CLOSE], ids=["small", "middle", "close"]
+)
 def test_a_beacon_is_drawn_also_at_the_edge(view: Viewport) -> None:
     scene = SceneState(ROBOT, Pose(2000, 1000, 0), beacon=BeaconSpec(1000.0, 500.0))
     picture = painter().paint(view, scene)
@@ -137,10 +139,10 @@ EVERYTHING = SceneState(
     [
         (VIEW, {}, 15489762),
         (VIEW, {"for_file": True}, 3186909634),
-        (fit_field(240, 120, CellPoints(2, 4)), {}, 135519599),
-        (fit_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 929788647),
-        (fit_field(38, 19), {"grey": True}, 2203019224),
-        (fit_field(76, 60, CellPoints(2, 3)), {"mono": True}, 991141988),
+        (Viewport.fit_field(240, 120, CellPoints(2, 4)), {}, 135519599),
+        (Viewport.fit_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 929788647),
+        (Viewport.fit_field(38, 19), {"grey": True}, 2203019224),
+        (Viewport.fit_field(76, 60, CellPoints(2, 3)), {"mono": True}, 991141988),
         (Viewport(140, 78, 4.0, 1003 - 280.0, 507 + 156.0), {"whole_cells": True}, 3233824671),
     ],
     ids=["middle", "for a file", "octants", "coarse", "small and grey", "mono", "close"],

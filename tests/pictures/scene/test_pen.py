@@ -11,7 +11,7 @@ from tuisim.engine.core.geometry import Pose, world_point
 from tuisim.engine.core.spec import PenSpec, RobotSpec
 from tuisim.pictures.scene.painter import SceneState
 from tuisim.pictures.scene.pen import Piece, build_pen_trace, parse_pen_color, place_pen_mm
-from tuisim.pictures.scene.view import fit_field
+from tuisim.pictures.scene.view import Viewport
 
 
 def test_the_pens_trace_is_drawn_and_extended() -> None:
@@ -52,7 +52,7 @@ def test_each_stretch_of_a_pen_trace_keeps_its_colour_and_a_wiped_trace_vanishes
     )
 
     drawn = made.paint(VIEW, scene)
-    again = made.paint(fit_field(80, 38), scene)
+    again = made.paint(Viewport.fit_field(80, 38), scene)
     made.trace.clear()
     gone = made.paint(VIEW, scene)
 
@@ -62,7 +62,7 @@ def test_each_stretch_of_a_pen_trace_keeps_its_colour_and_a_wiped_trace_vanishes
         parse_pen_color("teal"),
         parse_pen_color("teal"),
     ]
-    assert at(again, 250, 600, fit_field(80, 38)) == parse_pen_color("teal")
+    assert at(again, 250, 600, Viewport.fit_field(80, 38)) == parse_pen_color("teal")
     assert at(gone, 250, 300) == at(gone, 250, 600) == (255, 255, 255)
 
 

@@ -39,7 +39,7 @@ from tuisim.pictures.scene.pictures import (
     read_pose,
 )
 from tuisim.pictures.scene.robot import COLORED
-from tuisim.pictures.scene.view import FIELD, Area, fit_field
+from tuisim.pictures.scene.view import FIELD, Area, Viewport
 from tuisim.terminal.pixels import Pixels
 
 WHITE: Pixels = np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
@@ -141,7 +141,7 @@ def test_a_small_picture_shows_the_path_of_a_run(run: Run) -> None:
     done = run(
         "tank_drive.on_for_seconds(50, 50, 2)\n", background="Empty_Map", pose=(500.0, 500.0, 0.0)
     )
-    picture = draw_path(done.run.stored(), fit_field(50, 26), (0, 0, 0))
+    picture = draw_path(done.run.stored(), Viewport.fit_field(50, 26), (0, 0, 0))
     reddish = (picture[..., 0] > 200) & (picture[..., 1] < 150)
     rows, columns = np.nonzero(reddish)
     assert len({*rows}) <= 2

@@ -16,7 +16,7 @@ from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, NO_PORT
 from tuisim.pictures.scene.pictures import draw_world
 from tuisim.pictures.scene.robot import COLORED, GHOST, draw_robot
-from tuisim.pictures.scene.view import fit_field
+from tuisim.pictures.scene.view import Viewport
 from tuisim.settings.robots import ROBOTS
 from tuisim.terminal.pixels import CellPoints
 
@@ -28,7 +28,9 @@ def near(x_mm: float, y_mm: float, places: Sequence[tuple[float, float]]) -> boo
 def test_drawing_a_robot_outside_the_picture_draws_nothing() -> None:
     picture = np.zeros((20, 40, 3), np.uint8)
 
-    draw_robot(picture, fit_field(40, 20), Pose(9000, -9000, 0), build_outline(ROBOT), COLORED)
+    draw_robot(
+        picture, Viewport.fit_field(40, 20), Pose(9000, -9000, 0), build_outline(ROBOT), COLORED
+    )
 
     assert not picture.any()
 
@@ -74,7 +76,7 @@ def test_a_robot_without_wheels_is_drawn_without_them() -> None:
 def test_the_robot_is_drawn_as_large_as_what_collides(heading: int) -> None:
     # Bumpers are pressed before anything collides.
     outline = build_outline(replace(spec_of("Small_Robot").robot, touch_sensors=()))
-    view = fit_field(FIELD_WIDTH_MM, FIELD_HEIGHT_MM)
+    view = Viewport.fit_field(FIELD_WIDTH_MM, FIELD_HEIGHT_MM)
     picture = np.zeros_like(WHITE)
     pose = replace(MIDDLE, heading_deg=float(heading))
 
@@ -92,7 +94,7 @@ def test_the_marker_of_a_small_robot_points_where_the_robot_heads(
     cell: CellPoints, heading: int
 ) -> None:
     pose = Pose(1200, 570, float(heading))
-    view = fit_field(58 * cell.cols, 15 * cell.rows, cell)
+    view = Viewport.fit_field(58 * cell.cols, 15 * cell.rows, cell)
     picture = np.zeros((view.height_px, view.width_px, 3), np.uint8)
 
     draw_robot(picture, view, pose, build_outline(ROBOT), COLORED)
@@ -108,7 +110,7 @@ def test_the_marker_of_a_small_robot_points_where_the_robot_heads(
 @pytest.mark.parametrize("cols", [58, 118, 198])
 @pytest.mark.parametrize("heading", range(0, 360, 19))
 def test_the_outline_of_the_robot_now_has_no_gap(cols: int, heading: int) -> None:
-    view = fit_field(2 * cols, cols, CellPoints(2, 2))
+    view = Viewport.fit_field(2 * cols, cols, CellPoints(2, 2))
     picture = np.zeros((view.height_px, view.width_px, 3), np.uint8)
 
     draw_robot(picture, view, Pose(1200, 570, float(heading)), build_outline(ROBOT), GHOST)

@@ -11,11 +11,11 @@ from tests.cases import for_each
 from tuisim.app.panels.world import ZOOMS
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.pictures.scene.view import SQUARE, Area, Viewport, fit_field, follow_robot
+from tuisim.pictures.scene.view import SQUARE, Area, Viewport, follow_robot
 from tuisim.terminal.pixels import CellPoints
 
 SIZE = (76, 38)
-WHOLE = fit_field(*SIZE)
+WHOLE = Viewport.fit_field(*SIZE)
 
 
 def follow(*places: tuple[float, float], zoom: int = 1) -> Viewport:
@@ -88,7 +88,7 @@ def test_a_damaged_pose_leaves_the_view_as_it_is() -> None:
 
 
 def test_the_view_of_a_larger_area_has_a_smaller_scale() -> None:
-    view = fit_field(*SIZE, area=Area(0.0, 0.0, 5000.0, 1143.0))
+    view = Viewport.fit_field(*SIZE, area=Area(0.0, 0.0, 5000.0, 1143.0))
     assert view.mm_per_px == 5000 / SIZE[0]
     assert is_seen(view, 0.0, 571.0)
     assert is_seen(view, 5000.0, 571.0)

@@ -15,7 +15,7 @@ from tuisim.engine.protocol import End
 from tuisim.engine.runs.records import OutputWriter, Stream, TelemetryWriter
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import NewRun, RunStore
-from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.goals.spec import Goal
 
 Step = Callable[[Recorder], object]
@@ -94,7 +94,7 @@ def goals_of(folder: Path, text: str) -> tuple[Goal, ...]:
     """The goals in the text of a file."""
     path = folder / "task_goals.toml"
     path.write_text(text, encoding="utf-8")
-    return load_goals(path).goals
+    return GoalsFile.load(path).goals
 
 
 def world(

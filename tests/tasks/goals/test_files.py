@@ -11,7 +11,7 @@ from PIL import Image
 from tests.cases import cases
 from tests.conftest import Command
 from tuisim.base.errors import ConfigError
-from tuisim.tasks.goals.files import find_key_line, load_goals
+from tuisim.tasks.goals.files import GoalsFile, find_key_line
 from tuisim.tasks.goals.spec import AllOf, FinishCondition, PrintCondition, Together
 
 GOOD = "[[goal]]\nname = 'a'\nfinish = true\n\n"
@@ -375,7 +375,7 @@ def test_a_faulty_goal_file_is_refused_with_its_line(
     path = tmp_path / "it.toml"
     path.write_text(text)
     with pytest.raises(ConfigError) as raised:
-        load_goals(path)
+        GoalsFile.load(path)
     assert message.format(folder=tmp_path) in str(raised.value)
 
 
@@ -427,7 +427,7 @@ def test_a_goal_file_overrides_settings_of_the_world_it_names(tmp_path: Path) ->
         "program = 'follow.py'\nbackground = 'Loop'\nseed = 3\n[start]\nx_mm = 5\n"
     )
     (tmp_path / "goals.toml").write_text(f"title = 'T'\nworld = 'base.toml'\nseed = 4\n{GOOD}")
-    file = load_goals(tmp_path / "goals.toml")
+    file = GoalsFile.load(tmp_path / "goals.toml")
     assert (file.title, file.program) == ("T", str(tmp_path / "follow.py"))
     world = {"background": "Loop", "floor": False, "seed": 4, "start.x_mm": 5.0}
     assert file.settings == world
@@ -440,7 +440,7 @@ def test_goals_of_another_file_are_added_to_and_replaced(tmp_path: Path) -> None
     (tmp_path / "goals.toml").write_text(
         f"world = 'base.toml'\n{own}[[also.goal]]\nname = 'c'\nfinish = true\n"
     )
-    file = load_goals(tmp_path / "goals.toml")
+    file = GoalsFile.load(tmp_path / "goals.toml")
     assert (file.title, [goal.name for goal in file.goals]) == ("T", ["a", "b"])
     assert (file.goals[1].condition, file.goals[1].after) == (PrintCondition(("y",)), "a")
     own_world, other = file.worlds
@@ -465,7 +465,7 @@ def test_short_forms_of_goal_conditions_are_read(tmp_path: Path) -> None:
     (tmp_path / "goals.toml").write_text(
         goal("print = 'x'", "all = 'a'", "dialogue = [{ answer = '5' }]")
     )
-    file = load_goals(tmp_path / "goals.toml")
+    file = GoalsFile.load(tmp_path / "goals.toml")
     assert file.goals[0].condition == FinishCondition()
     together = file.goals[1].condition
     assert isinstance(together, Together)

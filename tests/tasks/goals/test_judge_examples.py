@@ -15,7 +15,7 @@ from tests.constants import print_constants
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import list_programs
-from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.goals.files import GoalsFile
 
 PROGRAMS = ROOT / "programs"
 EXAMPLES = {
@@ -65,7 +65,7 @@ def test_example_meets_its_goals(name: str, words: tuple[object, ...], here: Com
 def test_every_example_of_goals_is_complete() -> None:
     assert len(EXAMPLES) == 11
     for name, path in EXAMPLES.items():
-        file = load_goals(path)
+        file = GoalsFile.load(path)
         assert Path(file.program or "").name in {program.name for program in list_programs()}, name
         assert file.title
         assert all(goal.say.endswith(".") for goal in file.goals if goal.points)
@@ -86,7 +86,7 @@ def test_constants_of_the_first_world_do_not_pass(name: str, here: Command, tmp_
     words = ("--seeds", "0", "--jobs", "1", "--keep", "none", "--export", "marks.csv")
     assert here("mark", EXAMPLES[name], wrong, *words).returncode == 0
     (row,) = csv.DictReader((tmp_path / "marks.csv").read_text(encoding="utf-8").splitlines())
-    assert float(row["points"]) < sum(goal.points for goal in load_goals(EXAMPLES[name]).goals)
+    assert float(row["points"]) < sum(goal.points for goal in GoalsFile.load(EXAMPLES[name]).goals)
 
 
 WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {

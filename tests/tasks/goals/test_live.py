@@ -10,7 +10,7 @@ import tuisim
 from tests.cases import cases
 from tuisim.base.errors import ConfigError
 from tuisim.engine.runs.stepped_run import SteppedRun
-from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.goals.judge import judge
 from tuisim.tasks.goals.judgement import compute_points
 from tuisim.tasks.goals.live import LiveGoals
@@ -30,7 +30,7 @@ heading_deg = 0
 
 
 def test_a_labs_live_goals_give_the_points_of_a_run_with_the_same_commands() -> None:
-    goals = load_goals("square_goals.toml").goals
+    goals = GoalsFile.load("square_goals.toml").goals
     run = tuisim.simulate("square", world="square_goals.toml").stored
     stepped = SteppedRun(run.first_spec, run.open_mat(), is_recorded=True)
     live = LiveGoals(goals, stepped, run.open_mat())

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tuisim.engine.protocol import End
-from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.marks import marking as markings
 from tuisim.tasks.marks.marking import MarkRequest
 from tuisim.tasks.marks.outcome import GoalOutcome, Outcome
@@ -37,7 +37,7 @@ def _request(folder: Path) -> MarkRequest:
     (hand_ins / "roster.csv").write_text("submission,Username\nada,a\nzoe,z\n")
     (folder / "goals.toml").write_text(GOALS)
     return MarkRequest(
-        task=load_goals(folder / "goals.toml"),
+        task=GoalsFile.load(folder / "goals.toml"),
         folders=(str(hand_ins),),
         seeds=(0, 1),
         version="1",

@@ -339,9 +339,9 @@ def open_analyser(context: ActionContext) -> None:
 
 def open_log(context: ActionContext, file: str) -> None:
     """Open the log in a file, given by its path, in the analyser."""
-    from tuisim.analysis.source import request_file
+    from tuisim.analysis.source import LogRequest
 
-    _push_analyser(context, request_file(file))
+    _push_analyser(context, LogRequest.restore(file))
 
 
 def _push_analyser(context: ActionContext, request: LogRequest) -> None:

@@ -34,7 +34,7 @@ from tuisim.engine.mats import find_mat
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles
 from tuisim.logs.export import is_companion
 from tuisim.pictures.scene.mat import shrink
-from tuisim.pictures.scene.view import Viewport, fit_field
+from tuisim.pictures.scene.view import Viewport
 from tuisim.programs.program_file import LOG_SUFFIXES
 from tuisim.settings.profiles import load_profile
 from tuisim.terminal.cell_view import PixelView
@@ -548,4 +548,4 @@ class _MatPicture(PixelView):
 def find_field_view(view: PixelView) -> Viewport:
     """Return the viewport in which a widget shows the whole field, with the finest dots that the terminal can draw."""
     cell = view.choose_cell(view.graphics)
-    return fit_field(cell.cols * view.size.width, cell.rows * view.size.height, cell)
+    return Viewport.fit_field(cell.cols * view.size.width, cell.rows * view.size.height, cell)

@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 
-from tuisim.analysis.source import LogRequest, request_file
+from tuisim.analysis.source import LogRequest
 from tuisim.base.errors import ConfigError, LogError, among, listed
 from tuisim.commands.echo import echo_error, tell
 from tuisim.engine.core.columns import find_column_name
@@ -47,7 +47,7 @@ def build_request(arguments: Arguments) -> LogRequest:
         raise ConfigError("takes one file, or runs", hint, key="analyse")
     choices = build_choices(arguments)
     if files:
-        return request_file(files[0], choices)
+        return LogRequest.restore(files[0], choices)
     return LogRequest("", tuple(words), arguments.telemetry, choices)
 
 
@@ -156,7 +156,7 @@ def _name_columns(
 
 def _open_file(word: str, arguments: Arguments) -> Log:
     log = None
-    request = request_file(word, build_choices(arguments))
+    request = LogRequest.restore(word, build_choices(arguments))
     for loaded in read_pieces(word, request.choices):
         log = loaded.log or log
         if loaded.part == loaded.part:

@@ -17,7 +17,7 @@ from tuisim.engine.core.spec import PenSpec, RobotSpec, RunSpec
 from tuisim.pictures.scene.painter import FRAME_PX, ScenePainter, SceneState
 from tuisim.pictures.scene.pen import PenTrace, Piece, build_pen_trace
 from tuisim.pictures.scene.robot import measure_reach_mm
-from tuisim.pictures.scene.view import FIELD, Area, Viewport, fit_field
+from tuisim.pictures.scene.view import FIELD, Area, Viewport
 from tuisim.terminal.pixels import Pixels
 
 if TYPE_CHECKING:
@@ -204,5 +204,5 @@ def draw_path(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
     painter = ScenePainter(mat, outside_rgb, trace, has_floor=has_floor)
     area = find_area(records)
     if area != FIELD:
-        port = fit_field(port.width_px, port.height_px, port.cell, area)
+        port = Viewport.fit_field(port.width_px, port.height_px, port.cell, area)
     return painter.paint(port, build_scene(run.spec, None))

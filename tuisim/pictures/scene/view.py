@@ -73,14 +73,14 @@ class Viewport:
         """Return the world point, in mm, of a column and row of the picture; whole numbers are pixel corners."""
         return self.left_mm + col_px * self.mm_per_px, self.top_mm - row_px * self.mm_per_row
 
-
-def fit_field(
-    width_px: int, height_px: int, cell: CellPoints = SQUARE, area: Area = FIELD
-) -> Viewport:
-    """Return the viewport that shows an area, centred, in a picture of a given size (each at least 1)."""
-    mm_per_px = _fit_mm_per_px(width_px, height_px, cell, area)
-    middle = (area.left + area.right) / 2, (area.lower + area.upper) / 2
-    return _center_view(width_px, height_px, mm_per_px, *middle, cell)
+    @staticmethod
+    def fit_field(
+        width_px: int, height_px: int, cell: CellPoints = SQUARE, area: Area = FIELD
+    ) -> Viewport:
+        """Return the viewport that shows an area, centred, in a picture of a given size (each at least 1)."""
+        mm_per_px = _fit_mm_per_px(width_px, height_px, cell, area)
+        middle = (area.left + area.right) / 2, (area.lower + area.upper) / 2
+        return _center_view(width_px, height_px, mm_per_px, *middle, cell)
 
 
 def follow_robot(
@@ -109,7 +109,7 @@ def follow_robot(
     """
     on_field = 0 <= pose.x_mm <= FIELD_WIDTH_MM and 0 <= pose.y_mm <= FIELD_HEIGHT_MM
     if zoom == 1 and (on_field or not on_floor):
-        return fit_field(width_px, height_px, cell)
+        return Viewport.fit_field(width_px, height_px, cell)
     mm_per_px = _fit_mm_per_px(width_px, height_px, cell) / zoom
     same_scale = (
         previous is not None

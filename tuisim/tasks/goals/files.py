@@ -95,21 +95,23 @@ class GoalsFile:
         names = dict.fromkeys(goal.name for world in self.worlds for goal in world.own_goals)
         return tuple(goals_by_name[name] for name in names)
 
+    @staticmethod
+    def load(path: Path | str) -> GoalsFile:
+        """Read a goals file, with the world file and the pictures that it names.
 
-def load_goals(path: Path | str) -> GoalsFile:
-    """Read a goals file, with the world file and the pictures that it names.
+        Args:
+            path: The file, or one of `list_example_names`.
 
-    Args:
-        path: The file, or one of `list_example_names`.
-
-    Raises:
-        ConfigError: a file cannot be read or is wrong; the error names file, line and key.
-    """
-    task = load_task(path)[1]
-    if task is None:
-        hint = f"begin each with a line [[goal]]; {see_page('goal-files')}"
-        raise ConfigError("there are no goals", hint, file=f"{user_path(path)}, line 1", key="goal")
-    return task
+        Raises:
+            ConfigError: a file cannot be read or is wrong; the error names file, line and key.
+        """
+        task = load_task(path)[1]
+        if task is None:
+            hint = f"begin each with a line [[goal]]; {see_page('goal-files')}"
+            raise ConfigError(
+                "there are no goals", hint, file=f"{user_path(path)}, line 1", key="goal"
+            )
+        return task
 
 
 def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, GoalsFile | None]:

@@ -229,7 +229,7 @@ def judge(
     """Judge goals on the recording of a run. This blocks while the recording is read and, if it is packed, unpacked.
 
     Args:
-        goals: Goals as `load_goals` returns them; their names are unique.
+        goals: Goals as `GoalsFile.load` returns them; their names are unique.
         run: A stored run, or a running one, whose goals may still be open.
         field: The mat of the run; None opens it if a goal needs it.
 
