@@ -116,6 +116,7 @@ def test_a_truth_that_never_changes_is_named_without_a_wait_for_it() -> None:
     )
 
 
+@pytest.mark.slow_cases("later grey")
 @pytest.mark.parametrize("limit_s", [0.3, 1.5, 2.5], ids=["white", "first grey", "later grey"])
 def test_a_loop_that_renews_no_reading_is_named_wherever_its_run_was_cut_off(
     limit_s: float,
