@@ -340,7 +340,7 @@ class DebugController:
         """Process what the re-run of the program has computed, and request the variables at the instant in view."""
         self.replay.poll()
         timeline = self._run_controller.timeline
-        if self.position is not None and timeline.at not in (None, self.position.tick):
+        if self.position and timeline.at not in (None, self.position.tick):
             self.position = None
         chosen = self._run_controller.chosen_line
         if chosen and chosen[0] != timeline.tick:
@@ -349,7 +349,7 @@ class DebugController:
             if self.view and self.view.past and not self.busy:
                 self._return_to_now()
             return
-        if timeline.at is not None and self.position is None and self._has_past_variables():
+        if timeline.at is not None and not self.position and self._has_past_variables():
             self._follow(Position(timeline.at))
 
     def _has_past_variables(self) -> bool:
@@ -435,12 +435,14 @@ class DebugController:
             # The replay has arrived at the chosen line.
             self.position = here
         chosen = self._run_controller.chosen_line
-        record = timeline.record()
-        if record and chosen == (paused.tick, record.line):
-            # The program may have gone on to another line within this tick.
-            paused = replace(paused, line=record.line, file="")
         if chosen != (paused.tick, paused.line):
-            self._run_controller.chosen_line = None
+            record = timeline.record()
+            if record and chosen == (paused.tick, record.line):
+                # The program has gone on to another line within this tick, and may wait there.
+                paused = replace(paused, line=record.line, file="")
+                inspected = replace(inspected, waiting="")
+            else:
+                self._run_controller.chosen_line = None
         self._set_paused(PauseView(self._set_tick_time(paused), inspected, True))
         self._app.handle_situation_change()
         self._take_step()
@@ -491,7 +493,7 @@ class DebugController:
         The result is None before the first tick.
         """
         timeline = self._run_controller.timeline
-        if self.position is not None:
+        if self.position:
             return self.position
         if timeline.at is not None:
             return Position(timeline.at)

@@ -304,3 +304,20 @@ async def test_the_arrow_is_on_the_line_that_go_to_names() -> None:
         app.debugger.choose_line(5, 3)
         go_to_tick(app.context, 5)
         await until(pilot, lambda: app.debugger.current_line == 4)
+
+
+async def test_a_line_that_another_follows_in_its_tick_is_not_said_to_wait_for_it() -> None:
+    text = "while colorLeft.reflected_light_intensity_pc > 9:\n    tank_drive.on_for_degrees(9, 9, 9)\n    break\n"
+    async with open_lab(text, speed=0.0) as (pilot, app):
+        await pilot.press("R")
+        await until_state(pilot, RunPhase.ENDED)
+        await pilot.press("G")
+        assert recording_of(app).telemetry.record(1).line == 1
+        app.debugger.choose_line(1, 1)
+        go_to_tick(app.context, 1)
+        await until(pilot, lambda: app.debugger.view is not None and not app.debugger.busy)
+        assert app.debugger.view is not None
+        assert (app.debugger.view.paused.line, app.debugger.view.inspected.waiting) == (1, "")
+        await pilot.press("comma", "full_stop")
+        await until(pilot, lambda: app.debugger.current_line == 2)
+        assert "outB" in app.debugger.view.inspected.waiting
