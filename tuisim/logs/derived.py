@@ -30,7 +30,7 @@ from tuisim.logs.signals import (
     sample_unsorted_signal,
     sort_known,
 )
-from tuisim.logs.units import parse_unit
+from tuisim.logs.units import drop_run, parse_unit
 
 TIME = "time"
 """Name of the sample times in an expression."""
@@ -96,10 +96,10 @@ def compute_derived(log: Log, definition: Definition, otherwise: str) -> list[Se
             f"such as other = {definition.expression}",
         )
     names = find_names(definition.expression)
-    known = {name.partition(" #")[0] for name in log.names} | set(log.names)
-    first = next((name for name in names if name in known), otherwise.partition(" #")[0])
+    known = {drop_run(name) for name in log.names} | set(log.names)
+    first = next((name for name in names if name in known), drop_run(otherwise))
     # Each run has a series, unless the definition names a single run.
-    bases = [log.series(name) for name in log.names if first in (name, name.partition(" #")[0])]
+    bases = [log.series(name) for name in log.names if first in (name, drop_run(name))]
     alone = len(bases) == 1
     return [
         replace(
@@ -151,7 +151,7 @@ def _sample_column(log: Log, name: str, base: Series) -> FloatArray:
 
 def _list_names(log: Log) -> list[str]:
     """Return the names of a log's variables, without numbers of runs, and of its columns with numbers."""
-    variables = (name.partition(" #")[0] for name in log.names)
+    variables = (drop_run(name) for name in log.names)
     return [*dict.fromkeys((*variables, *list_numeric_columns(log.table.schema), TIME))]
 
 

@@ -17,6 +17,7 @@ from tuisim.logs.arrow import convert_to_floats, read_numbers, wrap_int64
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import ROW, Layout, read_times
 from tuisim.logs.time_order import keep_timed_rows
+from tuisim.logs.units import drop_run
 from tuisim.logs.warnings import Notes
 
 LogTable = pa.Table
@@ -250,7 +251,7 @@ class Log:
         """Return the same log without derived series."""
         log = self
         for name in self.derived:
-            log = log.drop_derived(name.partition(" #")[0])
+            log = log.drop_derived(drop_run(name))
         return log
 
     def add_derived(self, column: str, series: Sequence[Series]) -> Log:
@@ -274,9 +275,7 @@ class Log:
     def drop_derived(self, column: str) -> Log:
         """Return the same log without the derived series of this name."""
         derived = {
-            name: series
-            for name, series in self.derived.items()
-            if name.partition(" #")[0] != column
+            name: series for name, series in self.derived.items() if drop_run(name) != column
         }
         if len(derived) == len(self.derived):
             return self

@@ -20,7 +20,7 @@ from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
 from tuisim.logs.signals import sort_known
-from tuisim.logs.units import parse_unit
+from tuisim.logs.units import drop_run, parse_unit
 
 SUFFIX = ".mcap"
 POSE = ("x_mm", "y_mm", "heading_deg")
@@ -93,7 +93,7 @@ def export_mcap(
     library = load_writer()
     check_place(path)
     is_posed = has_pose and set(POSE) <= set(log.table.column_names)
-    values = [name for name in names if not (is_posed and name.partition(" #")[0] in POSE)]
+    values = [name for name in names if not (is_posed and drop_run(name) in POSE)]
     channels = [_build_value_channel(log, name) for name in values]
     channels += _build_pose_channels(log) if is_posed else ()
     if any(channel.times_ns and channel.times_ns[0] < 0 for channel in channels):
@@ -133,7 +133,7 @@ def _build_value_channel(log: Log, name: str) -> _Channel:
     rows = sort_known(series.time_s, series.values)
     times_s = series.time_s[rows]
     pairs = zip(times_s.tolist(), series.values[rows].tolist(), strict=True)
-    base = name.partition(" #")[0]
+    base = drop_run(name)
     unit = log.metadata.get("units", {}).get(base) or parse_unit(base).words
     number = {"type": "number", "description": unit} if unit else _NUMBER
     schema = _build_object(name, time={"type": "number", "description": "s"}, value=number)

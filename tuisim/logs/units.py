@@ -66,14 +66,19 @@ _OTHER = re.compile(
 """Names of variables that are no light, or have a unit that light has not."""
 
 
+def drop_run(name: str) -> str:
+    """Return the name of a variable without the number of its run, which follows ` #` in a log of several runs."""
+    return name.partition(" #")[0]
+
+
 def names_level(name: str) -> bool:
     """Return whether the name of a variable says that it is a level of light, and not the code of a colour."""
-    return bool(_LEVEL_NAME.search(name.partition(" #")[0]))
+    return bool(_LEVEL_NAME.search(drop_run(name)))
 
 
 def can_be_light(name: str) -> bool:
     """Return whether a variable may be the reading of a colour sensor, as its name does not say otherwise."""
-    name = name.partition(" #")[0]
+    name = drop_run(name)
     return bool(_LIGHT.search(name)) or not (
         _OTHER.search(name) or parse_unit(name).sign not in ("", "%")
     )
@@ -86,7 +91,7 @@ def begins_at_zero(name: str, low: float, high: float) -> bool:
         name: Name of the variable; the result is only True if the name says that it is light or a percentage.
         low, high: Minimum and maximum of its values; the result is only True if they are within 0 to 255.
     """
-    name = name.partition(" #")[0]
+    name = drop_run(name)
     return 0 <= low and high <= MAX_LEVEL and bool(_LIGHT.search(name) or _PERCENT.search(name))
 
 
