@@ -202,7 +202,7 @@ class DocumentReader:
         Otherwise, return the object as one row.
 
         Raises:
-            LogError: the object has several tables.
+            LogError: the object has several tables, or columns of different lengths.
         """
         inner = [name for name, cells in value.items() if _is_table(cells)]
         if len(inner) > 1:
@@ -219,7 +219,14 @@ class DocumentReader:
         others = [repr(name) for name in value if name not in columns]
         if others:
             self._notes.say(f"only the lists are read as columns, without {listed(others)}")
-        return _list_rows(columns)
+        import pandas as pd
+
+        try:
+            frame = pd.DataFrame(columns, dtype=object)
+        except ValueError as error:
+            raise LogError("has columns of different lengths", _ALLOWED) from error
+        rows: list[Any] = frame.where(frame.notna(), None).to_dict("records")
+        return rows
 
 
 def _is_table(value: Any) -> bool:
@@ -227,19 +234,3 @@ def _is_table(value: Any) -> bool:
     if isinstance(value, list):
         return bool(value) and all(isinstance(cell, dict) for cell in value)
     return isinstance(value, dict) and any(isinstance(cell, list) for cell in value.values())
-
-
-def _list_rows(columns: Mapping[str, Any]) -> list[Any]:
-    """Return columns, lists by name, as rows.
-
-    Raises:
-        LogError: the lists differ in length.
-    """
-    import pandas as pd
-
-    try:
-        frame = pd.DataFrame(columns, dtype=object)
-    except ValueError as error:
-        raise LogError("has columns of different lengths", _ALLOWED) from error
-    rows: list[Any] = frame.where(frame.notna(), None).to_dict("records")
-    return rows
