@@ -218,8 +218,8 @@ def describe_levels(report: BandReport) -> str:
     levels = _group_levels(report)
     parts = []
     for bands in levels:
-        samples = sum(count for *_, count in bands)
-        level = sum(level * count for _, level, count in bands) / samples
+        samples = sum(count for _, _, count, _ in bands)
+        level = sum(level * count for _, level, count, _ in bands) / samples
         if len(bands) > 1:
             times = f" ({len(bands)}x)"
         elif samples == 1:
@@ -234,27 +234,30 @@ def describe_levels(report: BandReport) -> str:
     return f"{report.variable}: {known}; {edges}"
 
 
-def _group_levels(report: BandReport) -> list[list[tuple[str, float, int]]]:
-    """Return grey, level and number of samples of the bands, grouped by level, in order of their first bands.
+_Level = tuple[str, float, int, float]
+"""Grey, level, number of samples and spread of a band."""
+
+
+def _group_levels(report: BandReport) -> list[list[_Level]]:
+    """Return grey, level, number of samples and spread of the bands, grouped by level, in order of their first bands.
 
     Bands have the same level if they have the same grey or, without one, if their levels differ by no more than the
     spread of their samples.
     """
-    columns = (unpack_column(report.columns[name]) for name in ("grey", "level", "samples"))
-    bands = list(zip(*columns, strict=True))
-    spreads = unpack_column(report.columns["spread"])
+    names = ("grey", "level", "samples", "spread")
+    bands = list(zip(*(unpack_column(report.columns[name]) for name in names), strict=True))
     keys: list[object] = [grey for grey, *_ in bands]
-    first: int | None = None
+    first: _Level | None = None
     for index in sorted(range(len(bands)), key=lambda place: bands[place][1]):
-        if keys[index]:
+        grey, level, _, spread = bands[index]
+        if grey:
             continue
         if first is None or (
-            bands[index][1] - bands[first][1] > max(spreads[index], spreads[first])
-            and f"{bands[index][1]:.4g}" != f"{bands[first][1]:.4g}"
+            level - first[1] > max(spread, first[3]) and f"{level:.4g}" != f"{first[1]:.4g}"
         ):
-            first = index
+            first = bands[index]
         keys[index] = first
-    groups: dict[object, list[tuple[str, float, int]]] = {}
+    groups: dict[object, list[_Level]] = {}
     for key, band in zip(keys, bands, strict=True):
         groups.setdefault(key, []).append(band)
     return list(groups.values())

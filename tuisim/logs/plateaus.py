@@ -99,10 +99,9 @@ def _find_steps(differences: FloatArray) -> BoolArray:
     with longer levels, all values are False.
     """
     calm = np.minimum(differences[1:], differences[:-1]).max(initial=0.0)
-    steps: BoolArray = differences > FAR * calm
-    return (
-        steps if steps.sum() > _FEW_STEPS * len(differences) else np.zeros(len(differences), bool)
-    )
+    steps = differences > FAR * calm
+    real_steps: BoolArray = steps & (steps.sum() > _FEW_STEPS * len(differences))
+    return real_steps
 
 
 @np.errstate(over="ignore", invalid="ignore")

@@ -208,14 +208,11 @@ class Rows:
         self.columns += [name for name in names if name not in before and name not in self.columns]
         self.column = self.columns.index(chosen) if chosen in self.columns else 0
         view = self.view
-        gone = {view.sorted_by, *(condition.name for condition in view.conditions)}.difference(
-            names, [""]
-        )
-        if gone:
-            self.view = replace(view, sorted_by="" if view.sorted_by in gone else view.sorted_by)
-            self.view = self.build_filtered_view(
-                tuple(condition for condition in view.conditions if condition.name not in gone)
-            )
+        sorted_by = view.sorted_by if view.sorted_by in names else ""
+        conditions = tuple(condition for condition in view.conditions if condition.name in names)
+        if (sorted_by, conditions) != (view.sorted_by, view.conditions):
+            self.view = replace(view, sorted_by=sorted_by)
+            self.view = self.build_filtered_view(conditions)
 
     def restore(self, other: Rows) -> None:
         """Show the columns and the rows that another table of the same log shows, in its order."""
