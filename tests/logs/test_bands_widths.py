@@ -59,16 +59,32 @@ def test_measured_widths_of_bands_equal_the_true_ones(
 
 @pytest.mark.parametrize("width_mm", [73.0, 200.0])
 @pytest.mark.parametrize("spot_mm", [2.0, 12.0, 20.0])
-@pytest.mark.parametrize("period_mm", [1.0, 2.6, 6.0])
+@pytest.mark.parametrize("period_mm", [0.28, 0.56, 1.0, 2.6, 6.0])
 def test_widths_are_right_also_when_levels_are_estimated_from_the_samples(
     width_mm: float, spot_mm: float, period_mm: float
 ) -> None:
     edges_mm = 60.3 + width_mm * np.arange(len(GREYS) - 1.0)
     places_mm = np.arange(0.0, edges_mm[-1] + 60.0, period_mm)
     values: FloatArray = np.round(2.55 * read_mat(places_mm, edges_mm, spot_mm))
-    widths_mm = measure_widths(values, places_mm, measure_levels(values))
+    levels = measure_levels(values)
+    assert len(levels.start) == len(GREYS)
+    widths_mm = measure_widths(values, places_mm, levels)
     bound_mm = max(period_mm - spot_mm / 2.0, 0.05 * spot_mm)
     assert widths_mm[1:-1] == pytest.approx([width_mm] * (len(GREYS) - 2), abs=bound_mm)
+
+
+@pytest.mark.parametrize("repeats", [1, 5])
+@pytest.mark.parametrize("noise", [0.0, 0.3])
+@pytest.mark.parametrize("period_mm", [0.56, 1.1, 2.6])
+def test_a_slow_robot_finds_no_band_on_an_edge(
+    period_mm: float, noise: float, repeats: int
+) -> None:
+    edges_mm = 60.3 + 200.0 * np.arange(len(GREYS) - 1.0)
+    places_mm = np.arange(0.0, edges_mm[-1] + 60.0, period_mm)
+    exact = 2.55 * read_mat(places_mm, edges_mm, 20.0)
+    noisy = np.round(exact + np.random.default_rng(1).normal(0.0, noise, len(exact))) / 2.55
+    levels = measure_levels(np.repeat(noisy, repeats))
+    assert levels.level == pytest.approx(GREYS, abs=0.3)
 
 
 NAN = float("nan")

@@ -57,6 +57,8 @@ class Signal(NamedTuple):
     """Standard deviation of all noise, by which strays are found."""
     min_step: float
     """The smallest step between levels."""
+    drifts: bool = True
+    """Whether a slope may explain a step between pieces."""
 
 
 def count_samples(pieces: Pieces) -> IntArray:
@@ -150,7 +152,8 @@ def _find_continued(signal: Signal, left: Pieces, right: Pieces, min_samples: in
     before, after = left[goes_on], right[goes_on]
     before[:, 0] = np.maximum(before[:, 0], before[:, 1] - NEAR_SAMPLES)
     after[:, 1] = np.minimum(after[:, 1], after[:, 0] + NEAR_SAMPLES)
-    step, spread = _estimate_steps(_fit_lines(signal, before), _fit_lines(signal, after))
+    lines = _fit_lines(signal, before), _fit_lines(signal, after)
+    step, spread = _estimate_steps(*lines, drifts=signal.drifts)
     min_steps = np.maximum(signal.min_step, CERTAINTY * signal.sigma * spread)
     goes_on[goes_on] = np.abs(step) <= min_steps
     return goes_on
@@ -191,7 +194,9 @@ def _sum_products(left: FloatArray, right: FloatArray) -> FloatArray:
     return sums
 
 
-def _estimate_steps(before: _Lines, after: _Lines) -> tuple[FloatArray, FloatArray]:
+def _estimate_steps(
+    before: _Lines, after: _Lines, *, drifts: bool = True
+) -> tuple[FloatArray, FloatArray]:
     """Return the least-squares steps between pieces of one drift, and their standard deviations in units of the noise.
 
     Both pieces have one slope, which is estimated from both, each about its own means (analysis of covariance); the
@@ -200,8 +205,9 @@ def _estimate_steps(before: _Lines, after: _Lines) -> tuple[FloatArray, FloatArr
     Args:
         before: The pieces before the steps.
         after: The pieces after them.
+        drifts: Whether the slope may differ from 0.
     """
-    apart = after.place - before.place
+    apart = (after.place - before.place) * drifts
     width = before.width + after.width
     # Pieces of one sample have no slope; the width 1 avoids a division by 0.
     width[width == 0.0] = 1.0

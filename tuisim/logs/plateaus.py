@@ -1,16 +1,17 @@
 """Plateaus of a log, separated from the samples on their edges and from strays.
 
-The search takes five steps.
+The search takes six steps.
 
-1. The noise is estimated from the differences of neighbours (Rice 1984), which levels leave alone.
-2. Optimal partitioning cuts the log: the squared distances from the means of the pieces, in units of the noise,
+1. Samples that repeat a measurement are left out: a program may read faster than the sensor measures.
+2. The noise is estimated from the differences of neighbours (Rice 1984), which levels leave alone.
+3. Optimal partitioning cuts the log: the squared distances from the means of the pieces, in units of the noise,
    plus a price for each cut, are minimal. Starts that can no longer be the best are pruned (PELT: Killick, Fearnhead
    and Eckley 2012). In a long log, only the peaks of local differences may be cuts (screening and ranking: Niu and
    Zhang 2012).
-3. Pieces are joined where the log goes on: across strays, and where a common drift explains the step (`pieces`).
-4. Pieces without a level are dropped: those that move (`stillness`), and short ones that are the edge between two
-   others.
-5. What is left grows to its ends.
+4. Pieces are joined where the log goes on: across strays, and where a common drift explains the step (`pieces`). If
+   this joined a level with an edge, only pieces of equal levels are joined.
+5. Pieces without a level are dropped: those that move (`stillness`), and the steps of edges (`edges`).
+6. What is left grows to its ends.
 
 Binary segmentation would be simpler, but it misses a short level between two long ones that are alike.
 """
@@ -28,6 +29,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from tuisim.base.errors import LogError
 from tuisim.engine.runs.arrays import FloatArray, IntArray
+from tuisim.logs.edges import EDGE_SAMPLES, find_edges, find_hidden_edges, find_ramps
 from tuisim.logs.pieces import (
     CERTAINTY,
     FAR,
@@ -50,7 +52,6 @@ from tuisim.logs.stillness import (
     estimate_noise,
     find_moving,
     find_still_parts,
-    go_one_way,
     measure,
     read_spans,
 )
@@ -61,9 +62,6 @@ MAX_SAMPLES_CUT_ANYWHERE = 4000
 The time of the search grows with the square of the positions where nothing can be pruned: in a log without steps.
 """
 
-_EDGE_SAMPLES = 3
-"""Most samples of an edge between two plateaus."""
-
 _FEW_STEPS = 0.2
 """Largest fraction of the differences between neighbours that are steps, in a common log."""
 
@@ -71,7 +69,7 @@ _FEW_STARTS = 12
 """Up to this number of starts of a piece, Python's own floats are faster than arrays."""
 
 _GIANT = 1000.0
-"""Samples are clipped at this multiple of the range beyond it.
+"""Samples are clipped at this multiple of the range from their median.
 
 The noise counts as at least 1/800 of the range, so the square of a clipped sample is at most 6.4e11 times that of the
 noise: a float of 16 digits still has four for the others.
@@ -79,6 +77,12 @@ noise: a float of 16 digits still has four for the others.
 
 _STEP_OF_RANGE = 0.005
 """Smallest step, as a fraction of the range, whatever the noise: half of a step of 1 in readings from 0 to 100."""
+
+_COARSE = 0.05
+"""Largest step of the scale of readings, as a fraction of the range: 1 in readings from 0 to 20."""
+
+_MIN_RUNS = 24
+"""Fewest runs of equal samples from which it is known how long a sensor repeats a measurement."""
 
 _DUST = 1e-9
 """Differences below this fraction of the values are rounding errors."""
@@ -113,36 +117,104 @@ def find_plateaus(values: FloatArray) -> PlateauArray:
     Args:
         values: Samples at a fixed period, shape (n,).
     """
-    is_finite = np.isfinite(values)
-    clean = np.asarray(values, np.float64)[is_finite]
+    places = np.flatnonzero(np.isfinite(values))
+    clean = np.asarray(values, np.float64)[places]
     if not len(clean):
         return np.empty(0, FIELDS)
-    differences = np.abs(np.diff(clean))
+    starts = _find_measurements(clean)
+    signal, plateaus = _search(clean[starts])
+    if len(starts) < len(clean):
+        spans = np.append(starts, len(clean))[read_spans(plateaus)]
+        plateaus = measure(signal._replace(values=clean), spans)
+    plateaus["start"] = places[plateaus["start"]]
+    plateaus["stop"] = places[plateaus["stop"] - 1] + 1
+    return plateaus
+
+
+def _find_measurements(values: FloatArray) -> IntArray:
+    """Return the first sample of each measurement; a sensor that measures seldom repeats its last value meanwhile.
+
+    The shortest runs of equal samples, without the shortest tenth, are one measurement; a run of twice their length is
+    two equal ones. If most samples are in such short runs, these are levels, and each sample is a measurement.
+    """
+    starts = np.append(0, np.flatnonzero(np.diff(values)) + 1)
+    lengths = np.diff(starts, append=len(values))
+    shortest = np.percentile(lengths, 10.0, method="lower")
+    if shortest == 1:
+        return np.arange(len(values))
+    period = lengths[lengths <= 1.5 * shortest].mean()
+    counts = np.maximum(1, np.rint(lengths / period).astype(np.int64))
+    if len(lengths) < _MIN_RUNS or 2 * lengths[counts == 1].sum() > len(values):
+        return np.arange(len(values))
+    run = np.repeat(np.arange(len(starts)), counts)
+    number = np.arange(len(run)) - (np.cumsum(counts) - counts)[run]
+    firsts: IntArray = starts[run] + number * lengths[run] // counts[run]
+    return firsts
+
+
+def _search(values: FloatArray) -> tuple[Signal, PlateauArray]:
+    """Return finite values, shape (n,), at least one, with their noise, and their plateaus."""
+    differences = np.abs(np.diff(values))
     is_step = _find_steps(differences)
-    noise = estimate_noise(differences[~is_step], 2.0)
-    low, high = _find_extremes(clean)
-    # Without noise, the price of a cut follows from the smallest step.
-    min_step = max((high - low) * _STEP_OF_RANGE, _DUST * max(abs(low), abs(high)), 1e-12)
-    sigma = max(noise, min_step / CERTAINTY)
-    noise_of_slopes = max(estimate_noise(np.abs(np.diff(clean, 2)), 6.0), min_step / CERTAINTY)
-    signal = Signal(clean, high - low, min(sigma, noise_of_slopes), sigma, min_step)
+    signal, has_noise = _measure_signal(values, differences[~is_step])
     # Huge values are limited, as their squares would leave no digits for other values.
-    far = _GIANT * max(signal.range, sigma)
-    cut = _cut(np.clip(clean, low - far, high + far), sigma)
+    far = _GIANT * max(signal.range, signal.sigma)
+    middle = np.median(values)
+    cut = _cut(np.clip(values, middle - far, middle + far), signal.sigma)
     has_strays = not is_step.any()
-    pieces = _join_pieces(signal, cut, has_strays=has_strays)
-    plateaus = measure(signal, pieces[count_samples(pieces) >= MIN_SAMPLES])
+    plateaus = _join_levels(signal, cut, has_strays=has_strays)
     moving = find_moving(signal, plateaus)
     parts = find_still_parts(signal, plateaus[moving], cut)
     plateaus = plateaus[~moving]
     if has_strays:
         # With noise, a level needs one sample more than `MIN_SAMPLES`, except at the ends of a log.
-        plateaus = _drop_short(signal, plateaus, MIN_SAMPLES + (noise > 0.0))
+        plateaus = _drop_short(signal, plateaus, MIN_SAMPLES + has_noise)
     plateaus = _add_ends(signal, add_apart(_settle(signal, plateaus), parts))
-    places = np.flatnonzero(is_finite)
-    plateaus["start"] = places[plateaus["start"]]
-    plateaus["stop"] = places[plateaus["stop"] - 1] + 1
-    return plateaus
+    return signal, plateaus[~find_edges(plateaus)] if has_strays else plateaus
+
+
+def _measure_signal(values: FloatArray, differences: FloatArray) -> tuple[Signal, bool]:
+    """Return a log with its range and noise, and whether it has noise.
+
+    Args:
+        values: The log.
+        differences: The absolute differences between neighbours, without steps.
+    """
+    low, high = _find_extremes(values)
+    # Without noise, the price of a cut follows from the smallest step.
+    min_step = max((high - low) * _STEP_OF_RANGE, _DUST * max(abs(low), abs(high)), 1e-12)
+    noise = estimate_noise(differences, 2.0)
+    jumps = differences[differences > _DUST * max(abs(low), abs(high))]
+    step = jumps.min(initial=np.inf)
+    if noise and step < _COARSE * (high - low) and np.median(jumps) < 2.0 * step:
+        # Readings on a coarse scale jump between two of its values: a standard deviation of half a step.
+        noise = max(noise, step / 2.0)
+    sigma = max(noise, min_step / CERTAINTY)
+    noise_of_slopes = max(estimate_noise(np.abs(np.diff(values, 2)), 6.0), min_step / CERTAINTY)
+    signal = Signal(values, high - low, min(sigma, noise_of_slopes), sigma, min_step)
+    return signal, noise > 0.0
+
+
+def _join_levels(signal: Signal, cut: Pieces, *, has_strays: bool) -> PlateauArray:
+    """Return pieces of a log as plateaus, joined where one continues another, but not over edges.
+
+    Args:
+        signal: The log.
+        cut: Its pieces, without gaps between them.
+        has_strays: Whether to join also across strays.
+    """
+    pieces = _join_pieces(signal, cut, has_strays=has_strays)
+    plateaus = measure(signal, pieces)
+    owners = np.searchsorted(pieces[:, 0], cut[:, 0], side="right") - 1
+    hidden = find_hidden_edges(signal, plateaus, cut, owners)
+    if hidden.any():
+        # Beside a level, the beginning of a slow edge looks like a drift: there, only equal levels are joined.
+        parts = np.concatenate((pieces[~hidden], cut[hidden[owners]]))
+        parts = parts[np.argsort(parts[:, 0])]
+        pieces = _join_pieces(signal._replace(drifts=False), parts, has_strays=has_strays)
+        plateaus = measure(signal, pieces)
+    long_plateaus: PlateauArray = plateaus[count_samples(pieces) >= MIN_SAMPLES]
+    return long_plateaus
 
 
 def _join_pieces(signal: Signal, pieces: Pieces, *, has_strays: bool) -> Pieces:
@@ -169,8 +241,8 @@ def _drop_short(signal: Signal, plateaus: PlateauArray, min_samples: int) -> Pla
 
     A short plateau at an end of the log is kept, as the log may have cut it off.
     """
-    plateaus = plateaus[~_find_ramps(signal, plateaus)]
-    plateaus = plateaus[~_find_edges(plateaus)]
+    plateaus = plateaus[~find_ramps(signal, plateaus)]
+    plateaus = plateaus[~find_edges(plateaus)]
     at_an_end = (plateaus["start"] == 0) | (plateaus["stop"] == len(signal.values))
     is_long = count_samples(read_spans(plateaus)) >= min_samples
     long_plateaus: PlateauArray = plateaus[at_an_end | is_long]
@@ -183,7 +255,7 @@ def _settle(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
         return plateaus
     # After they were extended, two plateaus may be separated only by a stray, so they are joined again.
     grown = _extend_pieces(signal, read_spans(plateaus))
-    spans = join_drifting(signal, grown)
+    spans = join_drifting(signal._replace(drifts=False), grown)
     known = np.minimum(np.searchsorted(plateaus["start"], spans[:, 0]), len(plateaus) - 1)
     settled = plateaus[known]
     # Most spans have not changed: measuring only the others saves a sixth of the time of the search.
@@ -309,30 +381,6 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
     return np.stack((chosen[:-1], chosen[1:]), axis=1)
 
 
-def _find_edges(plateaus: PlateauArray) -> BoolArray:
-    """Return for each plateau whether it is short and only an edge between its neighbours."""
-    edges = np.zeros(len(plateaus), bool)
-    lengths = count_samples(read_spans(plateaus))
-    level = plateaus["level"]
-    low, high = np.minimum(level[:-2], level[2:]), np.maximum(level[:-2], level[2:])
-    is_between = (low < level[1:-1]) & (level[1:-1] < high)
-    is_shorter = np.minimum(lengths[:-2], lengths[2:]) > lengths[1:-1]
-    edges[1:-1] = (lengths[1:-1] <= _EDGE_SAMPLES) & is_shorter & is_between
-    return edges
-
-
-def _find_ramps(signal: Signal, plateaus: PlateauArray) -> BoolArray:
-    """Return for each plateau whether it is short, and clearly rises or falls from each sample to the next."""
-    ramps = count_samples(read_spans(plateaus)) <= _EDGE_SAMPLES + 1
-    short = np.flatnonzero(ramps)
-    for some, part in group_by_length(signal.values, read_spans(plateaus[short])):
-        steps = np.abs(np.diff(part, axis=1))
-        ramps[short[some]] = np.logical_and(
-            go_one_way(part), (steps > CERTAINTY * signal.sigma).all(axis=1)
-        )
-    return ramps
-
-
 def _add_ends(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
     """Return plateaus in order; the first and the last sample of the log also become plateaus if they are a step away.
 
@@ -351,7 +399,7 @@ def _add_ends(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
     single = [
         (position, position + 1, values[position], 0.0, 0.0, 0)
         for position, apart, level in ends
-        if 1 <= apart <= _EDGE_SAMPLES + 1 and abs(values[position] - level) > min_step
+        if 1 <= apart <= EDGE_SAMPLES + 1 and abs(values[position] - level) > min_step
     ]
     return add_apart(plateaus, np.array(single, FIELDS))
 

@@ -45,7 +45,7 @@ Of samples that do not depend on each other, a third does. A spread below this f
 _UNSURE_OF_RANGE, _UNSURE_OF_VALUE = 0.1, 0.05
 """A mean that is less certain than these fractions of the log's range and of its own highest value is no level."""
 
-_PART_OF_SLOPE = 0.5
+PART_OF_SLOPE = 0.5
 """A part of a slope stands still if its spread is below this fraction of what the slope would give it."""
 
 _MAX_STRAYS = 0.3
@@ -218,7 +218,7 @@ def find_still_parts(signal: Signal, moving: PlateauArray, cut: Pieces) -> Plate
     parts = _trim(signal.values, cut[chosen], _STILL_NOISES * signal.noise)
     measured = measure(signal, parts)
     spread = slopes * count_samples(parts) / np.sqrt(12.0)
-    still = measured["spread"] <= _PART_OF_SLOPE * spread
+    still = measured["spread"] <= PART_OF_SLOPE * spread
     for some, part in group_by_length(signal.values, parts):
         min_variance = _WANDERS * measured["spread"][some] ** 2
         still[some] &= _compare_neighbours(part, signal.sigma) >= min_variance

@@ -1,0 +1,97 @@
+"""Edges of a log: what lies between two levels, and is no level itself.
+
+A sensor sees a spot. While its spot crosses an edge, the reading passes from one level to another in one direction. If
+the robot is slow, the passage takes many samples, and some in a row may be equal, or nearly so with noise. They are no
+level: a level lasts longer than such a step, compared with the whole passage.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tuisim.engine.runs.arrays import IntArray
+from tuisim.logs.pieces import (
+    CERTAINTY,
+    NEAR_SAMPLES,
+    STRAY_SAMPLES,
+    BoolArray,
+    Pieces,
+    Signal,
+    count_samples,
+    find_strays,
+    group_by_length,
+)
+from tuisim.logs.stillness import PART_OF_SLOPE, PlateauArray, go_one_way, read_spans
+
+EDGE_SAMPLES = 3
+"""Most samples of an edge between two plateaus, however short the passage."""
+
+_MAX_STEP = 1 / 3
+"""Largest step of an edge as a fraction of the passage: one of two levels that it passes at equal times is no step."""
+
+_MIN_LEVELS = 2 / 3
+"""Smallest fraction of long pieces in a plateau that may be levels with edges; a slope is cut into short pieces."""
+
+
+def find_edges(plateaus: PlateauArray) -> BoolArray:
+    """Return for each plateau whether it is only a step of an edge between two others.
+
+    An edge passes from one plateau to another in one direction. A long plateau always ends it: more than
+    `NEAR_SAMPLES`, which show whether it drifts.
+    """
+    level = plateaus["level"]
+    lengths = count_samples(read_spans(plateaus))
+    is_corner = lengths > NEAR_SAMPLES
+    steps = np.diff(level)
+    is_corner[1:-1] |= steps[1:] * steps[:-1] <= 0.0
+    is_corner[:1] = is_corner[-1:] = True
+    corners = np.flatnonzero(is_corner)
+    inner = np.flatnonzero(~is_corner)
+    place = np.searchsorted(corners, inner)
+    before, after = corners[place - 1], corners[place]
+    passage = plateaus["start"][after] - plateaus["stop"][before]
+    slope = np.abs(level[after] - level[before]) / passage
+    is_step = lengths[inner] <= np.maximum(EDGE_SAMPLES, _MAX_STEP * (passage - 1))
+    rise = slope * lengths[inner]
+    is_step |= plateaus["spread"][inner] > PART_OF_SLOPE * rise / np.sqrt(12.0)
+    edges = np.zeros(len(plateaus), bool)
+    # The log may have cut off its first and its last level.
+    lengths[:1] = lengths[-1:] = lengths.max(initial=0)
+    edges[inner] = is_step & (lengths[inner] < np.minimum(lengths[before], lengths[after]))
+    return edges
+
+
+def find_ramps(signal: Signal, plateaus: PlateauArray) -> BoolArray:
+    """Return for each plateau whether it is short, and clearly rises or falls from each sample to the next."""
+    ramps = count_samples(read_spans(plateaus)) <= EDGE_SAMPLES + 1
+    short = np.flatnonzero(ramps)
+    for some, part in group_by_length(signal.values, read_spans(plateaus[short])):
+        steps = np.abs(np.diff(part, axis=1))
+        ramps[short[some]] = np.logical_and(
+            go_one_way(part), (steps > CERTAINTY * signal.sigma).all(axis=1)
+        )
+    return ramps
+
+
+def find_hidden_edges(
+    signal: Signal, plateaus: PlateauArray, cut: Pieces, owners: IntArray
+) -> BoolArray:
+    """Return for each plateau whether it is levels with edges: more samples in a row are far off than strays may be.
+
+    Args:
+        signal: The log.
+        plateaus: Its plateaus, without gaps between them.
+        cut: The pieces from which they were joined.
+        owners: The index of the plateau of each piece.
+    """
+    lengths = count_samples(cut)
+    long = np.bincount(owners, lengths * (lengths >= NEAR_SAMPLES), len(plateaus))
+    hidden: BoolArray = plateaus["strays"] > STRAY_SAMPLES
+    hidden &= long > _MIN_LEVELS * count_samples(read_spans(plateaus))
+    suspects = np.flatnonzero(hidden)
+    for some, part in group_by_length(signal.values, read_spans(plateaus[suspects])):
+        off = find_strays(part, signal.sigma)
+        for _ in range(STRAY_SAMPLES):
+            off = off[:, 1:] & off[:, :-1]
+        hidden[suspects[some]] = off.any(axis=1)
+    return hidden
