@@ -113,6 +113,45 @@ def _name_object(func: ast.expr) -> str:
     return ast.unparse(func.value) if isinstance(func, ast.Attribute) else ""
 
 
+def is_steered(tree: ast.Module, line: int) -> bool:
+    """Return whether a line may be part of what steers a robot over and over.
+
+    That is a function, a call that follows a line, or a loop whose moves are not always the same.
+
+    Args:
+        tree: The program.
+        line: The line.
+    """
+    around = [
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or node.lineno)
+    ]
+    if any(isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) for node in around):
+        return True
+    loops = [node for node in around if isinstance(node, ast.For | ast.While)]
+    if not loops:
+        return any(name_call(node).startswith("follow") for node in around)
+    own = [node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+    calls = [node for node in ast.walk(loops[0]) if isinstance(node, ast.Expr)]
+    moves = {ast.unparse(call) for call in calls if find_call(call, (*_ANY_MOVE, *own))}
+    return (
+        len(moves) > 1
+        or any(map(_is_varied, calls))
+        or any(find_call(call, (*own,)) for call in calls)
+    )
+
+
+def _is_varied(statement: ast.Expr) -> bool:
+    """Return whether a statement starts motors with speeds that are no constants."""
+    match statement.value:
+        case ast.Call(args=speeds) if find_call(statement, STARTS):
+            return any(
+                find_number(speed) is None and not ast.unparse(speed).isupper() for speed in speeds
+            )
+    return False
+
+
 @dataclass(frozen=True, slots=True)
 class PartedMove:
     """Two calls, one after the other, that move two motors by the same amount, of which the first call waits."""

@@ -96,7 +96,17 @@ while True:
     else:
         tank_drive.on(20, 20)
 """
+UNTIL_BLACK = """\
+# %%sim_magic_preloaded -b Grey_bands
+tank_drive.on(SpeedPercent(20), SpeedPercent(20))
+while colorLeft.reflected_light_intensity_pc > 20:
+    pass
+tank_drive.off()
+tank_turn.on_for_degrees(-100, SpeedPercent(30), 289)
+tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 1)
+"""
 GOOD = {
+    "over bands up to the black": UNTIL_BLACK,
     "edge": EDGE.format(seconds=15, left=5, right=20),
     "proportional": P.format(mat="Lollipop", seconds=20, gain=0.4, speed=15),
     "there and back": THERE_AND_BACK,
@@ -124,7 +134,7 @@ WRONG = {
 }
 
 
-@pytest.mark.quick_cases("edge", "stays inside")
+@pytest.mark.quick_cases("edge", "over bands up to the black", "stays inside")
 @pytest.mark.parametrize("name", GOOD)
 def test_a_robot_that_follows_its_line_is_not_said_to_have_lost_it(name: str) -> None:
     assert lost_in(run_text(GOOD[name], limit_s=30.0)) == []

@@ -99,12 +99,16 @@ def find_lost_lines(
         if is_looking and way.was_followed(number):
             # `zip` takes only the sensors, which come first among the points.
             dark = {eye.name: true for eye, true in zip(eyes, seen.is_dark, strict=False)}
-            loss = _name_loss(dark, watched, left, hz, seen.is_black)
+            loss = _name_loss(dark, seen.is_black, watched, left, hz)
             yield replace(loss, turns_away=_turns_away(records[: end + 1], eyes, dark, watched))
 
 
 def _name_loss(
-    dark: Mapping[str, Bools], watched: Collection[str], left: int, hz: int, is_black: bool
+    dark: Mapping[str, Bools],
+    is_black: Bools,
+    watched: Collection[str],
+    left: int,
+    hz: int,
 ) -> LostLine:
     """Return a loss of the line, with the sensor that saw the line last.
 
@@ -112,10 +116,10 @@ def _name_loss(
 
     Args:
         dark: For each sensor, by name, whether it saw the line at each tick.
+        is_black: Whether black was under or between the sensors, at each tick.
         watched: The names of the sensors that the program reads.
         left: The tick at which the line was last seen.
         hz: Ticks per second.
-        is_black: Whether the line is black.
     """
     seen = {name: _find_last(true[: left + 1]) for name, true in dark.items()}
     recent = [name for name in watched if seen[name] >= left - _MIN_GAP_S * hz]
@@ -123,7 +127,9 @@ def _name_loss(
     rests = {name: true[left + 1 :] for name, true in dark.items()}
     again = [(left + 1 + int(rest.argmax()), name) for name, rest in rests.items() if rest.any()]
     tick, name = min(again, default=(0, ""))
-    return LostLine(max(0, seen[sensor]), sensor, is_black, (name, tick) if name else None)
+    last = max(0, seen[sensor])
+    has_black = is_black[max(0, last - round(_MIN_GAP_S * hz)) : last + 1].any()
+    return LostLine(last, sensor, bool(has_black), (name, tick) if name else None)
 
 
 def _turns_away(
@@ -178,7 +184,8 @@ class _Seen:
     """Whether at least its edge was under each, at each tick."""
     is_middle: list[Bools]
     """Whether each read less than half of the way from the line to its ground."""
-    is_black: bool
+    is_black: Bools
+    """Whether black was under any of them, at each tick."""
 
 
 def _find_points(eyes: Sequence[ColorSensorSpec]) -> list[ColorSensorSpec]:
@@ -210,12 +217,12 @@ def _see_line(
     bright = np.sort(there[there > middle])
     # This is `np.quantile`, which imports `numpy.ma`.
     ground = np.interp(_GROUND_SHARE * (len(bright) - 1), np.arange(len(bright)), bright)
-    limits = ground - _DARKER_PC, middle
-    edges, middles = (
+    limits = ground - _DARKER_PC, middle, _BLACK_PC
+    edges, middles, blacks = (
         [is_on & (percent < limit) for percent, is_on in zip(light, on, strict=True)]
         for limit in limits
     )
-    return _Seen(edges, middles, bool(there.min() < _BLACK_PC))
+    return _Seen(edges, middles, np.logical_or.reduce(blacks))
 
 
 class _Way:

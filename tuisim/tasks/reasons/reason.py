@@ -263,6 +263,7 @@ def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
         has_waited: Whether the program waited for a light sensor in vain. That it saw only one colour is then no
             further reason.
     """
+    from tuisim.programs.moves import is_steered
     from tuisim.tasks.reasons.lost_line import find_lost_lines
     from tuisim.tasks.reasons.one_colour import find_one_color
     from tuisim.tasks.reasons.unwatched import list_unwatched
@@ -276,7 +277,8 @@ def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
         return
     seen_by_eyes = data.records, run.spec, data.mat, data.light_ticks
     for lost in find_lost_lines(*seen_by_eyes):
-        yield _describe_loss(run, lost)
+        if is_steered(data.facts.tree, run.telemetry.record(lost.tick).line):
+            yield _describe_loss(run, lost)
     if not has_waited and (seen := find_one_color(*seen_by_eyes)):
         text = f"from here on the {seen.sensor} sensor saw only {seen.color}"
         if seen.left_tick is not None:
