@@ -24,10 +24,16 @@ from tuisim.engine.protocol import SetButtons, SetNoise, SetPose, UserAction
 from tuisim.engine.runs.child.process import start_warm_process
 from tuisim.engine.runs.command_records import COMMAND_RECORD, COMMANDS_MAGIC, read_commands
 from tuisim.engine.runs.handle import RunOptions, start_run
-from tuisim.engine.runs.records import HEADER_BYTES, TELEMETRY_FILE, pack_header
+from tuisim.engine.runs.records import (
+    COMMANDS_FILE,
+    HEADER_BYTES,
+    MOTORS_FILE,
+    TELEMETRY_FILE,
+    pack_header,
+)
 from tuisim.engine.runs.replay import MAX_AN_INSTANT, replay_run
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.side_files import ACTIONS_FILE, COMMANDS_FILE, MOTORS_FILE
+from tuisim.engine.runs.side_files import ACTIONS_FILE
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings

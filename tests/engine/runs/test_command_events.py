@@ -15,8 +15,8 @@ from tuisim.engine.core.plugged import PluggedPart
 from tuisim.engine.runs import command_events
 from tuisim.engine.runs.command_events import CommandIndex, parse_command_search
 from tuisim.engine.runs.command_records import CommandsWriter
+from tuisim.engine.runs.records import COMMANDS_FILE
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.side_files import COMMANDS_FILE
 from tuisim.engine.runs.store import RunStore
 
 MS = 1_000_000

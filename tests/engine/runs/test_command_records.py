@@ -12,8 +12,7 @@ from tuisim.base.errors import LogError
 from tuisim.engine.core.commands.calls import MAX_VALUES, Call
 from tuisim.engine.runs import command_records
 from tuisim.engine.runs.command_records import COMMAND_RECORD, CommandsWriter, read_commands
-from tuisim.engine.runs.records import HEADER_BYTES
-from tuisim.engine.runs.side_files import COMMANDS_FILE
+from tuisim.engine.runs.records import COMMANDS_FILE, HEADER_BYTES
 
 TURN = """\
 from ev3dev2.motor import LargeMotor, OUTPUT_C

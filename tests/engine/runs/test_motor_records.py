@@ -12,8 +12,7 @@ from tests.running import Done, Run
 from tuisim.base.errors import LogError
 from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.motor_records import read_motor_columns, read_motor_values
-from tuisim.engine.runs.records import HEADER_BYTES
-from tuisim.engine.runs.side_files import MOTORS_FILE
+from tuisim.engine.runs.records import HEADER_BYTES, MOTORS_FILE
 
 HOLD = """\
 from ev3dev2.motor import LargeMotor, OUTPUT_B, SpeedDPS

@@ -18,8 +18,7 @@ from tuisim.engine.runs.readings import (
     ReadingsWriter,
     read_readings,
 )
-from tuisim.engine.runs.records import HEADER_BYTES
-from tuisim.engine.runs.side_files import READINGS_FILE
+from tuisim.engine.runs.records import HEADER_BYTES, READINGS_FILE
 
 TOUCH = READING_CODES["in1", "TOUCH"]
 PLACE = READING_CODES["outD", "position"]

@@ -20,9 +20,8 @@ from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.core.tick_record import TICK_FIELDS
 from tuisim.engine.protocol import SetButtons, SetNoise, SetPen, SetPose, UserAction
 from tuisim.engine.runs.command_records import read_commands
-from tuisim.engine.runs.records import HEADER_BYTES
+from tuisim.engine.runs.records import HEADER_BYTES, MOTORS_FILE
 from tuisim.engine.runs.replay import replay
-from tuisim.engine.runs.side_files import MOTORS_FILE
 
 ACTIONS = (
     UserAction(20, SetPose(700.0, 400.0, 30.0)),

@@ -15,10 +15,9 @@ from tests.running import Run
 from tuisim.base.errors import LogError
 from tuisim.engine.protocol import SetButtons, UserAction
 from tuisim.engine.runs import replay as replay_module
-from tuisim.engine.runs.records import HEADER_BYTES, TELEMETRY_FILE
+from tuisim.engine.runs.records import COMMANDS_FILE, HEADER_BYTES, TELEMETRY_FILE
 from tuisim.engine.runs.replay import replay_run
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.side_files import COMMANDS_FILE
 from tuisim.engine.runs.store import RunStore
 
 INSIDE = """\

@@ -15,8 +15,7 @@ from tuisim.engine.core.remote_spec import RemotePress
 from tuisim.engine.core.sensors.touch import find_hand_flags
 from tuisim.engine.core.spec import InfraredSpec, Obstacle, RobotSpec, RunSpec, TouchSpec, WorldSpec
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.records import Stream
-from tuisim.engine.runs.side_files import READINGS_FILE
+from tuisim.engine.runs.records import READINGS_FILE, Stream
 from tuisim.tasks.reasons.subjects import Subject
 from tuisim.tasks.reasons.waited import find_awaited
 

@@ -18,8 +18,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
 from tuisim.base.regular_file import of_the_machine, open_regular, read_regular
 from tuisim.engine.core.commands.calls import MAX_VALUES, Call, SimulationCommand
-from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, read_header
-from tuisim.engine.runs.side_files import COMMANDS_FILE
+from tuisim.engine.runs.records import COMMANDS_FILE, HEADER_BYTES, MappedWriter, read_header
 
 if TYPE_CHECKING:
     import numpy as np

@@ -23,8 +23,7 @@ from tuisim.engine.core.motor_columns import (
 )
 from tuisim.engine.core.spec import OUTPUT_PORTS, RobotSpec, RunSpec
 from tuisim.engine.core.state import MotorValues
-from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, read_header
-from tuisim.engine.runs.side_files import MOTORS_FILE
+from tuisim.engine.runs.records import HEADER_BYTES, MOTORS_FILE, MappedWriter, read_header
 
 if TYPE_CHECKING:
     import numpy as np

@@ -18,8 +18,12 @@ from tuisim.base.errors import LogError
 from tuisim.base.regular_file import of_the_machine, read_regular
 from tuisim.engine.core.hub_spec import CONTROLLERS, HUB_BUTTONS, HUB_PORTS, INSIDE
 from tuisim.engine.core.spec import BUTTONS, INPUT_PORTS, OUTPUT_PORTS
-from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, read_published_length
-from tuisim.engine.runs.side_files import READINGS_FILE
+from tuisim.engine.runs.records import (
+    HEADER_BYTES,
+    READINGS_FILE,
+    MappedWriter,
+    read_published_length,
+)
 
 if TYPE_CHECKING:
     import numpy as np

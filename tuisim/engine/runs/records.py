@@ -86,6 +86,12 @@ _STREAMS = {stream.value: stream for stream in Stream}
 
 TELEMETRY_FILE = "telemetry.bin"
 OUTPUT_FILE = "output.bin"
+READINGS_FILE = "readings.bin"
+"""What sensors, encoders and buttons the program has read; see `engine.runs.readings`."""
+MOTORS_FILE = "motors.bin"
+"""What the drivers knew of the motors at each tick; see `engine.runs.motor_records`. Missing if they have none."""
+COMMANDS_FILE = "commands.bin"
+"""What the program has changed in the simulation; see `engine.runs.command_records`."""
 TELEMETRY_CHUNK = 64 * 1024
 OUTPUT_CHUNK = 1 << 16
 """Initial size of an output file after the header; it is truncated to its true size at the end."""

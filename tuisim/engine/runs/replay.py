@@ -28,9 +28,15 @@ from tuisim.engine.core.tick_record import TICK_FIELDS, TICK_RECORD, MemoryRecor
 from tuisim.engine.protocol import Stop, UserAction
 from tuisim.engine.runs.command_records import read_commands
 from tuisim.engine.runs.motor_records import MOTORS_MAGIC, arrange_records
-from tuisim.engine.runs.records import HEADER_BYTES, TELEMETRY_FILE, TELEMETRY_MAGIC, pack_header
+from tuisim.engine.runs.records import (
+    HEADER_BYTES,
+    MOTORS_FILE,
+    TELEMETRY_FILE,
+    TELEMETRY_MAGIC,
+    pack_header,
+)
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.side_files import ACTIONS_FILE, MOTORS_FILE
+from tuisim.engine.runs.side_files import ACTIONS_FILE
 from tuisim.engine.runs.user_changes import change_simulation
 from tuisim.engine.runs.views import TelemetryView
 

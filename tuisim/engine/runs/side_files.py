@@ -22,6 +22,7 @@ from tuisim.base.errors import LogError, TuisimError
 from tuisim.base.regular_file import read_regular
 from tuisim.engine.core.spec import NoiseSpec
 from tuisim.engine.protocol import SetNoise, UserAction
+from tuisim.engine.runs.records import COMMANDS_FILE, MOTORS_FILE, READINGS_FILE
 
 LOCK_FILE = "lock"
 """Locked by the process that runs the program, as long as it lives.
@@ -47,14 +48,6 @@ READS_FILE = "reads.jsonl"
 MAX_READS = 100
 """Further files are only counted."""
 
-READINGS_FILE = "readings.bin"
-"""What sensors, encoders and buttons the program has read; see `engine.runs.readings`."""
-
-MOTORS_FILE = "motors.bin"
-"""What the drivers knew of the motors at each tick; see `engine.runs.motor_records`. Missing if they have none."""
-
-COMMANDS_FILE = "commands.bin"
-"""What the program has changed in the simulation; see `engine.runs.command_records`."""
 
 LOG_FILE = "child.log"
 """The stderr of the child, for errors below Python; missing if there were none."""

@@ -27,7 +27,10 @@ from tuisim.engine.runs.command_records import CommandsWriter
 from tuisim.engine.runs.motor_records import MotorsWriter
 from tuisim.engine.runs.readings import ReadingsWriter
 from tuisim.engine.runs.records import (
+    COMMANDS_FILE,
+    MOTORS_FILE,
     OUTPUT_FILE,
+    READINGS_FILE,
     TELEMETRY_FILE,
     MappedWriter,
     OutputWriter,
@@ -35,7 +38,7 @@ from tuisim.engine.runs.records import (
     TelemetryWriter,
     is_full,
 )
-from tuisim.engine.runs.side_files import COMMANDS_FILE, MOTORS_FILE, READINGS_FILE, STACK_FILE
+from tuisim.engine.runs.side_files import STACK_FILE
 from tuisim.engine.runtime.channel import Channel
 from tuisim.engine.runtime.control import ATTENTION, STOPPING, RunControl
 from tuisim.engine.runtime.loader import compile_program
