@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-import numpy as np
 from rich.style import Style
 
 from tuisim.base import palette
-from tuisim.engine.runs.arrays import FloatArray
-from tuisim.logs.levels import Levels, Light, has_light_levels, measure_levels
+from tuisim.logs.levels import Light, has_light_levels, measure_levels
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.axes import Limits
 from tuisim.pictures.charts.layout import Span, fit_names
@@ -29,8 +27,6 @@ _MAX_NAME_ROWS = 3
 """Rows from the lowest one in which names stand: higher up, a name seems to belong to the curve beside it."""
 _SHIFTS = (0, 1, -1, 2, -2, 3, -3)
 """Columns from the middle of a band by which its name is moved if the middle is not free, in this order."""
-_MAX_STEP = 0.2
-"""A shorter part of the longest band is a step of a slope, such as of a sensor that seldom measures."""
 FREE = " ┈"
 """Characters over which a name may be written."""
 
@@ -55,23 +51,11 @@ def find_spans(trace: Trace, light: Light) -> tuple[Span, ...]:
     )
     ends = trace.times_s[levels.start].tolist(), trace.times_s[levels.stop - 1].tolist()
     names = [grey.name if grey and not trace.scale else "" for grey in levels.greys]
-    rows = zip(*ends, levels.level.tolist(), names, _find_steps(levels, trace.times_s), strict=True)
+    rows = zip(*ends, levels.level.tolist(), names, strict=True)
     return tuple(
         build_band_span(trace.name, start_s, stop_s, level, name)
-        for start_s, stop_s, level, name, is_step in rows
-        if not is_step
+        for start_s, stop_s, level, name in rows
     )
-
-
-def _find_steps(levels: Levels, times_s: FloatArray) -> list[bool]:
-    """Return for each level whether it is only a step of a slope: short, and between its neighbours in value."""
-    steps = np.diff(levels.level)
-    is_between = np.zeros(len(levels.level), bool)
-    is_between[1:-1] = steps[:-1] * steps[1:] > 0
-    durations_s = times_s[levels.stop - 1] - times_s[levels.start]
-    is_short = durations_s < _MAX_STEP * durations_s.max(initial=0)
-    is_step: list[bool] = (is_between & is_short).tolist()
-    return is_step
 
 
 def find_columns(span: Span, x_limits: Limits, columns: int) -> range:
