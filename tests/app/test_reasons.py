@@ -268,7 +268,8 @@ SLEEPS = "import time\nwhile True:\n    time.sleep(9)\n"
 async def test_a_program_that_goes_on_is_paused_and_it_says_what_that_waits_for(
     text: str, words: str
 ) -> None:
-    async with open_lab(text, speed=0.0, size=SIZE) as (pilot, app):
+    # At full speed, a program that only sleeps would reach the limit of a run before the key is pressed.
+    async with open_lab(text, speed=16.0, size=SIZE) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.build_snapshot().time_s > 20.0)
         assert "! wrong?" in screen_text(app)
