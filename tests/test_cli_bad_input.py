@@ -13,7 +13,10 @@ from tests.conftest import Command
 BAD = {
     "missing program": ("run nope.py", "nope.py: there is no such program"),
     "misspelt program": ("run porg.py", "did you mean prog.py?"),
-    "page unlike any": ("guide linefollower", "(`tuisim guide` lists the pages)"),
+    "page unlike any": (
+        "guide linefollower",
+        "`tuisim guide --search linefollower` searches them)",
+    ),
     "misspelt example": (
         "run log_grey",
         "log_grey: there is no such program (did you mean log_greys?)",

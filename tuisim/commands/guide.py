@@ -139,14 +139,10 @@ def find_page(name: str) -> Page:
     """
     known = load_pages()
     if name not in known:
-        from tuisim.guide.search import search
-
         raise ConfigError(
             f"no such page {name!r}",
-            did_you_mean(
-                closest(name, known, 1, 0.7) or [result.name for result in search(name)[:1]]
-            )
-            or "`tuisim guide` lists the pages",
+            did_you_mean(closest(name, known, 1, 0.7))
+            or f"`tuisim guide` lists the pages, `tuisim guide --search {name}` searches them",
             key="guide",
         )
     return known[name]
