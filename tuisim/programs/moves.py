@@ -113,10 +113,10 @@ def _name_object(func: ast.expr) -> str:
     return ast.unparse(func.value) if isinstance(func, ast.Attribute) else ""
 
 
-def is_steered(tree: ast.Module, line: int) -> bool:
-    """Return whether a line may be part of what steers a robot over and over.
+def find_steering(tree: ast.Module, line: int) -> int:
+    """Return the line that steers a robot over and over around a line of a program; 0 if nothing does.
 
-    That is a function, a call that follows a line, or a loop whose moves are not always the same.
+    It is a call that follows a line, or the first move of a function or of a loop whose moves are not always the same.
 
     Args:
         tree: The program.
@@ -127,19 +127,18 @@ def is_steered(tree: ast.Module, line: int) -> bool:
         for node in ast.walk(tree)
         if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or node.lineno)
     ]
-    if any(isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) for node in around):
-        return True
-    loops = [node for node in around if isinstance(node, ast.For | ast.While)]
-    if not loops:
-        return any(name_call(node).startswith("follow") for node in around)
+    functions = [node for node in around if isinstance(node, ast.FunctionDef)]
+    places = functions or [node for node in around if isinstance(node, ast.For | ast.While)]
+    if not places:
+        return line if any(name_call(node).startswith("follow") for node in around) else 0
     own = [node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
-    calls = [node for node in ast.walk(loops[0]) if isinstance(node, ast.Expr)]
-    moves = {ast.unparse(call) for call in calls if find_call(call, (*_ANY_MOVE, *own))}
-    return (
-        len(moves) > 1
-        or any(map(_is_varied, calls))
-        or any(find_call(call, (*own,)) for call in calls)
-    )
+    calls = [node for node in ast.walk(places[0]) if isinstance(node, ast.Expr)]
+    moves = [call for call in calls if find_call(call, (*_ANY_MOVE, *own))]
+    is_one = len({ast.unparse(move) for move in moves}) < 2
+    if not functions and is_one and not any(find_call(move, (*own,)) for move in moves):
+        moves = [move for move in moves if _is_varied(move)]
+    first_lines = sorted(move.lineno for move in moves)
+    return next(iter(first_lines), line if functions else 0)
 
 
 def _is_varied(statement: ast.Expr) -> bool:

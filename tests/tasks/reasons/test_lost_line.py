@@ -105,6 +105,14 @@ tank_drive.off()
 tank_turn.on_for_degrees(-100, SpeedPercent(30), 289)
 tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 1)
 """
+STEERS = """\
+# %%sim_magic_preloaded -b Two_shapes -x {x} -y 495 -a 90
+while get_clock() < 8:
+    light = colorLeft.reflected_light_intensity_pc
+    steering = {sign} * 0.3 * (light - 50)
+    tank_turn.on(steering, SpeedPercent({speed}))
+tank_turn.off()
+"""
 GOOD = {
     "over bands up to the black": UNTIL_BLACK,
     "edge": EDGE.format(seconds=15, left=5, right=20),
@@ -120,7 +128,17 @@ WRONG = {
         "right sensor left the black, and did not",
     ),
     "too fast": (EDGE.format(seconds=9, left=30, right=40), "", "the robot left the mat"),
-    "the sides swapped": (EDGE.format(seconds=18, left=20, right=5), "0.", "sensor left the black"),
+    "the sides swapped": (
+        EDGE.format(seconds=18, left=20, right=5),
+        "0.",
+        "as it got brighter, the robot turned left, away from the line, so the steering in line 4 has the wrong sign",
+    ),
+    "the wrong sign of the steering": (
+        STEERS.format(x=1219, sign=-1, speed=15),
+        "0.44",
+        "did not see it again: as it got brighter, the robot turned left, away from the line, so the steering in line "
+        "5 has the wrong sign",
+    ),
     "too weak": (
         P.format(mat="Lollipop", seconds=8, gain=0.05, speed=40),
         "0.01",
@@ -140,13 +158,19 @@ def test_a_robot_that_follows_its_line_is_not_said_to_have_lost_it(name: str) ->
     assert lost_in(run_text(GOOD[name], limit_s=30.0)) == []
 
 
-@pytest.mark.quick_cases("the sign of two sensors")
+@pytest.mark.quick_cases("the sign of two sensors", "the wrong sign of the steering")
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_program_is_told_where_it_lost_the_line(name: str) -> None:
     text, time_s, words = WRONG[name]
     first = lost_in(run_text(text, limit_s=30.0))[0]
     assert words in first.text
     assert first.words.startswith(time_s)
+
+
+def test_the_right_sign_is_not_blamed_for_a_line_lost_at_high_speed() -> None:
+    (reason,) = lost_in(run_text(STEERS.format(x=1240, sign=1, speed=40)))
+    assert "sensor left the black" in reason.text
+    assert "sign" not in reason.text
 
 
 def test_a_line_lost_and_seen_again_is_told_with_the_time() -> None:

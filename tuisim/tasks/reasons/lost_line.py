@@ -48,7 +48,13 @@ _LONGER = 3.0
 _SOON_S = 0.4
 _MIN_AWAY = 10
 _MIN_AWAY_SHARE = 0.8
-"""A robot that turns away from the line in so many ticks, and in this share of them, steers with the wrong sign."""
+"""With so many readings at an edge, and this share of them at one that it turns away from, it has the wrong sign."""
+_ASIDE_MM = 8.0
+_MIN_SLOPE_PC = 20.0
+"""At an edge, the light differs by so much between `_ASIDE_MM` left and right of the sensor."""
+_LAG_S = 0.1
+"""The time in which the wheels follow a reading."""
+_MIN_CORRELATION = 0.5
 _MIN_TURN_DPS = 5.0
 """A robot steers if its rate of turn changes by so much within this time."""
 
@@ -65,8 +71,8 @@ class LostLine:
     """Whether the line is black, and not just darker than its ground."""
     seen_again: tuple[str, int] | None
     """The sensor that saw the line again, and the tick; None if none did."""
-    turns_away: bool = False
-    """Whether the robot mostly turned away from that of two sensors, left and right, that saw the line."""
+    wrong_turn: str = ""
+    """How the robot turned away from the line, if it steered with the wrong sign; else empty."""
 
 
 def find_lost_lines(
@@ -91,16 +97,20 @@ def find_lost_lines(
     hz = spec.profile.tick_hz
     way = _Way(records, np.logical_or.reduce(seen.is_dark))
     looks = [dark for eye, dark in zip(eyes, seen.is_middle, strict=False) if eye.name in watched]
-    if not any(way.is_steered(look, hz) for look in looks):
-        return
+    is_steered = any(way.is_steered(look, hz) for look in looks)
     for number in way.find_long_gaps(hz):
         left, end = way.find_gap(number)
         is_looking = np.searchsorted(read, end) - np.searchsorted(read, left) >= MIN_READINGS
         if is_looking and way.was_followed(number):
             # `zip` takes only the sensors, which come first among the points.
             dark = {eye.name: true for eye, true in zip(eyes, seen.is_dark, strict=False)}
-            loss = _name_loss(dark, seen.is_black, watched, left, hz)
-            yield replace(loss, turns_away=_turns_away(records[: end + 1], eyes, dark, watched))
+            before = records[: left + round(_SOON_S * hz)]
+            turn = "the robot turned away from the sensor that saw it"
+            if not _turns_away(records[: end + 1], eyes, dark, watched):
+                turn = _find_wrong_turn(before, spec, mat, watched)
+            if turn or is_steered:
+                loss = _name_loss(dark, seen.is_black, watched, left, hz)
+                yield replace(loss, wrong_turn=turn)
 
 
 def _name_loss(
@@ -130,6 +140,60 @@ def _name_loss(
     last = max(0, seen[sensor])
     has_black = is_black[max(0, last - round(_MIN_GAP_S * hz)) : last + 1].any()
     return LostLine(last, sensor, bool(has_black), (name, tick) if name else None)
+
+
+def _find_wrong_turn(
+    records: Array, spec: RunSpec, mat: Field, watched: Mapping[str, Array]
+) -> str:
+    """Return how a robot turned away from the line as a sensor got brighter; empty if it did not.
+
+    Args:
+        records: Telemetry up to the loss of the line.
+        spec: The run.
+        mat: Its mat.
+        watched: The ticks at which the program read each sensor, by its name.
+    """
+    for eye in spec.robot.color_sensors:
+        ticks = watched.get(eye.name, ())
+        if side := _find_wrong_side(records, eye, spec, mat, np.asarray(ticks, np.int64)):
+            return f"as it got brighter, the robot turned {side}, away from the line"
+    return ""
+
+
+def _find_wrong_side(
+    records: Array, eye: ColorSensorSpec, spec: RunSpec, mat: Field, ticks: Array
+) -> str:
+    """Return the side to which a robot turned as a sensor got brighter, if it was away from the line; else empty.
+
+    A robot that lost the line otherwise comes to the other edge as well, but not first.
+
+    Args:
+        records: Telemetry up to the loss of the line.
+        eye: The sensor.
+        spec: The run.
+        mat: Its mat.
+        ticks: The ticks at which the program read the sensor.
+    """
+    lag = round(_LAG_S * spec.profile.tick_hz)
+    ticks = ticks[ticks < len(records) - lag - 1]
+    turned_deg = (np.diff(records["heading_deg"]) + 180) % 360 - 180
+    turned_deg = turned_deg[ticks + lag]
+    light, left, right = (
+        compute_reflected_percent(records[ticks], replace(eye, x_mm=eye.x_mm + aside_mm), spec, mat)
+        for aside_mm in (0, -_ASIDE_MM, _ASIDE_MM)
+    )
+    is_edge = np.abs(left - right) > _MIN_SLOPE_PC
+    if is_edge.sum() < _MIN_AWAY:
+        return ""
+    covariance = np.mean((light - light.mean()) * (turned_deg - turned_deg.mean()))
+    if abs(covariance) < _MIN_CORRELATION * light.std() * turned_deg.std():
+        return ""
+    # A positive turn is one to the left.
+    brighter = np.sign(left - right)[is_edge]
+    is_away = brighter * covariance > 0
+    away_dps = np.mean(brighter * turned_deg[is_edge]) * spec.profile.tick_hz
+    is_wrong = is_away.mean() >= _MIN_AWAY_SHARE and away_dps >= _MIN_TURN_DPS
+    return ("left" if covariance > 0 else "right") if is_wrong else ""
 
 
 def _turns_away(

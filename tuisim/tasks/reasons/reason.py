@@ -263,7 +263,7 @@ def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
         has_waited: Whether the program waited for a light sensor in vain. That it saw only one colour is then no
             further reason.
     """
-    from tuisim.programs.moves import is_steered
+    from tuisim.programs.moves import find_steering
     from tuisim.tasks.reasons.lost_line import find_lost_lines
     from tuisim.tasks.reasons.one_colour import find_one_color
     from tuisim.tasks.reasons.unwatched import list_unwatched
@@ -277,8 +277,8 @@ def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
         return
     seen_by_eyes = data.records, run.spec, data.mat, data.light_ticks
     for lost in find_lost_lines(*seen_by_eyes):
-        if is_steered(data.facts.tree, run.telemetry.record(lost.tick).line):
-            yield _describe_loss(run, lost)
+        if line := find_steering(data.facts.tree, run.telemetry.record(lost.tick).line):
+            yield _describe_loss(run, lost, line)
     if not has_waited and (seen := find_one_color(*seen_by_eyes)):
         text = f"from here on the {seen.sensor} sensor saw only {seen.color}"
         if seen.left_tick is not None:
@@ -357,20 +357,27 @@ def _explain_lost(run: StoredRun, tick: int, text: str) -> Reason:
     return Reason(ReasonKind.LOST, time_s, run.telemetry.record(tick).line, text)
 
 
-def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
-    """Return the reason for a loss of the line; it says when a sensor saw the line again, if one did."""
+def _describe_loss(run: StoredRun, lost: LostLine, steering: int) -> Reason:
+    """Return the reason for a loss of the line; it says when a sensor saw the line again, if one did.
+
+    Args:
+        run: The run.
+        lost: The loss.
+        steering: The line of the program that steers.
+    """
+    hz = run.spec.profile.tick_hz
     text = f"the {lost.sensor} sensor left the {'black' if lost.is_black else 'dark'}"
+    until_s = math.inf
     if lost.seen_again is None:
         text += ", and did not see it again"
-        if lost.turns_away:
-            text += ": the robot turned away from the sensor that saw it, so the steering has the wrong sign"
-        return _explain_lost(run, lost.tick, text)
-    sensor, tick = lost.seen_again
-    who = "it" if sensor == lost.sensor else f"the {sensor} one"
-    hz = run.spec.profile.tick_hz
-    after_s = (tick - lost.tick) / hz
-    reason = _explain_lost(run, lost.tick, f"{text}; {who} saw it again after {after_s:.1f} s")
-    return replace(reason, until_s=tick / hz)
+    else:
+        sensor, tick = lost.seen_again
+        who = "it" if sensor == lost.sensor else f"the {sensor} one"
+        text += f"; {who} saw it again after {(tick - lost.tick) / hz:.1f} s"
+        until_s = tick / hz
+    if lost.wrong_turn:
+        text += f": {lost.wrong_turn}, so the steering in line {steering} has the wrong sign"
+    return replace(_explain_lost(run, lost.tick, text), until_s=until_s)
 
 
 def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:
