@@ -56,7 +56,7 @@ _ENDING = (
     "run_target",
     "run_time",
 )
-_ANY_MOVE = (*_MOVES, *_ENDING)
+ANY_MOVE = (*_MOVES, *_ENDING)
 
 
 def list_unwaited_moves(tree: ast.Module) -> Iterator[UnwaitedMove]:
@@ -67,14 +67,14 @@ def list_unwaited_moves(tree: ast.Module) -> Iterator[UnwaitedMove]:
             if isinstance(call, ast.Call) and (option := _find_option(statement)):
                 next_line = _find_next_move(call, block[index + 1 :])
                 last_line = statement.end_lineno or statement.lineno
-                method = find_call(statement, _ANY_MOVE)
+                method = find_call(statement, ANY_MOVE)
                 yield UnwaitedMove(statement.lineno, last_line, method, option, next_line)
 
 
 def _find_option(statement: ast.stmt) -> str:
     """Return the argument because of which a move does not block, such as `block=False`; empty for other statements."""
     match statement:
-        case ast.Expr(value=ast.Call(keywords=keywords)) if find_call(statement, _ANY_MOVE):
+        case ast.Expr(value=ast.Call(keywords=keywords)) if find_call(statement, ANY_MOVE):
             for keyword in keywords:
                 if keyword.arg in _OPTIONS and getattr(keyword.value, "value", None) is False:
                     return f"{keyword.arg}=False"
@@ -95,7 +95,7 @@ def _find_next_move(move: ast.Call, rest: list[ast.stmt]) -> int:
     for statement in rest:
         match statement:
             case ast.Expr(value=ast.Call(func=func)) if not _find_waiting(statement):
-                if find_call(statement, (*_ANY_MOVE, *STOPS)):
+                if find_call(statement, (*ANY_MOVE, *STOPS)):
                     lines.append((_name_object(func) != owner, statement.lineno))
             case _:
                 break
@@ -133,7 +133,7 @@ def find_steering(tree: ast.Module, line: int) -> int:
         return line if any(name_call(node).startswith("follow") for node in around) else 0
     own = [node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
     calls = [node for node in ast.walk(places[0]) if isinstance(node, ast.Expr)]
-    moves = [call for call in calls if find_call(call, (*_ANY_MOVE, *own))]
+    moves = [call for call in calls if find_call(call, (*ANY_MOVE, *own))]
     is_one = len({ast.unparse(move) for move in moves}) < 2
     if not functions and is_one and not any(find_call(move, (*own,)) for move in moves):
         moves = [move for move in moves if _is_varied(move)]

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import source_lines
-from tuisim.programs.moves import find_number
+from tuisim.programs.moves import ANY_MOVE, STARTS, find_call, find_number
 from tuisim.programs.robot.words import is_forwards
 from tuisim.programs.waits import list_blocks
 
@@ -26,6 +26,15 @@ _OTHERS = re.compile(
 """Words with which a remark is not, or not only, about a black or white band."""
 _STRAIGHT = re.compile(r"\bstraight\b", re.IGNORECASE)
 _TURNS = re.compile(r"turn|spin|rotat|dance|circle|dreh|kreis|around", re.IGNORECASE)
+_SIDES = {
+    "left": re.compile(r"left|links", re.IGNORECASE),
+    "right": re.compile(r"(?<!b)right|rechts", re.IGNORECASE),
+}
+_NO_SIDES = re.compile(
+    r"motor|wheel|sensor|eye|light|arm|servo|head|angle|way|hand|edge|line|side|button|\b(not|if|or|rad)\b",
+    re.IGNORECASE,
+)
+"""Words with which a remark is not, or not only, about the side to which the robot turns."""
 _BEFORE_LINES = 4
 _AFTER_LINES = 3
 """A remark is about a loop if it is so near to it."""
@@ -65,6 +74,12 @@ class Remarks:
         text = self._read_lines(line - is_comment, line)
         return (is_forwards(text) or bool(_STRAIGHT.search(text))) and not _TURNS.search(text)
 
+    def find_side(self, line: int) -> str:
+        """Return the side to which a comment on a line, or one above it, says that the robot turns; empty for none."""
+        above = self._read_lines(line - 1, line - 1).strip()
+        _, _, comment = self._read_lines(line, line).partition("#")
+        return _find_side(comment or (above if above.startswith("#") else ""))
+
     def has_centimetres(self, line: int, number: float | None) -> bool:
         """Return whether a line, or the line above it, contains this number with the unit cm."""
         text = self._read_lines(line - 1, line)
@@ -102,6 +117,48 @@ def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[Spin]:
             if is_spin and (first in forwards or remarks.goes_straight(first.lineno)):
                 words = f"{speeds[0]:g} and {speeds[1]:g}"
                 yield Spin(first.lineno, last.end_lineno or last.lineno, words)
+
+
+def _find_side(text: str) -> str:
+    """Return the side to which a robot turns by a name or a comment; empty for none."""
+    sides = [side for side, words in _SIDES.items() if words.search(text)]
+    is_turn = len(sides) == 1 and _TURNS.search(text) and not _NO_SIDES.search(text)
+    return sides[0] if is_turn else ""
+
+
+@dataclass(frozen=True, slots=True)
+class NamedTurn:
+    """Lines that turn the robot to a side by their words."""
+
+    first_line: int
+    last_line: int
+    side: str
+    """`left` or `right`."""
+    name: str
+    """What says so."""
+
+
+def list_named_turns(tree: ast.Module, remarks: Remarks) -> Iterator[NamedTurn]:
+    """Yield the functions and moves of a program whose name or comment says to which side they turn the robot.
+
+    Functions that are also called with negative numbers are left out.
+    """
+    nodes = [*ast.walk(tree)]
+    backwards = {
+        ast.unparse(node.func)
+        for node in nodes
+        if isinstance(node, ast.Call) and any((find_number(arg) or 0) < 0 for arg in node.args)
+    }
+    for node in nodes:
+        match node:
+            case ast.FunctionDef(name=name) if name not in backwards and (side := _find_side(name)):
+                yield NamedTurn(node.lineno, node.end_lineno or node.lineno, side, name)
+            case ast.Expr() if find_call(node, ANY_MOVE) and (
+                side := remarks.find_side(node.lineno)
+            ):
+                # The line after one that starts motors is the one that waits.
+                last_line = (node.end_lineno or node.lineno) + bool(find_call(node, STARTS))
+                yield NamedTurn(node.lineno, last_line, side, "the comment")
 
 
 def _list_speeds(statement: ast.stmt) -> list[float]:

@@ -26,6 +26,14 @@ MISSED = {
         f"{BANDS}# straight on\ntank_drive.on_for_seconds(30, -30, 1)\n",
         "line 4: the robot turned on the spot here, by 80°",
     ),
+    "the function turns to the other side": (
+        f"{BANDS}def turn_left():\n    tank_drive.on_for_degrees(30, -30, 289)\n\nturn_left()\n",
+        "line 3: turn_left says left, but the robot turned right here, by 90°: swap the signs",
+    ),
+    "a comment says the other side": (
+        f"{BANDS}# turn left by 90 degrees\ntank_turn.on_for_degrees(100, 30, 289)\n",
+        "line 4: the comment says left, but the robot turned right here, by 90°: swap the signs",
+    ),
     "cm for mm": (
         f"{BASE}base.straight(50)  # 50 cm\n",
         "line 6: straight(50) drives 50 mm: straight(500) drives 50 cm",
@@ -53,6 +61,8 @@ def test_what_a_run_did_otherwise_than_its_words_say_is_told(text: str, words: s
         + "tank_drive.off()\nprint('I am on black')\n",
         "a long pause": f"{BANDS}tank_drive.on_for_seconds(5, 5, 1)\ntime.sleep(1000)\n",
         "a turn": f"{BANDS}# turn right\ntank_drive.on_for_seconds(30, -30, 1)\n",
+        "a right angle": f"{BANDS}# turn by a right angle\ntank_turn.on_for_degrees(-100, 30, 289)\n",
+        "a turn back": f"{BANDS}def turn_left(deg):\n    tank_turn.on_for_degrees(-100, 30, deg)\n\nturn_left(-289)\n",
         "another number": f"{BASE}base.straight(500)  # 50 cm\n",
     },
 )

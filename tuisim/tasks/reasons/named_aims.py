@@ -32,6 +32,7 @@ _MIN_AHEAD_MM = 60
 """A band that comes sooner is the one whose edge ended the loop."""
 _MIN_ON_DEG = 90.0
 _MIN_SPIN_DEG = 60.0
+_MIN_TURN_DEG = 30.0
 _MAX_SPOT_MM = 20.0
 """A robot that turns by so much, and gets no farther, turns on the spot."""
 
@@ -106,6 +107,32 @@ def list_spins(data: RunData) -> Iterator[Unmet]:
                     "against each other; equal signs drive it straight on"
                 )
                 yield Unmet(start / data.hz, spin.first_line, text)
+
+
+def list_wrong_sides(data: RunData) -> Iterator[Unmet]:
+    """Yield a fault for each place that turns the robot always to the other side than its name or comment says."""
+    lines = data.records["line"]
+    for turn in remarks.list_named_turns(data.facts.tree, data.facts.remarks):
+        spans = find_spans((lines >= turn.first_line) & (lines <= turn.last_line)).tolist()
+        ways = [_measure_turn(data.records[start:end]) for start, end in spans]
+        # A positive turn is one to the left.
+        wrong_deg = [deg if turn.side == "right" else -deg for deg in ways]
+        if wrong_deg and min(wrong_deg) >= _MIN_TURN_DEG:
+            other = "left" if turn.side == "right" else "right"
+            text = (
+                f"{turn.name} says {turn.side}, but the robot turned {other} here, "
+                f"by {wrong_deg[0]:.0f}°: swap the signs"
+            )
+            yield Unmet(spans[0][0] / data.hz, turn.first_line, text)
+
+
+def _measure_turn(way: Array) -> float:
+    """Return the angle in degrees by which the robot turned on a way; 0 if it drove backwards."""
+    first, last = way[0], way[-1]
+    middle = np.deg2rad(first["heading_deg"] + last["heading_deg"]) / 2
+    ahead_mm = (last["x_mm"] - first["x_mm"]) * np.cos(middle)
+    ahead_mm += (last["y_mm"] - first["y_mm"]) * np.sin(middle)
+    return float(last["heading_deg"] - first["heading_deg"]) if ahead_mm >= -_MAX_SPOT_MM else 0.0
 
 
 def list_wrong_units(data: RunData) -> Iterator[Unmet]:

@@ -315,7 +315,8 @@ def _find_mistaken(data: RunData) -> Iterator[Reason]:
             list_recounts,
         ),
         *(misuses.list_stale_reads, misuses.list_lone_stops, misuses.list_lost_values),
-        *(named_aims.list_spins, named_aims.list_wrong_bands, named_aims.list_wrong_units),
+        *(named_aims.list_spins, named_aims.list_wrong_sides),
+        *(named_aims.list_wrong_bands, named_aims.list_wrong_units),
     ):
         if mistake := find_first(search, data):
             yield _build_reason(ReasonKind.MISTAKEN, mistake)
