@@ -45,7 +45,7 @@ class BrickMotor:
     Args:
         tick_hz: Ticks per second.
         weight_step: Largest change of speed, in degrees per second, that the robot's weight allows in one tick; 0 for
-            any.
+            no limit.
         limit_dps: Highest speed that noise can cause.
     """
 
@@ -131,12 +131,12 @@ class BrickMotor:
         return self.mode, self.sign, self.target_dps, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which an obstacle stopped the wheel.
+        """Undo the motion of the last tick beyond the point at which an obstacle stopped the wheel.
 
         Args:
             before: The motor's `state` before the tick.
-            turned_deg: How far the wheel would have turned in the tick.
-            part: The part of the tick that was possible, below 1.
+            turned_deg: How far the wheel would have turned in the tick without the obstacle.
+            part: The fraction of the tick's motion that the obstacle allowed, below 1.
         """
         mode, sign, target_dps, position_deg = before
         if mode == STOPPED or turned_deg == 0.0:
@@ -196,7 +196,10 @@ class BrickMotor:
         return math.ceil(abs(self.target_dps - self.speed_dps) / step) if step else 1
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Return how the motor moves in several ticks of constant speed; the caller sets `position_deg` afterwards."""
+        """Return the motor's motion over several ticks at constant speed.
+
+        `position_deg` is not changed: the caller sets it after that.
+        """
         if self.mode == STOPPED:
             return EvenGlide(0.0, repeat(self.position_deg, ticks))
         turned = self.speed_dps * self.sign * self._tick_s

@@ -28,8 +28,8 @@ class BrowserMotor:
 
     Args:
         tick_hz: Ticks per second.
-        ramp_step: Largest change of speed, in degrees per second, that the robot's weight allows in one tick; 0 for
-            any.
+        ramp_step: Largest change of speed, in degrees per second, that the robot's weight allows in one tick; 0 for no
+            limit.
         limit_dps: Highest forward speed.
     """
 
@@ -164,7 +164,7 @@ class BrowserMotor:
 
     @property
     def _ended(self) -> bool:
-        """Whether the move to a position is over: the wheel stands still, while the encoder goes on counting."""
+        """Whether the last move to a position is over. The wheel then stands still; the encoder goes on counting."""
         return self._command == POSITION and self.mode == STOPPED
 
     # Ticks ahead
@@ -205,7 +205,10 @@ class BrowserMotor:
         return 0 if self._is_beyond_goal() else max(0, int(left / (2 * fastest)) - 1)
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Return how the motor moves in several ticks of constant speed; the caller sets `position_deg` afterwards."""
+        """Return the motor's motion over several ticks at constant speed.
+
+        `position_deg` is not changed: the caller sets it after that.
+        """
         turned = self.speed_dps * (
             -self._tick_s if self._command == POSITION and self.backwards else self._tick_s
         )
@@ -301,12 +304,12 @@ class BrowserMotor:
         return self.mode, self._direction, self._aim, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which an obstacle stopped the wheel.
+        """Undo the motion of the last tick beyond the point at which an obstacle stopped the wheel.
 
         Args:
             before: The motor's `state` before the tick.
-            turned_deg: How far the wheel would have turned in the tick.
-            part: The part of the tick that was possible, below 1.
+            turned_deg: How far the wheel would have turned in the tick without the obstacle.
+            part: The fraction of the tick's motion that the obstacle allowed, below 1.
         """
         mode, *_, position_deg = before
         if mode == STOPPED or turned_deg == 0.0:

@@ -73,13 +73,13 @@ class Solids:
     """The obstacles and walls of a world, for one robot.
 
     Most of the time nothing is near. The distance that every point of the body may move is therefore computed once, and
-    reduced by the motion of each tick. The obstacles are checked again only when it is used up.
+    reduced by the motion of each tick. The obstacles are checked again only when this distance is used up.
 
     Args:
         world: Walls and obstacles.
         robot: The robot; its outline is used.
-        early: Which heading the robot drives along in a tick in which it turns: 0 for that before the turn, 1 for that
-            after it, or a fraction between them.
+        early: The heading along which the robot drives in a tick in which it turns: 0 is the heading before the turn, 1
+            the heading after the turn, and 0.5 the heading halfway between them.
     """
 
     def __init__(self, world: WorldSpec, robot: RobotSpec, early: float = 0.0) -> None:
@@ -188,14 +188,16 @@ class Solids:
         return Leeway(part, (0.0, 0.0))
 
     def _push_aside(self, body: Body, boxes: list[Box], floors: list[float]) -> Leeway:
-        """Return a `Leeway` that allows a tick's whole motion, and pushes the body aside so that its gaps are kept.
-
-        If no such push keeps every distance, return a `Leeway` that allows no motion.
+        """Compute how far to push the robot's body aside, so that it keeps a minimum distance from walls and obstacles.
 
         Args:
-            body: The robot's body after the whole motion.
-            boxes: The obstacles near it.
-            floors: The smallest gap that is allowed to each wall and box, in mm, in the order of `_measure_gaps`.
+            body: The robot's body after the whole motion of a tick.
+            boxes: The obstacles near the body.
+            floors: The minimum distance to each wall and obstacle, in mm, in the order of `_measure_gaps`.
+
+        Returns:
+            A `Leeway` with the push, which allows the whole motion; if no such push is found, one that allows no
+            motion.
         """
         x_mm = y_mm = 0.0
         there = body
@@ -218,7 +220,7 @@ class Solids:
         """Return the gaps in mm between the body and every wall and obstacle, negative where they overlap.
 
         The left, right, lower and upper wall come first, if there are walls, then the obstacles in their order. When
-        the body moves, no gap changes by more than its fastest point moves.
+        the body moves, no gap changes by more than the distance that the fastest point of the body moves.
         """
         return tuple(self._measure_gaps(self._place_body(*pose), self._boxes))
 

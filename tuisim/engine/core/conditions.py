@@ -198,12 +198,12 @@ def parse_run_condition(text: str) -> ValueCondition | None:
 
 
 def list_operators(operators: Iterable[str] = COMPARE) -> str:
-    """Return operators as one text for a hint, separated by spaces, each in its shortest spelling."""
+    """Return operators as one text for a hint, such as `< <= > >=`, each in its shortest spelling."""
     return " ".join(Operator(operator).short for operator in operators)
 
 
 def describe_comparison(operators: Iterable[str] = COMPARE) -> str:
-    """Return how a comparison is written, `NAME OP VALUE` with all operators, for the hint of an error."""
+    """Return a hint that says how to write a comparison, such as `NAME OP VALUE, OP one of < <= > >= = !=`."""
     return f"NAME OP VALUE, OP one of {list_operators(operators)}"
 
 
@@ -213,7 +213,7 @@ def is_color(column: str) -> bool:
 
 
 def format_value(value: float, column: str, digits: int = 6) -> str:
-    """Return a value of a column as text: the name of a colour, else up to `digits` digits."""
+    """Return a value of a column as text: the name of a colour, or a number with up to `digits` significant digits."""
     if is_color(column) and value in range(len(COLOR_NAMES)):
         return COLOR_NAMES[int(value)]
     return f"{value:.{digits}g}"

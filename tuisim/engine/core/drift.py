@@ -142,9 +142,9 @@ def compute_light_share(x_mm: Any, y_mm: Any, drift: DriftSpec, seed: int) -> An
 
 @lru_cache(maxsize=16)
 def draw_bright_side(drift: DriftSpec, seed: int) -> tuple[float, float]:
-    """Return the increase of the brightness per mm along x and along y.
+    """Return how much the brightness of the field increases per mm along x and along y, in a direction drawn at random.
 
-    From the darkest to the brightest side of the field the increase is 1.
+    The numbers are scaled so that it increases by 1 from the darkest to the brightest side of the field.
     """
     way = draw_errors(drift, seed).bright_rad
     across = cos(way)
@@ -228,14 +228,16 @@ class SlippingWheels:
         self._turn_slip = drift.turn_slip_pc / 100
 
     def turn_deg(self, tick: int, left_deg: float, right_deg: float) -> tuple[float, float]:
-        """Return the turns of both motors that would move a robot without errors as far as a tick moves this one.
+        """Return corrected turns of both motors for a tick, which include backlash, slip and the wheels' real sizes.
+
+        A robot without these errors whose motors make the corrected turns moves as far as this robot does.
 
         Args:
             tick: The number of the tick.
             left_deg, right_deg: The real turns of the left and the right motor in the tick.
 
         Returns:
-            The turns of the left and the right motor, in degrees.
+            The corrected turns of the left and the right motor, in degrees.
         """
         if not (left_deg or right_deg):
             self._left.before_mm = self._right.before_mm = 0.0

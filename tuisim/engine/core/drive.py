@@ -56,7 +56,7 @@ def turn_rate_dps(left_dps: float, right_dps: float, robot: RobotSpec) -> float:
 
 
 class Records(NamedTuple):
-    """Destination of the records of several ticks, and the fields that are the same in all of them."""
+    """Where to write the tick records of several ticks, and the values of the fields that are equal in all of them."""
 
     buffer: Buffer
     offsets: range
@@ -71,13 +71,13 @@ class Records(NamedTuple):
 def _fill(
     records: Records, offset: int, left: EvenGlide, right: EvenGlide, zero_deg: float
 ) -> None:
-    """Fill the records from byte `offset` on with the fields that are the same in all of them.
+    """Fill all records from byte `offset` of the buffer on with the fields that are the same in all of them.
 
     The positions in these records stay 0: the caller writes them afterwards.
 
     Args:
         records: Where the records are written.
-        offset: The byte in the buffer at which the first of them begins.
+        offset: The byte in the buffer at which the first record to fill begins.
         left, right: How the wheels' motors move.
         zero_deg: The heading at which the gyro reads 0.
     """
@@ -160,8 +160,8 @@ def _glide_straight(
 class BrickDrive:
     """The pose of a robot with a brick, which changes with the rotation of its wheels.
 
-    `early` says which heading the robot drives along in a tick in which it turns: 0 for that before the turn, 1 for
-    that after it, or a fraction between them.
+    `early` chooses the heading along which the robot drives in a tick in which it turns: 0 is the heading before the
+    turn, 1 the heading after the turn, and 0.5 the heading halfway between them.
     """
 
     __slots__ = (

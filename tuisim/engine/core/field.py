@@ -23,7 +23,7 @@ OUTSIDE_DISC_RGB = (245, 226, 225)
 
 
 def build_disc_mask(diameter: int) -> list[list[bool]]:
-    """Return which pixels of a box belong to its disc, as rows of `diameter` booleans."""
+    """Return for each pixel of a square whether it belongs to the square's disc, as rows of `diameter` booleans."""
     radius = diameter / 2
     return [
         [(row - radius) ** 2 + (col - radius) ** 2 < radius**2 for col in range(diameter)]
@@ -192,8 +192,8 @@ def disc_weights(diameter: int, strategy: str) -> tuple[int, ...]:
 
     Args:
         diameter: Diameter of the disc in pixels.
-        strategy: One of `spec.STRATEGIES`: `mean`, equal weights; `gaussian`, a bell curve whose standard deviation
-        is half the radius; `centre`, threefold weight within half the radius.
+        strategy: One of `spec.STRATEGIES`: `mean`, equal weights; `gaussian`, a bell curve whose standard deviation is
+            half the radius; `centre`, threefold weight within half the radius.
     """
     radius = diameter / 2
     weights = []

@@ -61,7 +61,7 @@ def check_motor_kinds(hub: str, kinds: Mapping[str, str]) -> None:
 
     Args:
         hub: One of `HUBS`; empty for the EV3.
-        kinds: The motors' kinds by the keys in a robot file.
+        kinds: The kind of each motor, by the key in the robot file that gives it; errors name this key.
 
     Raises:
         RobotError: the hub has no such kind of motor.

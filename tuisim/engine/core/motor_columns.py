@@ -32,7 +32,7 @@ MOTOR_RECORD = Struct("<ihbB")
 class MotorSink(Protocol):
     """A receiver of the `MOTOR_RECORD`s of all motors at each tick.
 
-    Only the telemetry says how many ticks are complete.
+    It does not store how many ticks are complete: readers take that number from the telemetry.
     """
 
     def extend_buffer(self, ticks: int) -> Buffer:

@@ -35,7 +35,10 @@ MotorState = tuple[int, float, float, float]
 
 
 class Motor(Protocol):
-    """One motor with its encoder, under any motor law; members without a docstring are as in `BrickMotor`."""
+    """The interface of a motor with its encoder, under any motor law.
+
+    Members without a docstring are as in `BrickMotor`.
+    """
 
     position_deg: float
     """Encoder position."""
@@ -91,15 +94,18 @@ class Motor(Protocol):
         """Advance the motor by several ticks in which only the ramp of its speed changes it; return how it moves."""
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Return how the motor moves in several ticks of constant speed; the caller sets `position_deg` afterwards."""
+        """Return the motor's motion over several ticks at constant speed.
+
+        `position_deg` is not changed: the caller sets it after that.
+        """
 
     def state(self) -> MotorState: ...
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which an obstacle stopped the wheel.
+        """Undo the motion of the last tick beyond the point at which an obstacle stopped the wheel.
 
         Args:
             before: The motor's `state` before the tick.
-            turned_deg: How far the wheel would have turned in the tick.
-            part: The part of the tick that was possible, below 1.
+            turned_deg: How far the wheel would have turned in the tick without the obstacle.
+            part: The fraction of the tick's motion that the obstacle allowed, below 1.
         """

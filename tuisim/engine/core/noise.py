@@ -55,7 +55,7 @@ def generate_bytes(seed: int, tick: int, channel: str, size: int) -> bytes:
 
 @lru_cache(maxsize=8)
 def _list_errors(level: int) -> tuple[int, ...]:
-    """Return the error of a pixel's channel for each value, 0 to 255, of a random byte.
+    """Return for each value of a random byte, 0 to 255, the error that it causes in a channel of a pixel.
 
     The errors are whole numbers, evenly distributed from -level to level.
     """
@@ -175,7 +175,7 @@ def _generate_reading_block(seed: int, block: int, channel: str) -> bytes:
 
 
 def draw_numbers(seed: int, tick: int, channel: str, count: int) -> list[float]:
-    """Return random numbers from 0 up to 1, evenly distributed, that are always the same for the same arguments.
+    """Return random numbers, uniformly distributed from 0 up to 1, that are always the same for the same arguments.
 
     Args:
         seed: The seed of the run.
@@ -252,7 +252,7 @@ def _generate_wheel_block(
 def draw_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[float], list[float]]:
     """Return the speed noise of the left and the right wheel in `count` ticks from `tick` on, in degrees per second.
 
-    It is evenly distributed from -most_dps to most_dps.
+    It is uniformly distributed from -most_dps to most_dps.
     """
     block, offset = divmod(tick, _BLOCK_TICKS)
     left, right = _generate_wheel_block(seed, block, most_dps)
@@ -268,7 +268,7 @@ def draw_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[f
 def draw_noise(seed: int, tick: int, most_dps: int) -> tuple[float, float]:
     """Return the speed noise of the left and the right wheel in one tick, in degrees per second.
 
-    It is evenly distributed from -most_dps to most_dps.
+    It is uniformly distributed from -most_dps to most_dps.
     """
     left, right = _generate_wheel_block(seed, tick // _BLOCK_TICKS, most_dps)
     return left[tick % _BLOCK_TICKS], right[tick % _BLOCK_TICKS]
@@ -277,7 +277,7 @@ def draw_noise(seed: int, tick: int, most_dps: int) -> tuple[float, float]:
 def draw_slip(seed: int, tick: int) -> tuple[float, float]:
     """Return a random factor for the slip of the left and of the right wheel in one tick.
 
-    The factors are evenly distributed around 0, with a variance of 1.
+    The factors are uniformly distributed around 0, with a variance of 1.
     """
     left, right = _generate_wheel_block(seed, tick // _BLOCK_TICKS, sqrt(3), "slip")
     return left[tick % _BLOCK_TICKS], right[tick % _BLOCK_TICKS]

@@ -121,7 +121,7 @@ class Simulation(Motion):
         )
 
     def _list_scales(self) -> tuple[float, ...]:
-        """Return for each motor how many degrees the program counts while the motor turns by one."""
+        """Return for each motor how many degrees the program counts while the motor turns by one degree."""
         return tuple(self.scales.get(motor, 1.0) for motor in self.motors)
 
     def read_present(self, now_ns: int) -> Present:
@@ -308,9 +308,13 @@ class FurtherMotors(Simulation):
         return done + super().advance(ticks - done, until_change) if done < ticks else done
 
     def notice_change(self) -> bool:
-        """Pass the turns of the motors that drive no wheel to `on_turns`, unless they continue as passed before.
+        """Report the turns of motors that drive no wheel to `on_turns`, then call `Motion.notice_change`.
 
-        After that, do and return the same as `Motion.notice_change`.
+        A report has the position and the speed of each of these motors. None is made while all of them move on at the
+        speeds of the last report.
+
+        Returns:
+            The result of `Motion.notice_change`: whether a driver notices a change.
         """
         self._report_turns()
         return super().notice_change()

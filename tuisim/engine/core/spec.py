@@ -139,9 +139,11 @@ SENSOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
 
 @spec
 class MotorSpec(Spec):
-    """A motor on a port. Its end stops are in degrees of the motor from its position at the start; None is no stop.
+    """A motor on a port, which may have end stops.
 
-    There is no value for a motor that is mounted the other way round: its stops just are at other degrees.
+    An end stop is an angle of the motor in degrees, relative to its position at the start; None is no end stop.
+
+    A motor that is mounted the other way round needs no value of its own: only the angles of its end stops differ.
     """
 
     port: str = choice((*OUTPUT_PORTS, NO_PORT, *HUB_PORTS), what="port")
@@ -514,7 +516,7 @@ class RobotSpec(Spec):
         )
 
     def list_sensors(self, mount: Mount) -> tuple[SensorSpec, ...]:
-        """Return the robot's sensors in the field that a mount names; empty if it has none."""
+        """Return the robot's sensors of one class, given by its `Mount`; empty if the robot has no such sensor."""
         sensors = getattr(self, mount.field)
         if mount.many:
             return tuple(sensors)

@@ -175,7 +175,10 @@ class Spec:
         """
 
     def name_key(self, name: str) -> str:
-        """Return the name of a value for error messages, after the spec's own key if it has one: `noise.light`."""
+        """Return the name of a value for error messages: `noise.light` for `light`, if the key of the spec is `noise`.
+
+        In a spec without a key, return the name unchanged.
+        """
         return f"{self.KEY}.{name}" if self.KEY else name
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
@@ -230,5 +233,8 @@ class Spec:
     ),
 )
 def spec(cls: type[_Spec]) -> type[_Spec]:
-    """Turn a class into a spec, and return it: a subclass of `Spec` whose fields describe values."""
+    """Decorate a subclass of `Spec`: make its annotated attributes the fields of a data class, and return the class.
+
+    Each attribute is built with a function of this module, such as `whole` or `choice`, which says what is allowed.
+    """
     return dataclass(init=False, repr=False, eq=False, slots=True)(cls)

@@ -43,7 +43,7 @@ class Instant:
     """How many degrees the program counts for one of each motor; empty if this was not requested."""
 
     def get_scale(self, number: int) -> float:
-        """Return how many degrees the program counts while a motor turns by one.
+        """Return how many degrees the program counts while a motor turns by one degree.
 
         `number` is the motor's number among all motors.
         """

@@ -391,8 +391,8 @@ class Choice(Value):
     """A value that is one of a few texts or numbers.
 
     Args:
-        choices: All of them; an enumeration for its members.
-        what: What one of them is, in errors.
+        choices: All allowed texts or numbers, or an enumeration, whose members are then the choices.
+        what: What the value is, for errors, such as `port`.
         metavar: The placeholder in the help; by default a list of all choices.
     """
 
@@ -498,9 +498,9 @@ class Part(Value):
 
     Args:
         of: The class of the spec.
-        values: Its values by name, for a frozen class that is not a spec.
-        key: Its name in a file, if it differs from the field's.
-        standard: Whether it is standard equipment of a robot: panels and files have a place of its own for it.
+        values: The values in the part, by name, for a frozen class that is not a spec.
+        key: The name of the part in a file, if it differs from the field's.
+        standard: Whether the part is standard equipment of a robot, for which panels and files have a fixed place.
     """
 
     __slots__ = ("key", "of", "standard", "values")
@@ -536,7 +536,7 @@ class Part(Value):
 class NamedPart(Part):
     """A value that is a spec of numbers, which users give by a name, number by number, or both.
 
-    A name, such as `typical`, stands for those values of the numbers that have this name; `none` stands for their
+    A name, such as `typical`, sets each number to its own value of that name; `none` sets all of them to their
     defaults. As text the spec is a name, followed by the numbers that differ, such as `typical gyro_dps=0`.
     """
 

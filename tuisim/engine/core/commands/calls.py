@@ -77,10 +77,10 @@ class SimulationCommand(NamedTuple):
 
 
 def find_index(numbers: Values, place: int, count: int) -> int:
-    """Return `numbers[place]` as an index from 0 to below `count`.
+    """Return the value of a command at the position `place`, which has to be an index below `count`.
 
     Raises:
-        ValueError: the number is not whole, or out of this range.
+        ValueError: the value is not a whole number from 0 to `count` - 1.
     """
     index = int(numbers[place])
     if not 0 <= index < count or index != numbers[place]:

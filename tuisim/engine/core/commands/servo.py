@@ -77,9 +77,8 @@ def run_control(motor: ServoMotor, time_ns: int, values: Values) -> None:
         motor: The motor.
         time_ns: When the program gives the command.
         values: The speed in counts per second, the acceleration in counts per second squared, the duration in
-            microseconds
-        (NaN: endless), and an `Ending`. If the `Ending` is NaN, only the controller changes; otherwise the motor begins
-        to follow the controller.
+            microseconds (NaN: endless), and an `Ending`. If the `Ending` is NaN, only the controller changes; otherwise
+            the motor begins to follow the controller.
     """
     rate, acceleration, time_us, ending = values
     motor.control.run(
@@ -96,8 +95,7 @@ def move(motor: ServoMotor, time_ns: int, values: Values) -> None:
         motor: The motor.
         time_ns: When the program gives the command.
         values: The target in counts, the speed in counts per second, the acceleration in counts per second squared, and
-            1
-        if the target is relative to the present position, else 0.
+            1 if the target is relative to the present position, else 0.
     """
     *numbers, relative = values
     motor.control.move_to_position(

@@ -78,10 +78,10 @@ def set_backwards(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
 
 
 def set_roll(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
-    """Set in which direction the wheel rolls: 1 as the encoder counts, -1 the opposite direction.
+    """Set whether the wheel rolls in the direction in which the encoder counts (1) or in the opposite one (-1).
 
     Raises:
-        ValueError: the value is neither.
+        ValueError: the value is not 1 or -1.
     """
     if abs(values[0]) != 1.0:
         raise ValueError(f"{values[0]!r} is not a direction")
@@ -89,9 +89,10 @@ def set_roll(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
 
 
 def set_polarity(_motor: Any, _time_ns: int, _values: Values) -> None:
-    """Do nothing: the record of commands shows the sign with which the program counts degrees from now on.
+    """Do nothing: this command does not change the simulated motor.
 
-    The value is 0 if the sign is that of the motor, and 1 if it is the opposite one.
+    It is recorded because it tells with which sign the program counts degrees from now on. The value is 0 for the sign
+    of the motor, and 1 for the opposite sign.
     """
 
 
@@ -100,11 +101,14 @@ SCALING_CALLS = (Call.SET_UP, Call.SET_POLARITY)
 
 
 def compute_scale(call: int, values: Sequence[float]) -> float:
-    """Return the number of degrees that a program counts while a motor turns by one; 0 if the command is damaged.
+    """Return how many degrees a program counts while a motor turns by one degree, such as -1 for a reversed motor.
 
     Args:
         call: The command that set this number, one of `SCALING_CALLS`.
         values: The values of the command.
+
+    Returns:
+        The number; 0 if the command is damaged.
     """
     if call == Call.SET_POLARITY:
         return 1 - 2 * values[0]

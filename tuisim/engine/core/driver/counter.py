@@ -215,13 +215,16 @@ class Counter:
         return speed_dps
 
     def _search(self, time: int) -> tuple[int, int]:
-        """Return a change of the count, in half degrees, and the ticks of the clock in which it happened.
+        """Return the change of the count, and the time that it took, from which the driver computes the motor's speed.
 
-        The driver computes its speed from them. It looks back over more and more changes, until they took at least
-        `MIN_SPAN`. If the count was the same then as it is now, the result is 0 and 1.
+        The driver looks back over more and more changes, until they took at least `MIN_SPAN`.
 
         Args:
             time: Now, in ticks of the clock.
+
+        Returns:
+            The change in half degrees, and the time in ticks of the clock; 0 and 1 as soon as the driver comes to an
+            earlier count that equals the present one.
         """
         turned = span = 0
         straight = self._straight

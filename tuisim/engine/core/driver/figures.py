@@ -30,7 +30,7 @@ PLANT_SOURCES = {
 
 
 class Figure(NamedTuple):
-    """A constant of the large and of the medium motor, with its source."""
+    """A constant of the EV3 motors, with its values for the large and the medium motor and their source."""
 
     name: str
     large: float

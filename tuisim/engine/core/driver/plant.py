@@ -65,7 +65,8 @@ MEDIUM = PlantSpec(
 class Circuit:
     """Values that are computed once from a motor's constants and its battery, such as the steady speed.
 
-    One object describes a motor that has a duty, where 0 brakes; another one describes a motor that coasts.
+    A motor has two such objects: one for the time in which it has a duty (0 brakes it), one for the time in which it
+    coasts.
     """
 
     dps_per_percent: float

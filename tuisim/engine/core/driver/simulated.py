@@ -351,7 +351,10 @@ class SimulatedMotor(DriverMotor):
         return Glide([even.roll_deg] * ticks, counts_deg)
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Return how the motor moves in several ticks of constant speed; the caller sets `position_deg` afterwards."""
+        """Return the motor's motion over several ticks at constant speed.
+
+        `position_deg` is not changed: the caller sets it after that.
+        """
         self._tick += ticks
         turned_deg = self._cruise_dps / self._hz
         if not turned_deg:
@@ -372,8 +375,8 @@ class SimulatedMotor(DriverMotor):
 
         Args:
             before: The motor's `state` before the tick.
-            turned_deg: How far the wheel would have turned in the tick.
-            part: The part of the tick that was possible, below 1.
+            turned_deg: How far the wheel would have turned in the tick without the obstacle.
+            part: The fraction of the tick's motion that the obstacle allowed, below 1.
         """
         if turned_deg == 0.0:
             return
@@ -395,7 +398,7 @@ class SimulatedMotor(DriverMotor):
 
     @property
     def tendency_deg(self) -> float:
-        """Rough estimate of how far the wheel is about to turn in the next tick; its sign is right."""
+        """Rough estimate of the wheel's turn in the next tick, in degrees. Only its sign is reliable."""
         axle = self.axle
         if axle.speed_dps:
             return axle.speed_dps / self._hz

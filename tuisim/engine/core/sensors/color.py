@@ -225,7 +225,10 @@ EVEN = Response(0, WHITE)
 
 
 def find_response(spec: ColorSensorSpec, profile: ProfileSpec) -> Response:
-    """Return the response of a sensor, computed from its percentages of black and white, which are rounded up."""
+    """Return the response of a colour sensor: how it converts a channel of the mat to its own value.
+
+    It follows from the percentages that the sensor shows on black and on white: its own, or else those of the profile.
+    """
     white = profile.white_percent if spec.white_percent is None else spec.white_percent
     black = profile.black_percent if spec.black_percent is None else spec.black_percent
     dark = ceil(WHITE * black / 100)

@@ -39,8 +39,8 @@ def _measure_way_mm(
     """Return how far infrared light travels before it meets a surface, at most `most_mm`.
 
     Args:
-        place: Where it begins: x and y in mm.
-        angle_deg: Its direction in the world.
+        place: Where the light begins: x and y in mm.
+        angle_deg: The direction of the light in the world.
         world: The walls and obstacles.
         most_mm: The limit.
     """

@@ -46,14 +46,13 @@ class Ending(IntEnum):
 def _splice(
     start: Segment, spliced: Segment | None, build: Callable[[Segment], Trajectory]
 ) -> Trajectory:
-    """Return the trajectory that `build` makes for a motion from a start.
+    """Return a new trajectory, which begins earlier if the motion goes on with the same acceleration as before.
 
     Args:
-        start: Where, when and how fast the motion begins.
-        spliced: The segment of the previous trajectory that is running at the start; None for none. If the new
-            trajectory
-        would go on with the same acceleration, it is built from the begin of this segment instead.
-        build: Returns the trajectory from a start.
+        start: Where, when and how fast the new motion begins.
+        spliced: The segment of the previous trajectory that is running at the start; None if there is none. If the new
+            trajectory has the same acceleration, it begins where this segment began.
+        build: Takes a start, and returns the trajectory from it.
     """
     trajectory = build(start)
     if spliced is None or trajectory.first.acceleration != start.acceleration:
@@ -69,8 +68,9 @@ class Controller:
 
     Args:
         settings: The limits, gains and tolerances, in counts.
-        slips: Whether a new motion that follows a blocked one begins where the robot is, not where it should be. The
-        wheels of a real robot that pushes a wall slip, and their encoders count on.
+        slips: Whether a new motion after a blocked one begins at the measured position, not at the one that the blocked
+            motion should have reached. On a real robot both are equal: wheels that push it against a wall slip, and
+            their encoders count on.
     """
 
     __slots__ = (
@@ -195,9 +195,10 @@ class Controller:
         self._begin(trajectory, timed=False)
 
     def match_pace(self, other: Controller) -> None:
-        """Replace the trajectory by that of another controller, scaled to its own length: both then take the same time.
+        """Change this controller's trajectory so that it takes the same time as that of another controller.
 
-        If one of the two controllers has no trajectory, nothing changes.
+        It becomes a copy of the other trajectory, scaled to the distance of the present one. If one of the two
+        controllers has no trajectory, nothing changes.
         """
         if self.trajectory is not None and other.trajectory is not None:
             ours = self.trajectory
@@ -276,9 +277,10 @@ class Controller:
         self._goal = end._replace(rate=even.rate)
 
     def _limit(self, acceleration: int) -> int:
-        """Return the acceleration with which a motion is planned, in counts per second squared, without its sign.
+        """Return the magnitude of the acceleration with which a motion is planned, in counts per second squared.
 
-        It is the given one; firmware without a speed window uses at most the acceleration in the settings.
+        That is the magnitude of `acceleration`. Firmware without a speed window also limits it to the acceleration in
+        the settings.
         """
         if self.settings.speed_window_ms:
             return abs(acceleration)
@@ -305,10 +307,14 @@ class Controller:
         )
 
     def _find_start(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
-        """Return where a new trajectory begins, and the segment that is running then, if that changes the speed.
+        """Return where a new trajectory begins, and the segment of the present trajectory that is running there.
 
-        The new trajectory begins where the running one is now. Without one, or if the robot's wheels have slipped, it
-        begins where `measured` says that the motion is, and the segment is None.
+        The new trajectory begins at the present point of the present trajectory. If there is none, or if the robot's
+        wheels have slipped, it begins at the point that `measured` returns.
+
+        Returns:
+            The start, and the running segment; None instead of a segment if none is running, or if it has a constant
+            speed.
         """
         if self.trajectory is None or (self._slips and self._behind_milli):
             return measured(now_us), None
@@ -331,7 +337,7 @@ class Controller:
     # Following
 
     def note_lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
-        """React to a motion that lags so far behind its trajectory that the controller's power cannot keep it there.
+        """React to a motion that lags so far behind its trajectory that even full power cannot make it catch up.
 
         A motion without a target position gives up the missing distance; any other motion pauses its trajectory.
 

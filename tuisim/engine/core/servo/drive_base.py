@@ -394,7 +394,7 @@ class DriveBase:
         return (total + difference) / 2 if motor is self.left else (total - difference) / 2
 
     def find_segment_end_us(self, now_us: int) -> int | None:
-        """Return the time in µs at which the first current segment of the two trajectories ends; None if none ends.
+        """Return the next time in µs at which a segment of the two trajectories ends; None if none of them ends.
 
         While the drive base moves by the gyro, it is the next microsecond: the gyro corrects the motors at every tick.
         """

@@ -79,13 +79,15 @@ class Guide(Protocol):
 
 
 class ServoMotor:
-    """One motor with its encoder, as the Pybricks firmware moves it. At first it is at rest, and nothing controls it.
+    """One motor with its encoder, as the Pybricks firmware moves it.
+
+    At first the motor is at rest, and no controller moves it.
 
     Args:
         tick_hz: Ticks per second.
         law: Which firmware moves it.
         kind: One of `MOTOR_KINDS`.
-        axle: The electric motor that turns it while nothing controls it.
+        axle: A model of the electric motor, which turns it while no controller does.
     """
 
     __slots__ = (
@@ -165,7 +167,10 @@ class ServoMotor:
         return round(self.speed_dps * self.sign * COUNTS_PER_DEG)
 
     def find_milli(self, now_us: int) -> int:
-        """Return the motor's position at a time after the last tick, in thousandths of a count, without obstacles."""
+        """Return the position that the motor has at a time after the last tick if no obstacle stops it.
+
+        It is in thousandths of a count.
+        """
         if self._guide is not None and self._course is not None:
             return self._guide.find_target(now_us, self) // 2
         return self.milli
@@ -212,7 +217,7 @@ class ServoMotor:
     def set_up(
         self, now_us: int, sign: int, gear_ratio: float, *, keeps_angle: bool = False
     ) -> None:
-        """Reset the motor, as for a new object of a program: it coasts.
+        """Reset the motor and let it coast, as when a program creates a new `Motor` for its port.
 
         Args:
             now_us: The present time.
@@ -326,12 +331,12 @@ class ServoMotor:
         return self.mode, self.sign, 0.0, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which an obstacle stopped the wheel.
+        """Undo the motion of the last tick beyond the point at which an obstacle stopped the wheel.
 
         Args:
             before: The motor's `state` before the tick.
-            turned_deg: How far the wheel would have turned in the tick.
-            part: The part of the tick that was possible, below 1.
+            turned_deg: How far the wheel would have turned in the tick without the obstacle.
+            part: The fraction of the tick's motion that the obstacle allowed, below 1.
         """
         if turned_deg == 0.0:
             return
@@ -373,7 +378,10 @@ class ServoMotor:
 
     @property
     def ramping_ticks(self) -> int:
-        """Number of ticks that `count_quiet_ticks` last returned: a servo motor always glides along its trajectory."""
+        """The last result of `count_quiet_ticks`, 0 while the motor is stopped.
+
+        So a motor that follows a trajectory always counts as one whose speed still changes.
+        """
         return 0 if self.mode == STOPPED else self._quiet
 
     def count_quiet_ticks(self, tick: int) -> int:
@@ -403,7 +411,7 @@ class ServoMotor:
         return next_deg <= self._fastest_deg and fastest_dps * self._tick_s <= self._fastest_deg
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Return how the motor moves in several ticks at rest; the caller sets `position_deg` afterwards."""
+        """Return the motion of a motor at rest over several ticks: no rotation, and always the same position."""
         return EvenGlide(0.0, repeat(self.position_deg, ticks))
 
     def glide(self, ticks: int) -> Glide:
