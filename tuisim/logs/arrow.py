@@ -36,7 +36,11 @@ def build_text_array(texts: Sequence[str]) -> pa.Array:
 
 
 def build_table(columns: Mapping[str, Any]) -> pa.Table:
-    """Return columns, lists of texts or arrays of numbers, as an Arrow table; NaN becomes null, as for a frame."""
+    """Return columns as an Arrow table; NaN becomes null, as it does when a frame is converted.
+
+    Args:
+        columns: The columns by name, each a list of texts or an array of numbers.
+    """
     # A name in a damaged run may contain surrogates, which UTF-8 cannot encode.
     names = [name.encode("utf-8", "replace").decode() for name in columns]
     return pa.table([_build_column(cells) for cells in columns.values()], names=names)
@@ -91,7 +95,7 @@ def convert_to_texts(column: pa.ChunkedArray) -> pa.ChunkedArray:
 
 
 def match_text(column: pa.ChunkedArray, text: str) -> BoolArray:
-    """Return for each cell whether it contains a text, in upper or lower case, shape (n,)."""
+    """Return for each cell whether it contains a text, shape (n,); upper and lower case are the same."""
     return _convert_mask(pc.match_substring(convert_to_texts(column), text, ignore_case=True))
 
 
@@ -127,7 +131,7 @@ def _convert_mask(truths: Any) -> BoolArray:
 
 
 def sort_places(column: pa.ChunkedArray, descending: bool) -> IntArray:
-    """Return the indices of a column's cells in the order of the sorted cells, shape (n,)."""
+    """Return the indices, shape (n,), that put the cells of a column in order."""
     column = convert_to_texts(column) if pa.types.is_dictionary(column.type) else column
     way = "descending" if descending else "ascending"
     places: IntArray = pc.sort_indices(column, sort_keys=[("", way)]).to_numpy().astype(np.int64)

@@ -90,7 +90,10 @@ class BandReport:
 
     @cached_property
     def has_true_levels(self) -> bool:
-        """Whether some true levels differ from the measured levels, as noise was clamped at an end of the scale."""
+        """Whether the true level of any band differs from its measured level.
+
+        They differ near the ends of the scale: noise is cut off there, so the mean of the samples is not the level.
+        """
         return bool(np.any(self.columns["true_level"] != self.columns["level"]))
 
     @cached_property
@@ -158,10 +161,10 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
 def _measure_places(
     driven: FloatArray | None, values: FloatArray, levels: Levels
 ) -> dict[str, FloatArray]:
-    """Return the columns `start_mm`, `stop_mm` and `width_mm` of bands, as in `Band`.
+    """Return where bands begin and end, and how wide they are: the columns `start_mm`, `stop_mm` and `width_mm`.
 
     Args:
-        driven: The distance driven at each sample in mm; None without positions: then all values are NaN.
+        driven: The distance driven at each sample in mm; with None, as for a log without positions, all values are NaN.
         values: The samples.
         levels: The bands.
     """
@@ -295,16 +298,18 @@ def _find_edges(
     """Return the position in mm at which samples pass the middle between each level and the next, shape (n - 1,).
 
     With noise, samples may pass the middle several times: the edge is then midway between the first and the last time.
+    The
+    position is NaN if samples of a third level lie between two levels.
+
+    The edges are searched in pairs of neighbouring samples, from the last sample of a level to the first of the next
+    one.
 
     Args:
         values: Samples, shape (m,).
         driven_mm: The distance driven at each of them, shape (m,).
         levels: The n levels of the samples.
-        level: The level before each pair of neighbouring samples between two levels, shape (k,).
-        row: The first sample of each of these pairs, shape (k,).
-
-    Returns:
-        NaN where samples of a third level lie between two levels.
+        level: For each of the k pairs, the index of the level before it.
+        row: For each of the k pairs, the index of its first sample.
     """
     middles = (levels.true_level[:-1] + levels.true_level[1:]) / 2.0
     apart = values[row] - middles[level]
@@ -325,9 +330,9 @@ def _find_edges(
 
 
 def _measure_reach(levels: Levels) -> FloatArray:
-    """Return for each two neighbouring levels how far a sample on the edge between them may be from their middle.
+    """Return for each level and the next how far a sample of their edge can be from the middle of both, shape (n - 1,).
 
-    A sample that is farther away belongs to a third level. The shape is (n - 1,).
+    A sample between the two levels that is farther away belongs to a third level.
     """
     spread = np.maximum(levels.spread[:-1], levels.spread[1:])
     return _FAR_OF_STEP * np.abs(np.diff(levels.true_level)) + _FAR_OF_SPREAD * spread

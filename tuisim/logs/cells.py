@@ -201,9 +201,11 @@ class TypedColumns:
         list_rows: Callable[[], Sequence[int]],
         separator: str,
     ) -> pa.Table:
-        """Return a table in which each column of texts that this reader takes for numbers or times has such values.
+        """Return columns of texts as a table: the texts become numbers or times in each column that has such values.
 
-        A column whose first cells are neither stays as it is. A cell that its column's type does not allow is null.
+        The first cells of a column decide this. If they are texts of another kind, the column stays as it is. A cell
+        that does
+        not fit the type of its column becomes null.
 
         Args:
             columns: The columns by name.
@@ -267,7 +269,10 @@ class TypedColumns:
 
 
 def _choose_text_kind(cells: pa.Array) -> pa.DataType:
-    """Return the type for a column of texts: `_CODED` if the given first cells often repeat, else strings."""
+    """Return the type for a column of texts, judged by its first cells.
+
+    It is `_CODED`, which stores equal texts once, if the cells often repeat; otherwise it is that of plain strings.
+    """
     count = len(cells)
     often = count > _MIN_CELLS and _MIN_REPEATED * pc.count_distinct(cells).as_py() <= count
     return _CODED if often else pa.string()

@@ -19,7 +19,7 @@ WORDS = {"unit": tuple(SECONDS), "separator": tuple(SIGNS), "decimal": DECIMAL_S
 
 @dataclass(frozen=True, slots=True)
 class ReadChoices:
-    """The user's choices for reading a log; choices that are not made follow from the file.
+    """How the user wants a log to be read; what the user has not chosen is found in the file.
 
     Raises:
         LogError: there is no such unit, separator or decimal sign.

@@ -69,7 +69,7 @@ UNIT_NAMES = {seconds: words[-1] for seconds, words in _UNIT_WORDS_S.items()}
 
 
 class TimeName(NamedTuple):
-    """The name of a column, split into a word and a unit of time."""
+    """The name of a column, split into a word and a unit of time: `Time (ms)` into `time` and 0.001."""
 
     base: str
     """Lower case, without its unit and without surrounding punctuation."""
@@ -78,7 +78,12 @@ class TimeName(NamedTuple):
 
 
 def parse_time_name(name: str) -> TimeName:
-    """Return a column's name split into a word and a unit of time; of a name such as `ms`, both are the unit."""
+    """Return a column's name split into a word and a unit of time in seconds.
+
+    `Time (ms)` becomes `time` and 0.001. If the whole name is a unit, such as `ms`, it is the word as well. A name
+    without a
+    unit has the unit None.
+    """
     text = name.strip().lower()
     match = _UNIT.search(text, max(0, len(text) - _LONGEST_UNIT))
     unit_s = None
@@ -282,9 +287,12 @@ def _list_moments(table: pa.Table) -> list[str]:
 def guess_columns(table: pa.Table) -> Layout:
     """Return the roles of the columns as guessed from their names and types.
 
-    The time is the first that exists of these: the column whose name most certainly means a time; a column with a type
-    for times; in a table without headings, the first column, if its numbers rise; the number of the row. A text column
-    with a known name beside a column `value` has the names of variables; else each other numeric column is a variable.
+    The time is the first of these that the table has: the column whose name most certainly means a time; a column of
+    dates or times; in a table without headings, the first column, if its numbers rise; the number of the row.
+
+    A table may name the variable of each row in a text column, such as `variable`, and have a column `value` beside it.
+    In
+    any other table, each further numeric column is a variable.
     """
     named = _find_named_time(table)
     time = named or _find_rising(table)
@@ -307,7 +315,7 @@ def guess_columns(table: pa.Table) -> Layout:
 
 
 def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataType], bool]) -> str:
-    """Return the column that has the first of some names, in upper or lower case, and a fitting type.
+    """Return the name of the first column that has one of some names, in upper or lower case, and a fitting type.
 
     The result is empty if there is no such column.
 
@@ -339,7 +347,10 @@ def _set_time_unit(layout: Layout, table: pa.Table, unit_s: float | None = None)
 
 
 def _find_named_time(table: pa.Table) -> str:
-    """Return the name of the column that is the time by its name or type; empty if there is none."""
+    """Return the name of the column that is the time, judged by names and types, such as a column of dates.
+
+    The result is empty if there is none.
+    """
     moments = _list_moments(table)
     numbers = list_numeric_columns(table.schema)
     usable = [n for n in (*moments, *numbers) if table.column(n).null_count < table.num_rows]
@@ -364,9 +375,9 @@ def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:
 
 
 def find_unread_time(table: pa.Table, layout: Layout) -> str:
-    """Return the text column with the name of a time, if no column could be read as the time.
+    """Return the name of a text column that should be the time but cannot be read as one, such as `time` with words.
 
-    Otherwise the text is empty.
+    The result is empty if there is no such column, or if another column is the time.
     """
     if layout.time:
         return ""

@@ -70,8 +70,9 @@ def is_clock(cell: str) -> bool:
 def normalize_dates(texts: Any) -> Any:
     """Return texts in which each date is year-month-day, without the blanks and brackets around it.
 
-    In dates with the year at the end, the day is first, unless a date among the texts shows that the month is. Texts
-    that are no dates may change, too.
+    A date with the year at its end, such as 03/04/2024, is read with the day first. If another date among the texts has
+    a
+    second number above 12, all are read with the month first. Texts that are no dates may change, too.
     """
     texts = pc.utf8_trim_whitespace(texts)
     if not pc.any(pc.invert(pc.match_substring_regex(texts, _USUAL))).as_py():
@@ -83,7 +84,7 @@ def normalize_dates(texts: Any) -> Any:
 
 
 def order_is_guessed(texts: Any) -> bool:
-    """Return whether dates with the year at the end leave open if the day or the month is first."""
+    """Return whether dates such as 03/04/2024 leave open whether the day or the month is first."""
     texts = _replace_patterns(texts, _REWRITTEN[:1])
     first, second = _find_largest_parts(texts)
     if not 0 < max(first, second) <= _LAST_MONTH:

@@ -80,12 +80,14 @@ def parse_definition(text: str) -> Definition:
 def compute_derived(log: Log, definition: Definition, otherwise: str) -> list[Series]:
     """Return the series of a derived variable, one for each run that has the first variable of its expression.
 
-    Variables sampled at other times are forward-filled; columns are read in the row of each sample.
+    The result has a value at each sample of this first variable. Other variables have the value of their last sample
+    there,
+    and columns the value in the same row.
 
     Args:
         log: The log.
         definition: The definition of the variable.
-        otherwise: The variable at whose samples an expression without variables is computed.
+        otherwise: The variable that takes the place of the first variable if the expression has no variables.
 
     Raises:
         LogError: the expression is invalid, or names an unknown variable; or the name exists already.
@@ -156,9 +158,9 @@ def _list_names(log: Log) -> list[str]:
 
 
 def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
-    """Return the columns that can be computed for a log of telemetry, by name: functions that return their values.
+    """Return the columns that a log of telemetry lacks but that can be computed, by name.
 
-    The result is empty for other logs.
+    Each is a function that returns the values of the column. The result is empty for other logs.
     """
     if (spec := read_spec(log.metadata)) is None:
         return {}
@@ -174,14 +176,14 @@ def list_expression_words(log: Log) -> Iterator[str]:
 
 
 def find_named_columns(log: Log, text: str) -> list[str]:
-    """Return the names in a text of columns that can be computed for a log, see `find_computed_columns`."""
+    """Return those names of computed columns that a text contains; for the columns, see `find_computed_columns`."""
     if not text.strip():
         return []
     return [name for name in find_computed_columns(log) if re.search(rf"\b{name}\b", text)]
 
 
 def add_named_columns(log: Log, text: str) -> Log:
-    """Return a log with the computed columns that a text names, see `find_named_columns`."""
+    """Return a log with all computed columns whose names a text contains, see `find_computed_columns`."""
     for name in find_named_columns(log, text):
         log = log.add_derived(name, compute_derived(log, Definition(name, name), log.names[0]))
         # In a damaged file, the units may be of another type.

@@ -34,10 +34,11 @@ _MIN_LEVELS = 2 / 3
 
 
 def find_edges(plateaus: PlateauArray) -> BoolArray:
-    """Return for each plateau whether it is only a step of an edge between two others.
+    """Return for each plateau whether it is no level of its own, but only a step on an edge between two others.
 
-    An edge passes from one plateau to another in one direction. A long plateau always ends it: more than
-    `NEAR_SAMPLES`, which show whether it drifts.
+    An edge rises or falls all the time, from one plateau to another. A plateau of more than `NEAR_SAMPLES` samples is
+    never
+    a step: that many samples show whether it is level.
     """
     level = plateaus["level"]
     lengths = count_samples(read_spans(plateaus))
@@ -76,13 +77,15 @@ def find_ramps(signal: Signal, plateaus: PlateauArray) -> BoolArray:
 def find_hidden_edges(
     signal: Signal, plateaus: PlateauArray, cut: Pieces, owners: IntArray
 ) -> BoolArray:
-    """Return for each plateau whether it is levels with edges: more samples in a row are far off than strays may be.
+    """Return for each plateau whether it consists of several levels with the edges between them.
+
+    This is so if more samples in a row are far from its level than strays can be.
 
     Args:
         signal: The log.
         plateaus: Its plateaus, without gaps between them.
-        cut: The pieces from which they were joined.
-        owners: The index of the plateau of each piece.
+        cut: The pieces that were joined to these plateaus.
+        owners: For each piece, the index of its plateau.
     """
     lengths = count_samples(cut)
     long = np.bincount(owners, lengths * (lengths >= NEAR_SAMPLES), len(plateaus))

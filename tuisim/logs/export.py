@@ -38,11 +38,11 @@ def check_target(path: str | Path, others: Sequence[str] = ()) -> Path:
 
     Args:
         path: The file.
-        others: Further suffixes that the caller writes itself, for the hint.
+        others: Suffixes of further formats, which the caller writes itself; an error about the suffix lists them, too.
 
     Raises:
-        ExportError: unknown suffix, no such folder, a folder that cannot be written, or an
-            existing target that may not be replaced.
+        ExportError: unknown suffix, no such folder, a folder that cannot be written, or an existing target that may not
+            be replaced.
     """
     target = Path(path)
     exporter = EXPORTERS.get(target.suffix.lower())
@@ -257,7 +257,10 @@ def is_companion(path: Path) -> bool:
 
 
 def find_companion(path: Path) -> Path:
-    """Return the path of the companion file with the metadata of a file whose format has none."""
+    """Return the path of the companion file that has the metadata of a table, such as `log.csv.json` for `log.csv`.
+
+    Formats such as CSV cannot store metadata themselves.
+    """
     return path.with_name(path.name + ".json")
 
 

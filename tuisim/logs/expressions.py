@@ -161,7 +161,7 @@ def _parse(source: str, text: str) -> ast.Expression:
 
 
 class _Evaluation:
-    """The evaluation of one expression.
+    """Evaluates one expression for all rows of a log.
 
     Args:
         columns: The values of each column, by name.

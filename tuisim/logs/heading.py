@@ -164,7 +164,7 @@ def find_heading(
 
 
 def _skip_to(lines: Sequence[tuple[int, str]], row: int) -> Sequence[tuple[int, str]]:
-    """Return the lines from the one with a number on.
+    """Return the lines of a file from a line number on.
 
     Args:
         lines: Lines, each with its number in the file.
@@ -200,7 +200,7 @@ def _split_comments(
 
 
 def _read_comment(comment: tuple[int, str], below: _Line, separator: str) -> _Line | None:
-    """Return a comment as the line with the names of the columns.
+    """Return the comment above a table as the heading with the names of the columns, such as `# time, distance`.
 
     The result is None if the comment has numbers, or not the same number of cells as the line below it.
 
@@ -357,9 +357,9 @@ def _find_runs(table: Sequence[_Line]) -> Iterator[_Run]:
 
 
 def _merge_kinds(kinds: str, others: str) -> str | None:
-    """Return the common kinds of the cells of two lines, where an empty cell can be of any kind.
+    """Return the kinds of the cells that two lines have in common, such as `tn` for `t-` and `tn`; None if they differ.
 
-    The result is None if they differ.
+    An empty cell, `-`, can be of any kind.
     """
     pairs = list(zip(kinds, others, strict=False))
     if len(kinds) != len(others) or any(a != b and "-" not in (a, b) for a, b in pairs):
@@ -430,7 +430,14 @@ def _find_names(
 
 
 def _join_unit(name: str, unit: str) -> str:
-    """Return a column's name with the unit from the next row in brackets, unless the name has a unit itself."""
+    """Return the name of a column with a unit in brackets after it, such as `distance [mm]`.
+
+    The name is unchanged if it has a unit already, or if the cell below it has none.
+
+    Args:
+        name: The name.
+        unit: The cell below the name, in which some files have the unit.
+    """
     name = name.strip()
     unit = unit.strip(" ()[]")
     has_unit = (
@@ -447,7 +454,7 @@ def _has_units(cells: Sequence[str], names: _Line) -> bool:
 
 
 def _has_names(rows: Sequence[_Line]) -> bool:
-    """Return whether the first of some rows has the names of the columns, although its cells are of the same kinds."""
+    """Return whether the first of some rows has the names of the columns, although it looks like the rows below it."""
     first = rows[0]
     if first.kinds[0] == "t" and (len(rows) < 2 or rows[1].kinds[0] == "t"):
         return False
@@ -458,7 +465,9 @@ def _has_names(rows: Sequence[_Line]) -> bool:
 
 
 def _number_columns(cells: Sequence[str], notes: Notes) -> list[str]:
-    """Return names for columns without a heading: one `date`, one `time`, the others `column` with a number.
+    """Return names for columns without a heading, such as `date`, `time`, `column 3`.
+
+    The first date and the first time get these names.
 
     Args:
         cells: The cells of the first row.

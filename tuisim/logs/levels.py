@@ -31,7 +31,7 @@ _PLAIN_NAMES = MappingProxyType({0: "black", 128: "grey", 255: "white", 211: "li
 
 @dataclass(frozen=True, slots=True)
 class Grey:
-    """A named grey of the course's mats."""
+    """A grey that the printed mats have, with its name."""
 
     name: str
     percent: float
@@ -59,9 +59,11 @@ def find_nearest_greys(percents: FloatArray) -> list[Grey | None]:
 def undo_clamping(percents: FloatArray, noise: int) -> FloatArray:
     """Return the true levels in percent from the means of noisy pixels.
 
-    Noise is uniform within ±`noise`, and values outside 0 to 255 are clamped, so that
-    near both ends the mean is too far inside. The mean of a pixel of value 255 - u, u
-    below the noise, is 255 - (noise + u)² / (4 noise).
+    Noise changes a pixel by at most ±`noise`, and a value outside 0 to 255 is set to the nearest end. Near an end, the
+    mean
+    of the noisy pixels is therefore too far from it. A pixel that is u below 255, with u less than the noise, has the
+    mean
+    255 - (noise + u)² / (4 noise); this function computes u from that mean.
 
     Args:
         percents: Mean levels, 0 to 100.
@@ -87,7 +89,9 @@ def _undo_end_clamping(below: FloatArray, noise: int) -> FloatArray:
 def has_light_levels(name: str, values: FloatArray) -> bool:
     """Return whether a variable can have levels of light, which greys of the mat cause.
 
-    Codes of colours, such as 6 for white, are no levels: whole numbers from 0 to 7, unless the name says level.
+    False if its name says otherwise, or if all values are whole numbers from 0 to 7: these are taken for codes of
+    colours,
+    such as 6 for white, unless the name says that they are levels.
     """
     if not can_be_light(name):
         return False

@@ -255,11 +255,12 @@ class Log:
         return log
 
     def add_derived(self, column: str, series: Sequence[Series]) -> Log:
-        """Return a log with further derived series, which replace earlier ones of that name.
+        """Return a log with the series of a further derived variable; an earlier one of the same name is replaced.
 
         Args:
-            column: Name of a new column of the table with their values; the table gets no column if a series has
-                several samples in one row.
+            column: Name of the variable, and of the new column of the table that has its values. The table gets no
+                column if a
+                series has several samples in one row.
             series: One series, or one for each run.
         """
         bare = self.drop_derived(column)

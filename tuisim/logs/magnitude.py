@@ -15,7 +15,7 @@ MAX_DRAWN = 1e300
 
 
 def find_scale(low: float, high: float) -> float:
-    """Return the power of two by which to divide numbers before their sum is computed.
+    """Return the power of two by which to divide numbers, so that sums of them do not overflow.
 
     The result is 1 unless the numbers are huge or tiny.
 

@@ -45,7 +45,7 @@ BoolArray = NDArray[np.bool_]
 
 
 class Signal(NamedTuple):
-    """The finite samples of a log, with the range and the noise with which its pieces are compared."""
+    """The finite samples of a log, with the sizes that the search for plateaus needs, such as the noise."""
 
     values: FloatArray
     """Shape (n,)."""
@@ -83,7 +83,7 @@ def group_by_length(values: FloatArray, pieces: Pieces) -> Iterator[tuple[IntArr
 
 
 def join_across_strays(signal: Signal, pieces: Pieces) -> Pieces:
-    """Return pieces of a log in which those that are separated only by a few strays are joined."""
+    """Return pieces of a log; two are joined if only a few strays separate them and the second continues the first."""
     after = np.searchsorted(pieces[:, 1], pieces[:, 0] + STRAY_SAMPLES, side="right")
     indices = np.arange(1, len(pieces))
     indices = indices[(indices < after[indices]) & (after[indices] < len(pieces))]
@@ -92,7 +92,10 @@ def join_across_strays(signal: Signal, pieces: Pieces) -> Pieces:
 
 
 def join_drifting(signal: Signal, pieces: Pieces) -> Pieces:
-    """Return pieces of a log in which neighbours of one drift, with at most a stray between them, are joined."""
+    """Return pieces of a log; neighbours are joined if they lie on one line, which may have a slope.
+
+    At most `STRAY_SAMPLES` strays may lie between the two.
+    """
     indices = 1 + np.flatnonzero(pieces[1:, 0] - pieces[:-1, 1] <= STRAY_SAMPLES)
     return _join_seams(signal, pieces, np.stack((indices, indices), axis=1), STRAY_SAMPLES + 1)
 
@@ -103,9 +106,10 @@ def _join_seams(signal: Signal, pieces: Pieces, seams: IntArray, min_samples: in
     Args:
         signal: The log.
         pieces: Its pieces.
-        seams: Shape (n, 2): for each seam the index of the left piece plus 1, and the index of the right piece. They
-            are equal if the two pieces are neighbours, and differ if strays are between them.
-        min_samples: Fewest samples on either side.
+        seams: The places where pieces may be joined, shape (n, 2). Each row has two indices of pieces: the index of the
+            left
+            piece plus 1, and the index of the right piece. Pieces from the first index to before the second are strays.
+        min_samples: Fewest samples that a piece on either side must have.
     """
     left, right = pieces[seams[:, 0] - 1], pieces[seams[:, 1]]
     firsts = np.arange(len(pieces))
@@ -125,11 +129,12 @@ def _join_seams(signal: Signal, pieces: Pieces, seams: IntArray, min_samples: in
 
 
 def _find_firsts(count: int, seams: IntArray) -> IntArray:
-    """Return for each piece the index of the first of the pieces with which it is joined.
+    """Return for each piece the index of the first of the pieces with which it is joined; its own if it is not joined.
 
     Args:
         count: The number of pieces.
-        seams: The seams to join, as for `_join_seams`; a seam inside an earlier one is ignored.
+        seams: The seams to join, as for `_join_seams`. A seam is ignored if its left piece is one of the strays of an
+            earlier seam.
     """
     firsts = np.arange(count)
     reached = -1
@@ -197,10 +202,11 @@ def _sum_products(left: FloatArray, right: FloatArray) -> FloatArray:
 def _estimate_steps(
     before: _Lines, after: _Lines, *, drifts: bool = True
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the least-squares steps between pieces of one drift, and their standard deviations in units of the noise.
+    """Return the steps between two pieces that drift alike, and the standard deviations of these steps.
 
-    Both pieces have one slope, which is estimated from both, each about its own means (analysis of covariance); the
-    step is the remaining difference of the means.
+    The steps are estimated by least squares, in units of the noise: one slope is fitted to both pieces, and the step is
+    the
+    difference that remains between their means (analysis of covariance).
 
     Args:
         before: The pieces before the steps.

@@ -96,11 +96,12 @@ Search = Callable[[FloatArray], PlateauArray]
 
 
 def _find_steps(differences: FloatArray) -> BoolArray:
-    """Return for each difference between neighbours whether it is a step, if most levels of the log are short.
+    """Return for each difference between neighbours whether it is a step, for a log whose levels are mostly short.
 
-    If more than a fifth of the differences are far larger than the differences before and after them, most levels have
-    two or three samples, without edges or strays between them. In noise, large differences follow each other. For a log
-    with longer levels, all values are False.
+    Such a log has two or three samples for most levels, without edges or strays between them: more than a fifth of the
+    differences are far larger than the differences before and after them. In noise, large differences follow each
+    other.
+    For a log with longer levels, all values are False.
     """
     calm = np.minimum(differences[1:], differences[:-1]).max(initial=0.0)
     steps = differences > FAR * calm
@@ -132,10 +133,13 @@ def find_plateaus(values: FloatArray) -> PlateauArray:
 
 
 def _find_measurements(values: FloatArray) -> IntArray:
-    """Return the first sample of each measurement; a sensor that measures seldom repeats its last value meanwhile.
+    """Return the index of the first sample of each measurement of a sensor.
 
-    The shortest runs of equal samples, without the shortest tenth, are one measurement; a run of twice their length is
-    two equal ones. If most samples are in such short runs, these are levels, and each sample is a measurement.
+    A sensor that measures more seldom than the program reads it repeats its last value, so that a measurement is a run
+    of
+    equal samples. A run of twice the usual length is two measurements with the same value. If most samples are in runs
+    of
+    the usual length, each of these is a short level instead, and each sample is a measurement.
     """
     starts = np.append(0, np.flatnonzero(np.diff(values)) + 1)
     lengths = np.diff(starts, append=len(values))
@@ -153,7 +157,11 @@ def _find_measurements(values: FloatArray) -> IntArray:
 
 
 def _search(values: FloatArray) -> tuple[Signal, PlateauArray]:
-    """Return finite values, shape (n,), at least one, with their noise, and their plateaus."""
+    """Return the noise and other sizes of a log, and its plateaus.
+
+    Args:
+        values: The samples, all finite, shape (n,); at least one.
+    """
     differences = np.abs(np.diff(values))
     is_step = _find_steps(differences)
     signal, has_noise = _measure_signal(values, differences[~is_step])
@@ -196,7 +204,7 @@ def _measure_signal(values: FloatArray, differences: FloatArray) -> tuple[Signal
 
 
 def _join_levels(signal: Signal, cut: Pieces, *, has_strays: bool) -> PlateauArray:
-    """Return pieces of a log as plateaus, joined where one continues another, but not over edges.
+    """Return pieces of a log as plateaus; pieces are joined if one continues the other, but not over an edge.
 
     Args:
         signal: The log.
@@ -237,7 +245,7 @@ def _join_pieces(signal: Signal, pieces: Pieces, *, has_strays: bool) -> Pieces:
 
 
 def _drop_short(signal: Signal, plateaus: PlateauArray, min_samples: int) -> PlateauArray:
-    """Return plateaus without ramps, edges between two others, and those of fewer than `min_samples` samples.
+    """Return plateaus without ramps, without steps on edges, and without plateaus of fewer than `min_samples` samples.
 
     A short plateau at an end of the log is kept, as the log may have cut it off.
     """
@@ -250,7 +258,10 @@ def _drop_short(signal: Signal, plateaus: PlateauArray, min_samples: int) -> Pla
 
 
 def _settle(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
-    """Return plateaus that are extended at their ends and joined where one continues another, without moving ones."""
+    """Return plateaus extended at their ends, joined where one continues another, and measured again.
+
+    Plateaus that turn out to rise or fall are left out.
+    """
     if not len(plateaus):
         return plateaus
     # After they were extended, two plateaus may be separated only by a stray, so they are joined again.
@@ -294,10 +305,12 @@ def _cut(values: FloatArray, sigma: float) -> Pieces:
 def _choose_places(scaled: FloatArray) -> IntArray:
     """Return the positions at which a log may be cut, from 0 to its length, both included.
 
-    In a long log, these are the positions where the means of the samples before and after differ most, by more than
-    `CERTAINTY` standard deviations. Each width of the means is about three times the one before it, so that one of them
-    fits into a level of any length without losing much of its weight; 24 samples show a step of 1.2 times the noise.
-    The neighbours of such a position may be cuts, too, since noise shifts it.
+    In a short log, these are all positions. In a long log, they are those where the mean of the samples before and the
+    mean
+    of the samples after differ most, by more than `CERTAINTY` standard deviations. The means are taken over 1, 3, 8 and
+    24
+    samples, so that one of these widths fits a level of any length; 24 samples show a step of 1.2 times the noise. The
+    positions beside such a position may be cuts, too, since noise shifts it.
 
     Args:
         scaled: The log in units of the noise.
@@ -382,9 +395,10 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
 
 
 def _add_ends(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
-    """Return plateaus in order; the first and the last sample of the log also become plateaus if they are a step away.
+    """Return plateaus together with the first and the last sample of the log as plateaus of one sample, in order.
 
-    A program that logs until it meets a value ends its log at the first sample of that level.
+    Such a sample is added only if it is near a plateau and clearly differs from its level: a program that logs until it
+    meets a value ends its log at the first sample of the new level.
     """
     if not len(plateaus):
         return plateaus
@@ -405,9 +419,9 @@ def _add_ends(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
 
 
 def _extend_pieces(signal: Signal, pieces: Pieces) -> Pieces:
-    """Return pieces extended at their ends: if a stray is there, by the samples of the same level beyond that stray.
+    """Return pieces extended at both ends: a sample next to a piece is added if it has the level of the piece.
 
-    A short piece is not extended at its start.
+    A few strays may lie in between. A short piece is not extended at its start.
     """
     values = signal.values
     near = FAR * signal.sigma / 2.0
@@ -425,12 +439,12 @@ def _extend_pieces(signal: Signal, pieces: Pieces) -> Pieces:
 
 
 def _extend_starts(values: FloatArray, pieces: Pieces, limits: IntArray, near: float) -> IntArray:
-    """Return the starts of pieces, extended at most to the ends of the pieces before them, `limits`.
+    """Return the starts of pieces after each piece was extended to earlier samples of its level.
 
     Args:
         values: The log.
         pieces: Its pieces.
-        limits: Where the pieces before them end.
+        limits: The earliest start of each piece, such as the end of the piece before it.
         near: By how much a sample may differ from the level of a piece.
     """
     starts: IntArray
@@ -452,7 +466,7 @@ _LOOK_S = 0.1
 def find_plateaus_in_subprocess(values: FloatArray, stopped: Callable[[], bool]) -> PlateauArray:
     """Return the plateaus of a log, as `find_plateaus` does, computed in another process.
 
-    A search in a thread would block the keys for a second.
+    A search in a thread of the app would stop it from reacting to keys for a second.
 
     Args:
         values: As for `find_plateaus`.

@@ -55,7 +55,11 @@ class Preview:
         return is_numeric(self.log.table.schema.field(column).type)
 
     def list_offers(self, name: str) -> Offers:
-        """Return the labels and values to offer for a choice in `ReadChoices`, given by its name."""
+        """Return the labels and values that the user can select for one of the choices in `ReadChoices`.
+
+        Args:
+            name: The name of the choice, such as `separator`.
+        """
         match name:
             case "header":
                 return [(f"{row}: {text[:_MAX_LINE]}", row) for row, text in self.lines]
@@ -69,9 +73,12 @@ class Preview:
                 return [(_EXAMPLES.get(word, word), word) for word in WORDS[name]]
 
     def find_word(self, name: str) -> str:
-        """Return the label of the value that was found in the file for a choice in `ReadChoices`, given by its name.
+        """Return the label of what reading the file has found for one of the choices in `ReadChoices`, such as `comma`.
 
-        The label is empty if no value was found.
+        The result is empty if nothing was found.
+
+        Args:
+            name: The name of the choice, such as `separator`.
         """
         layout = self.log.layout
         form = self.log.form

@@ -15,7 +15,7 @@ from tuisim.logs.magnitude import find_scale
 
 
 class Between(StrEnum):
-    """Interpolation between two samples."""
+    """What a signal is taken to be between two samples: the last value, or a straight line."""
 
     HOLD = "hold"
     """The last value."""
@@ -26,7 +26,9 @@ MAX_RESAMPLED = 50_000_000
 
 
 def sort_known(time_s: FloatArray, values: FloatArray) -> IntArray | slice:
-    """Return the indices of the finite values, sorted by time (stable); a slice if these are all, in order.
+    """Return the indices of the finite values in order of time; values at the same time keep their order.
+
+    If all values are finite and in order already, the result is a slice of all of them.
 
     Args:
         time_s: Shape (n,), in any order.

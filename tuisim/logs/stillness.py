@@ -78,8 +78,9 @@ def estimate_noise(differences: FloatArray, variance: float) -> float:
 
     Args:
         differences: Absolute differences of samples from what their neighbours predict, shape (n,).
-        variance: Variance of such differences in units of the noise's: 2 for first differences; 6 for second ones,
-            which are 0 on slopes.
+        variance: The variance that such differences have for noise of variance 1: 2 for differences of two neighbours;
+            6
+            for second differences, which are 0 on slopes.
     """
     if not len(differences):
         return 0.0
@@ -115,7 +116,7 @@ def _measure_levels(plateaus: PlateauArray, part: FloatArray, keep: BoolArray) -
     Args:
         plateaus: The plateaus.
         part: Their samples, shape (m, length).
-        keep: Whether each sample is no stray; the same number in each row.
+        keep: False for samples that are strays and do not count, shape (m, length); each row has equally many.
     """
     count, length = part.shape
     samples = part[keep].reshape(count, -1)
@@ -168,9 +169,9 @@ def find_moving(signal: Signal, plateaus: PlateauArray) -> BoolArray:
 
 
 def _find_wandering(part: FloatArray, spread: FloatArray, sigma: float) -> BoolArray:
-    """Return for each row of samples, shape (m, length), whether it moves.
+    """Return for each row of samples, shape (m, length), whether it wanders instead of staying at a level.
 
-    A row moves if neighbours in it differ less than they would by noise with the row's spread.
+    A row of noise has large differences between neighbours. In a row that wanders, they are small for the row's spread.
     """
     is_short = part.shape[1] < _SHORT_SAMPLES
     max_fraction = _SHORT_WANDERS if is_short else _WANDERS
@@ -202,12 +203,12 @@ def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
 
 
 def find_still_parts(signal: Signal, moving: PlateauArray, cut: Pieces) -> PlateauArray:
-    """Return those parts of pieces without a level that have a level themselves, such as the top between two slopes.
+    """Return the parts of moving pieces that stay at a level, such as the top between two slopes.
 
     Args:
         signal: The log.
-        moving: The pieces without a level.
-        cut: The pieces from which those were joined, without gaps between them.
+        moving: The pieces that rise, fall or bend.
+        cut: The shorter pieces that were joined to these, without gaps between them.
     """
     started = np.searchsorted(moving["start"], cut[:, 0], side="right")
     ended = np.searchsorted(moving["stop"], cut[:, 1])

@@ -236,7 +236,7 @@ class Rows:
 
         Args:
             text: The text.
-            from_place: Position next to which the search begins; it is searched last.
+            from_place: The search begins beside this position, and ends with it.
             step: 1 for forwards, -1 for backwards.
             task: Receives the progress, and can stop the search; None for no task.
         """

@@ -102,7 +102,7 @@ class CsvReader:
         return None
 
     def finish(self) -> None:
-        """Check at the end of the file that it has the table that the user has chosen.
+        """Check at the end of the file that it has had the table that the user has chosen, such as the second one.
 
         Raises:
             LogError: the file has fewer tables.
@@ -153,9 +153,11 @@ class CsvReader:
     # Where the table ends
 
     def _cut_table(self, block: Block) -> tuple[Block, Block | None]:
-        """Return the rows of this table in a block, and the lines from the heading of another table on.
+        """Return the rows of this table in a block, and a block with the lines of the next table.
 
-        The second result is None if there is no other table. If the heading of this table is repeated, it is left out.
+        The second block begins with the heading of the next table; it is None if no other table begins here. If the
+        heading of
+        this table is repeated, it is left out.
         """
         if not has_numbers(self._heading.kinds) or not _MAY_BE_NAMES.search(block.text):
             return block, None
@@ -261,7 +263,7 @@ def _list_rows(block: Block) -> list[int]:
 
 
 def _count_words(texts: Sequence[pa.Array], typed: Sequence[pa.ChunkedArray]) -> int:
-    """Return how many rows at the end have words in place of numbers, as sentences below a table have."""
+    """Return how many rows at the end have words where numbers should be: they are sentences below the table."""
     numbers = [
         cells for cells, column in zip(texts, typed, strict=True) if is_floating(column.type)
     ]

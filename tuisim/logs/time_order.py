@@ -105,9 +105,9 @@ def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
 def number_runs(
     table: pa.Table, layout: Layout, times: Times, notes: Notes
 ) -> tuple[pa.Table, Layout]:
-    """Return a table and its layout; where the time begins again, another run begins.
+    """Return a table and its layout; each time that the time begins again, another run begins.
 
-    The table then gets a further column with the runs.
+    If there are several runs, the table gets a column with the number of the run.
 
     Args:
         table: The table.
@@ -186,13 +186,16 @@ def _find_restarts(seconds: FloatArray, back: IntArray) -> IntArray:
 
 
 def _is_one_clock(table: pa.Table, layout: Layout, back: IntArray) -> bool:
-    """Return whether the rows were written in order of time by one clock, not one variable after another.
+    """Return whether all rows were written in order of time by one clock, which began again at the given rows.
+
+    The result is False if the file has one variable after another, so that the time of each begins anew. It is taken
+    for
+    such a file if at one of these rows, no variable has samples both before and after it.
 
     Args:
         table: The table.
         layout: The roles of its columns.
-        back: The rows at which time is less than in the row before. If no variable has samples both before and after
-            such a row, another variable begins there.
+        back: The rows at which time is less than in the row before.
     """
     if not layout.variable:
         return True
