@@ -39,7 +39,8 @@ def execute(task: Task, folder: Path) -> Result:
 
     Args:
         task: The task.
-        folder: Where the recording is until the run has been judged; see `engine.runs.temporary.create_batch_folder`.
+        folder: The folder in which the recording is until the run has been judged; see
+            `engine.runs.temporary.create_batch_folder`.
     """
     try:
         return _run_task(task, folder)
@@ -106,9 +107,9 @@ def _prepare_field(background_name: str, fit: str, diameters: frozenset[int]) ->
 
 
 def _load_field_files(spec: RunSpec) -> FieldFiles:
-    """Return the prepared mat of a run, from the cache of this process.
+    """Return the mat of a run, prepared for its sensors; within a process, each mat is prepared once.
 
-    If the cached files are damaged, prepare it again.
+    If the cached files of the mat are damaged, the mat is prepared again.
     """
     mat = spec.world.background, spec.world.background_fit, find_diameters(spec)
     files = _prepare_field(*mat)
@@ -119,10 +120,10 @@ def _load_field_files(spec: RunSpec) -> FieldFiles:
 
 
 def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, Ended]:
-    """Return the run to be judged, and how it ended.
+    """Return the run to be judged, and how it ended; if the task demands it, replay the run first.
 
-    If the task demands it, the commands of the run are replayed, and both results come from the replay. If the replay
-    differs from the recording, the run has ended as falsified.
+    The commands that the program gave are then simulated again, and the result is the replayed run. If the replay
+    differs from the recording, the program has falsified the recording, and the run ended with `End.FALSIFIED`.
 
     Raises:
         LogError: no program can have given the commands.

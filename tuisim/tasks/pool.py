@@ -116,7 +116,7 @@ class _Pool:
                 yield from self._start_again()
 
     def _take_chunk(self, tasks: Iterator[Task]) -> list[Task]:
-        """Return the next tasks for a worker: one task that must run alone, if there is one, else up to `CHUNK`."""
+        """Return the next tasks for a worker: one task that must run alone, or else up to `CHUNK` tasks."""
         return [self._alone.pop()] if self._alone else list(islice(tasks, CHUNK))
 
     def _submit(self, chunk: list[Task]) -> None:

@@ -60,7 +60,7 @@ def parse_goal_condition(text: str) -> ValueCondition | None:
 
 
 def find_text_ticks(condition: ValueCondition, rows: Iterable[OutputRow]) -> list[int]:
-    """Return the ticks in which a sound was played, or a text written on the display, that matches a condition.
+    """Return the ticks in which the brick played a sound, or displayed a text, that matches a condition.
 
     Raises:
         UnjudgedError: the regular expression takes too long.

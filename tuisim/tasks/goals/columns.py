@@ -61,9 +61,9 @@ def _refuse(text: str, comparison: ValueCondition, error: ConfigError | ValueErr
 
 
 def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> str:
-    """Return which value of a column came nearest to the number of its comparison, and when, to end a sentence.
+    """Return which value of a column came nearest to the number in a comparison, and when, to end a sentence.
 
-    The result is empty if the comparison is not one of a column with a number.
+    The result is empty if the comparison is not one of a column with a number, such as `x_mm > 100`.
     """
     import numpy as np
 
@@ -116,9 +116,10 @@ def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan)
 
 
 def _check_samples(named: ValueCondition, evidence: Evidence) -> tuple[Array, Array]:
-    """Return two masks over the ticks, each of shape (n,).
+    """Return two masks over the ticks of a run, each of shape (n,), for a comparison such as `Light < 50`.
 
-    They are True for ticks without a sample that fails a comparison, and for ticks with a sample of its variable.
+    The first is False at ticks with a sample for which the comparison is false. The second is True at ticks with a
+    sample of the variable.
     """
     import numpy as np
 
@@ -172,9 +173,9 @@ def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceS
 def _find_moments(
     named: ValueCondition, evidence: Evidence, span: EvidenceSpan
 ) -> list[EvidencePoint]:
-    """Return the moments in a span at which a comparison of a column became true.
+    """Return the moments in a span at which a comparison became true.
 
-    For a comparison of printed lines or samples, return the moments of all lines or samples for which it is true.
+    For a comparison of printed lines or samples, these are the moments of all lines or samples for which it is true.
     """
     import numpy as np
 

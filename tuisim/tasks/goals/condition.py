@@ -35,7 +35,7 @@ class UnjudgedError(Exception):
 
 
 class ConditionKind(StrEnum):
-    """The moment of a run at which a condition is decided: each member says when it is met or missed."""
+    """The kinds of conditions, by when a condition is met or missed: for example, as soon as it is true once."""
 
     REACHED = "reached"
     """Met as soon as it is true once; missed if that never happens."""

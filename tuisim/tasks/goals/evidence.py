@@ -71,7 +71,7 @@ JudgedRun: TypeAlias = "StoredRun | RunHandle"
 
 
 class EvidencePoint(NamedTuple):
-    """A moment of a run: after a tick is complete (row -1), or when a row of output is written."""
+    """A moment of a run: the end of a tick (then `row` is -1), or the moment at which a row of output was written."""
 
     tick: int
     row: int = -1

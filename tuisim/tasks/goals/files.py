@@ -66,9 +66,9 @@ class GoalsFile:
 
     @property
     def presses(self) -> Mapping[str, Any]:
-        """A mapping from `press` to this setting of the file, which applies in every world.
+        """The setting `press` of the file, which applies in every world, as a mapping with this one key.
 
-        The result is empty if the file does not set it.
+        The result is empty if the file does not have the setting.
         """
         return {path: value for path, value in self.settings.items() if path == "press"}
 
@@ -335,10 +335,10 @@ def _parse_condition(
 
 
 def _check_lists(kind: type[Condition], data: object, location: Location) -> None:
-    """Check that the keys of a condition that must be lists of texts or of ranges are such lists.
+    """Check the form of the keys of a condition whose values must be lists, of texts or of ranges.
 
     Raises:
-        ConfigError: a key is not such a list; the error has a hint.
+        ConfigError: a value is not such a list; the error has a hint.
     """
     for key, value in data.items() if isinstance(data, dict) else ():
         field = kind.__dataclass_fields__.get(key)
@@ -378,7 +378,7 @@ def _check_limits(goal: Goal, location: Location) -> None:
     """Check the limits of a goal, such as `before` and `within_s`.
 
     Raises:
-        ConfigError: a limit applies to none of the goal's conditions, or is a time that is not later than `after`.
+        ConfigError: a limit does not fit any condition of the goal, or a limit is a time before or equal to `after`.
     """
     kinds = [part.KIND for part in goal.parts]
     fitting = {limit for kind in kinds for limit in goal.limits(kind)}
@@ -492,9 +492,9 @@ def find_key_line(text: str, key: str) -> int:
     ends = [*starts, len(lines)]
 
     def begun(count: int) -> bool:
-        """Return whether the first `count` statements contain the key.
+        """Return whether the key is in the first `count` statements of the TOML.
 
-        A statement that is cut off is read to its end.
+        If the last of these statements goes on over several lines, it is read to its end.
         """
         while (parsed := _parse_lines(lines[: ends[count]])) is None:
             count += 1

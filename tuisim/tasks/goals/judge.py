@@ -100,9 +100,10 @@ def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan)
 
 
 def _sample_strokes(records: Array, pen: PenSpec, condition: DrawCondition) -> tuple[Array, Array]:
-    """Return points of the pen's lines, and the tick in which each was drawn.
+    """Return points along the lines that the pen drew, and the tick in which each point was drawn.
 
-    Neighbouring points are at most as far apart as a cell of the comparison with the condition's picture is wide.
+    Neighbouring points are so close together that no cell of the comparison with the condition's picture is missed:
+    their distance is at most the width of a cell.
 
     Returns:
         x and y in mm, shape (n, 2), and the ticks, shape (n,).
@@ -263,7 +264,7 @@ class _Judge:
         return Judgement(goal, changes, outcome.reason, self._find_line(outcome), happened)
 
     def _quote(self, name: str) -> str:
-        """Return a goal in quotes: its sentence, but only its name if it has none, or is hidden."""
+        """Return the sentence of a goal in quotes; if the goal is hidden or has no sentence, return its name."""
         goal = self._goals[name]
         return f"“{name if goal.hidden else goal.say.removesuffix('.') or name}”"
 
@@ -279,8 +280,8 @@ class _Judge:
         """Return the outcome of a goal.
 
         Args:
-            name: The goal.
-            if_missed: The reason in the outcome if the goal is missed; "" for the goal's own reason.
+            name: The name of the goal.
+            if_missed: The reason to give if the goal is missed; "" for the goal's own reason.
         """
         if name not in self._goals:
             raise ConfigError(f"there is no goal {name!r}")
@@ -442,10 +443,10 @@ def _invert(name: str, outcome: _Outcome) -> _Outcome:
 
 
 def _pick_deciding(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
-    """Return that outcome, of several ones, which decides their combination.
+    """Return the outcome that decides a combination of goals.
 
-    It is the earliest outcome in the state `deciding`, else the first open outcome, else the first unknown one, else
-    the latest outcome.
+    This is the earliest outcome in the state `deciding`. Without one, it is the first open outcome, else the first
+    unknown one, else the latest outcome.
     """
     decided = [part for part in parts if part.state is deciding]
     if decided:

@@ -77,7 +77,7 @@ class LiveGoals:
 
 
 def check_goals(goals: Sequence[Goal]) -> None:
-    """Check that no goal is about a program, as in a simulation without one.
+    """Check that all goals can be judged in a simulation without a program.
 
     Raises:
         ConfigError: a goal is about a program.

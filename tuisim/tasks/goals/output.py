@@ -115,9 +115,10 @@ def _check_once(
     span: EvidenceSpan,
     evidence: Evidence,
 ) -> Finding | None:
-    """Return why the lines that must be printed only once do not meet the condition so far; None if they do.
+    """Return what is wrong with lines that the program must print only once; None if they are right at the span's end.
 
-    While lines may still be printed again, the result is a finding without a moment, so that the goal stays open.
+    Before the end of the span, the lines may still be printed again: without a fault so far, the result is then
+    `Finding()`, which leaves the goal open.
 
     Args:
         condition: The condition, with the patterns of the lines.
@@ -481,11 +482,11 @@ def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: Eviden
 
 
 def _find_prompt(text: str, answer: str, typed: str | None) -> str | None:
-    """Return the prompt in a row of input, before the answer; None if the row has another answer.
+    """Return the program's question in a row of input such as `Name? Ada`; None if the user typed another answer.
 
     Args:
-        text: The row: prompt and answer.
-        answer: The answer of the turn.
+        text: The row: the question, followed by what was typed.
+        answer: The answer that the turn of the dialogue expects.
         typed: What was typed; None if it is not known.
     """
     if not text.endswith(answer) or (typed is not None and typed != answer):
@@ -500,12 +501,14 @@ def _find_prompt(text: str, answer: str, typed: str | None) -> str | None:
 def _find_reply(
     turn: DialogueTurn, prompt: str, rows: list[OutputRow], span: range, evidence: Evidence
 ) -> tuple[int | None, str]:
-    """Return the index of the row that completes a turn, or None, and what is wrong with the question or the reply.
+    """Return the index of the row that completes a turn of a dialogue, and an empty text.
+
+    If the turn is not complete, return None, and a sentence on the wrong question or the missing reply.
 
     Args:
         turn: The turn of the dialogue.
         prompt: The program's question.
-        rows: All rows.
+        rows: All rows of the recording.
         span: Indices of the rows of the turn, from its question to the next question.
         evidence: The recording.
     """

@@ -74,7 +74,7 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
 
 
 def _find_arrivals(there: Array) -> Array:
-    """Return for each tick the index of the tick at which the robot had arrived at the place where it is.
+    """Return for each tick at which the robot is at a place, the index of the tick at which it came there, shape (n,).
 
     The index is 0 if the robot was there from the start. At ticks at which it is elsewhere, the value has no meaning.
 

@@ -86,7 +86,7 @@ def _find_readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
 
 
 def filter_ticks(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
-    """Return those of some ticks at which the robot was in a place, given by its ranges from `select_place`."""
+    """Return only those ticks at which the robot was in a place, as `select_place` describes it."""
     for key, (low, high) in place.items():
         values = evidence.records[key][ticks]
         ticks = ticks[(values >= low) & (values <= high)]

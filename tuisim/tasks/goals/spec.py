@@ -79,11 +79,13 @@ def _check_ranges(condition: PrintCondition | LogCondition | ReadCondition, coun
 def select_place(
     condition: PrintCondition | LogCondition | ReadCondition, count: int = 0
 ) -> dict[str, Range]:
-    """Return where the robot must be for a line, level or reading: ranges by `x_mm` and `y_mm`; empty for anywhere.
+    """Return where the robot must be to print a line, log a level or read a sensor: ranges by `x_mm` and `y_mm`.
+
+    The result is empty if the robot may be anywhere.
 
     Args:
-        condition: The condition with the places.
-        count: Index of the line or level.
+        condition: The condition that gives the places.
+        count: Index of the line or level in the condition.
     """
     places = {key: getattr(condition, key) for key in ("x_mm", "y_mm")}
     return {
@@ -497,5 +499,5 @@ class Goal:
         )
 
     def limits(self, kind: ConditionKind) -> tuple[str, ...]:
-        """Return those of the keys `before`, `after` and `until` that the goal sets and that apply to a kind."""
+        """Return the keys of the goal's limits, such as `before` and `after`, that apply to a kind of condition."""
         return tuple(limit for limit in LIMITS[kind] if getattr(self, limit) is not None)

@@ -66,7 +66,7 @@ class TrialWorld:
         )
 
     def select_goals(self, goals: Sequence[Goal]) -> tuple[Goal, ...]:
-        """Return the goals of this world: `own_goals`, and the goals of the first world with other names.
+        """Return the goals of this world: `own_goals`, and goals of the first world with other names.
 
         Args:
             goals: The goals of the first world.

@@ -193,7 +193,7 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
 
     Args:
         word: The lesson's name, its number in the list, or the path of its file.
-        folder: As for `find_lesson_paths`.
+        folder: A folder with further lessons; None for the one in the environment variable `TUISIM_LESSONS`.
         others: Other words that the error may propose.
 
     Raises:
@@ -220,12 +220,12 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
 
 
 def find_telling(lesson: Path, library: Library, folder: Path | str | None = None) -> Path:
-    """Return the file of the version of a lesson that is for a library; this may be the lesson's own file.
+    """Return the file with a lesson's version for a library, such as Pybricks; this may be the lesson's own file.
 
     Args:
         lesson: The lesson's file.
-        library: The library.
-        folder: As for `find_lesson_paths`.
+        library: The library that the programs of the version use.
+        folder: A folder with further lessons; None for the one in the environment variable `TUISIM_LESSONS`.
 
     Raises:
         ConfigError: there is no version for that library.

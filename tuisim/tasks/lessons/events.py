@@ -48,7 +48,8 @@ class TriedElsewhere:
 class Typed:
     """Event: a student has typed an answer.
 
-    If an attribute has its default value, whatever the question requires of it counts as fulfilled.
+    The attributes besides the text say what the question may require, such as where the robot stood. With its default
+    value, an attribute counts as what the question requires.
     """
 
     text: str
@@ -363,7 +364,7 @@ def build_model_event(check: Check, model: str) -> Event:
         model: The model answer in the lesson's file; needed for breakpoints and notes, otherwise it may be empty.
 
     Raises:
-        ValueError: the model answer is missing, or as for `parse_event`.
+        ValueError: the check needs a model answer and there is none, or the model answer has the wrong form.
     """
     if model:
         return parse_event(check, model)

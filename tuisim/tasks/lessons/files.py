@@ -147,7 +147,7 @@ def _split_front_matter(lines: Sequence[str], path: Path) -> tuple[str, int]:
 def _merge_told_lesson(data: Any, path: Path) -> Any:
     """Return the parsed TOML of a lesson.
 
-    A lesson for another library is completed with the TOML of its original lesson.
+    If the lesson is a version for another library, what it lacks is taken from the original lesson.
 
     Args:
         data: The parsed TOML of the lesson's own file.
@@ -450,7 +450,7 @@ def _add_answers(steps: Sequence[LessonStep], location: Location) -> tuple[Lesso
     A step without its own answer gets the answer of the next step that has one.
 
     Raises:
-        ConfigError: there is no such step.
+        ConfigError: a step checks runs, and neither it nor a later step has a model answer.
     """
     answer = ""
     completed = []
@@ -473,11 +473,11 @@ def build_telling_name(lesson: str, library: str) -> str:
 
 
 def merge_telling(other: Any, own: Any) -> Any:
-    """Return the parsed TOML of a lesson, merged with the TOML of its version for another library.
+    """Return the parsed TOML of a lesson's version for another library: that of the original lesson, with the changes.
 
     Args:
         other: The TOML of the original lesson.
-        own: The TOML of the version, whose values take precedence.
+        own: The TOML of the version; its values replace those of the original.
     """
     match other, own:
         case dict(), dict():

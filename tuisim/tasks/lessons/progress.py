@@ -46,7 +46,7 @@ class StepProgress:
 
 @dataclass(frozen=True, slots=True)
 class LessonProgress:
-    """A student's progress on one lesson: that of each step, by the step's name, and when the lesson was opened."""
+    """A student's progress on one lesson: the progress on each step, and when the lesson was opened."""
 
     steps: Mapping[str, StepProgress] = field(default_factory=dict)
     """By the name of the step."""
@@ -54,7 +54,7 @@ class LessonProgress:
     """When it was last opened, in ISO 8601; empty if never."""
 
     def of(self, step: str) -> StepProgress:
-        """Return the progress on a step, given by its name; for a step without progress, that of a new step."""
+        """Return the progress on a step, given by the step's name; `StepProgress()` for a step that was not begun."""
         return self.steps.get(step, StepProgress())
 
     def update_step(self, step: str, **changes: Any) -> LessonProgress:

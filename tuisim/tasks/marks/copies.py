@@ -124,9 +124,10 @@ def _read_tokens(texts: Iterable[str]) -> list[Token]:
 
 
 def _compute_prints(tokens: Sequence[Token]) -> _Prints:
-    """Return the fingerprints of a program, each with the lines of the tokens that it covers.
+    """Return the fingerprints of a program; to each belong the numbers of the lines whose tokens it covers.
 
-    A fingerprint is the smallest hash in a window of hashes; of several equal ones, the last is taken.
+    A hash is computed for each sequence of `TOKENS` successive tokens. The fingerprints are the smallest hash in each
+    window of `WINDOW` successive hashes; of equal ones, the last.
     """
     kinds = [token.kind for token in tokens]
     hashes = [

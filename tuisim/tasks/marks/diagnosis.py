@@ -21,10 +21,10 @@ def add_diagnoses(sheet: Sheet) -> Sheet:
 
 
 def find_diagnosis(row: SheetRow, store: RunStore) -> str:
-    """Return the first reason why the run of a row's reason went wrong, with time and line, without its full stop.
+    """Return why the run that a row names as its failure went wrong: the first reason, with time and line, as text.
 
-    The result is empty if every run was good, if only hidden worlds were missed, if the run was not kept, or if the
-    reason is the error that the row has already.
+    The text has no full stop. It is empty if every run was good, or failed in hidden worlds only. It is also empty if
+    the run was not kept, or if the row already has the error that is the reason.
     """
     for outcome in row.outcomes:
         if outcome.seed == row.seed and outcome.run_id and _is_shown_failure(outcome):

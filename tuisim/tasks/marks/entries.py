@@ -83,10 +83,10 @@ def _build_entry(
 def _resolve_settings(
     student: Student, world: TrialWorld, options: Mapping[str, Any]
 ) -> ProgramSettings:
-    """Return the settings with which a student's program runs.
+    """Return the settings with which a student's program runs in a world of the task.
 
-    The magic line counts only if the task's world has no values. If no profile is set, it is one for the program's
-    library.
+    If the task sets the world, the options in the program's magic line are ignored. If nobody chooses a profile, the
+    library that the program uses decides.
 
     Raises:
         ConfigError: the magic line, or a file that it names, is wrong.

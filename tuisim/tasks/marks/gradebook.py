@@ -62,10 +62,10 @@ class Roster:
 
 
 def read_roster(path: Path) -> Roster:
-    """Read a class list: CSV with a heading, one row a student.
+    """Read a class list: a CSV file with a heading, and one row for each student.
 
-    The column `submission` has the name of the student's file or folder; without this column, the user name is that
-    name. The other columns have the names that the gradebook gives them, such as `Email address` or `SIS User ID`.
+    The column `submission` has the name of the student's file or folder. Without this column, the user name is taken
+    instead. The other columns have the names that the gradebook gives them, such as `Email address` or `SIS User ID`.
 
     Raises:
         ConfigError: the file cannot be read, has no column that names the submissions, or names a submission twice.

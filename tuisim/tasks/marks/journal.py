@@ -26,7 +26,10 @@ def build_journal_path(goals: Path) -> Path:
 
 
 class Journal:
-    """The outcomes of a marking so far, by a key of each run: a context manager that appends new outcomes to a file.
+    """The outcomes of a marking so far, in a file, so that an interrupted marking can be resumed.
+
+    In a `with` block, the attribute `known` has the outcomes of finished runs, each by a key of its run, and `add`
+    appends new ones.
 
     Args:
         path: The file.

@@ -163,7 +163,7 @@ class MarkRequest:
     def list_own_files(self) -> frozenset[Path]:
         """Return the resolved paths of the marking's own files, such as goals and results.
 
-        These files may be among the students' files.
+        They may be in the folder of the students' files, and must not be taken for a student's.
         """
         files = [self.task.path, self.roster, self.overrides, self.feedback]
         files += self.gradebooks.values()

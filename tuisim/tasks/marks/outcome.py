@@ -100,10 +100,10 @@ class Outcome:
 
     @property
     def gave_up(self) -> bool:
-        """Whether the program hung, flooded or died without meeting a goal, so that further runs would only cost time.
+        """Whether further runs of the program would only cost time: it hung, flooded or died and met no goal.
 
-        So does one that does not compile. The result is False if it has met a goal that gives points, since the other
-        runs show whether it meets that goal again.
+        A program that cannot be compiled gave up, too. A program that met a goal with points did not: its other runs
+        show whether it meets the goal again.
         """
         if any(goal.reason.startswith(UNCOMPILED) for goal in self.goals):
             return True
@@ -224,9 +224,9 @@ def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
 
 
 def _is_weightier(goal: GoalOutcome, before: GoalOutcome | None) -> bool:
-    """Return whether a goal's outcome in one world replaces the merged outcome of earlier worlds.
+    """Return whether a goal's outcome in one world replaces the merged outcome of earlier worlds, as it is worse.
 
-    A good outcome is always replaced, an unknown one only by a miss, and a miss never.
+    A good outcome is always replaced. An unknown outcome is replaced only by a miss. A miss is never replaced.
 
     Args:
         goal: The outcome in this world.

@@ -132,7 +132,7 @@ def _mark(cell: Cell, column: Goal, runs: int) -> _Mark:
 
 
 def _find_reports(row: SheetRow, links: Links) -> dict[str, list[tuple[str, str]]]:
-    """Return the reports of a student's runs, by world: for each report its path, and the seeds of its runs as text."""
+    """Return the reports of a student's runs, by world: the path of each report, and the seeds of its runs as text."""
     seeds: dict[str, dict[str, list[int]]] = {}
     for outcome in row.outcomes:
         if path := links.get((row.name, outcome.world, outcome.seed)):
@@ -206,7 +206,7 @@ def group_reasons(reasons: Iterable[str]) -> tuple[tuple[str, int], ...]:
 
 
 def _join_reasons(reasons: Sequence[str]) -> str:
-    """Return reasons of one kind as one, with a range in place of each number in which they differ."""
+    """Return one reason for several that differ only in numbers, with ranges such as `5 to 40` for these numbers."""
     columns = zip(*map(_NUMBER.findall, reasons), strict=True)
     ranges = iter([sorted(set(column), key=_read_number) for column in columns])
 

@@ -280,14 +280,14 @@ def write_class_page(
     Args:
         sheet: The marks.
         worlds: The worlds of the task.
-        students: Those whose programs are compared.
+        students: The students whose programs are compared with each other.
         ignored: Names of files that are no programs.
         target: The page.
         tell: Called with the progress: words, the number of written reports, and the number of all reports.
         movies: Whether reports of runs that missed a goal have movies.
 
     Raises:
-        ExportError: the page cannot be written, or is without some of the reports.
+        ExportError: the page cannot be written; or it was written, but some reports were not.
     """
     run_count = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
     links = {}

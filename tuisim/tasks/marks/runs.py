@@ -120,7 +120,9 @@ def run_entries(
 
 
 def count_runs(outcomes: Sequence[Outcome], plan: MarkPlan) -> int:
-    """Return how many runs of a student's program are needed in total; fewer if the program has given up.
+    """Return how many runs of a student's program are needed in total.
+
+    Where the program gave up with the first seed, no runs with other seeds follow.
 
     Args:
         outcomes: The student's outcomes so far.
@@ -208,7 +210,8 @@ def _build_tasks(
         turns: The runs.
         plan: How the programs are run.
         workspace: The folder for the copies.
-        uncopied: Receives name and outcome of each student whose files cannot be copied; there is no task for the run.
+        uncopied: If the files for a run cannot be copied, the student's name and an outcome are added to this list, and
+            the run has no task.
     """
     for index, turn in enumerate(turns):
         student = turn.entry.student

@@ -169,7 +169,7 @@ class Sheet:
 def list_columns(goals: Sequence[Goal]) -> list[Goal]:
     """Return the goals that a sheet shows: those with points or with a sentence (`say`).
 
-    Others only serve these goals.
+    The other goals of a task are not shown, as they only serve as conditions of these.
     """
     return [replace(goal, say=goal.say or goal.name) for goal in goals if goal.points or goal.say]
 
@@ -323,9 +323,10 @@ def _has_missed(outcome: Outcome, columns: Sequence[Goal]) -> bool:
 
 
 def _find_reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
-    """Return why a run failed, and the number of the program's line to which that refers, 0 for none.
+    """Return why a run failed, and the number of the program's line that the reason is about; 0 if it is about no line.
 
-    The reason is the program's error, or else that of the first goal that the run missed; empty for a good run.
+    The reason is the program's error. Without an error, it is the reason of the first goal that the run missed; it is
+    empty for a good run.
     """
     names = {column.name: column.say for column in columns}
     missed = [goal for goal in outcome.goals if not goal.is_good and goal.name in names]

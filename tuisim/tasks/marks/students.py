@@ -36,7 +36,7 @@ _MAX_LEVELS = 50
 
 @dataclass(frozen=True, slots=True)
 class Student:
-    """A student's hand-in: its files, the main program, and the problem if that cannot be run."""
+    """A student's hand-in: its files and its main program; if that program cannot be run, `problem` says why."""
 
     name: str
     """Name of the folder, or of the file without `.py`; unique in the class."""

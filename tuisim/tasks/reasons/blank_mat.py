@@ -14,9 +14,10 @@ _LOST_LINE = "LineFollowErrorLostLine"
 
 
 def describe_blank_mat(data: RunData) -> str:
-    """Return as text that the mat of a run is plain white, and how to get a line.
+    """Return a text which says that the mat of a run is plain white, and how to get a line; empty for other mats.
 
-    The result is empty unless the run has ended by itself, the robot has moved, and the program decided by light.
+    The text is also empty if the run still goes on or was stopped, if the robot has not moved, or if light sensors do
+    not decide what the program does.
     """
     run = data.run
     world = run.spec.world

@@ -200,7 +200,10 @@ def _turns_as_asked(data: RunData, move: _Move, call: moves.UnwaitedMove) -> boo
 
 
 def _has_looked(data: RunData, move: _Move) -> bool:
-    """Return whether the program read a sensor or motor during a move, or ended the move by a speed or a stop."""
+    """Return whether the program probably ended a move on purpose.
+
+    It then read a sensor or motor during the move, or ended the move by a command to stop or to turn at a speed.
+    """
     aim = CALL_WORDS[move.next_call].aim if move.next_call else Aim.NONE
     ticks = data.reading_ticks
     has_read = ((ticks >= move.tick) & (ticks <= move.end)).any()

@@ -43,7 +43,7 @@ def find_presses(
 
 
 def find_hits(presses: Iterable[HandPress], names: Sequence[str]) -> list[HandPress]:
-    """Return those of the presses that are of one of some buttons or sensors, or of all touch sensors together.
+    """Return the presses of certain buttons or touch sensors; a press of all touch sensors together is always included.
 
     Args:
         presses: The presses.

@@ -253,7 +253,10 @@ class _Seen:
 
 
 def _find_points(eyes: Sequence[ColorSensorSpec]) -> list[ColorSensorSpec]:
-    """Return the sensors, and imagined sensors between neighbours, so close that a line is always under one of them."""
+    """Return the light sensors, and imagined sensors in the gaps between them.
+
+    The imagined sensors are so close together that a line cannot pass between two of them unseen.
+    """
     points = [*eyes]
     for eye, other in pairwise(eyes):
         apart_mm = np.hypot(other.x_mm - eye.x_mm, other.y_mm - eye.y_mm)

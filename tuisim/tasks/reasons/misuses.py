@@ -40,7 +40,10 @@ _MIN_TURN_DEG = 10.0
 
 
 def list_stale_reads(data: RunData) -> Iterator[Unmet]:
-    """Yield a misuse for each reading that a loop still used when the sensor saw something else."""
+    """Yield a misuse for each reading that was taken before a loop, and still used in it when it was out of date.
+
+    For example, `light = sensor.reflected_light_intensity` stands before `while light > 20`, not in the loop.
+    """
     known = {end.line for end in data.facts.loop_ends if end.set_line}
     for use in uses.list_stale_reads(data.facts.tree, data.facts.constants):
         if use.line in known and _was_in_vain(data, use):
@@ -60,11 +63,11 @@ def _was_in_vain(data: RunData, use: LoopEnd) -> bool:
 
 
 def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
-    """Return the first use of a reading after the sensor saw something else; None if it saw the same all the time.
+    """Return the first use of a reading that is out of date, as the sensor sees something else now; None without one.
 
     Args:
         data: The run.
-        use: The loop that uses the reading.
+        use: The loop that uses the reading, or a comparison or move in it.
         read_tick: The tick of the reading.
     """
     lines = data.records["line"]
@@ -114,10 +117,7 @@ def _compare(use: LoopEnd, series: Series) -> Array:
 
 
 def _find_next_reading(data: RunData, line: int, tick: int) -> int:
-    """Return the tick, after `tick`, of the next reading of a port that a line of the program reads.
-
-    If there is no further reading, the result is the number of ticks in the recording.
-    """
+    """Return the tick of the next reading, after `tick`, of the sensor or motor that a line of the program reads."""
     ports = list_distinct(data.readings["port"][data.readings["line"] == line])
     ticks = data.reading_ticks[np.isin(data.readings["port"], ports)]
     later = ticks[ticks > tick]
@@ -134,7 +134,7 @@ def _name(series: Series, value: float) -> str:
 
 
 def list_lone_stops(data: RunData) -> Iterator[Unmet]:
-    """Yield a misuse for each stop that never came, because the program tested only once, and too early."""
+    """Yield a misuse for each stop that never came: its `if` is in no `while` loop, and was tested once, too early."""
     for stop in uses.list_lone_stops(data.facts.tree, data.facts.constants):
         read_ticks = data.find_read_ticks(stop.read_line)[:_MAX_READINGS]
         if np.diff(read_ticks).min(initial=data.hz) < _APART_S * data.hz:
@@ -195,7 +195,10 @@ def _describe_lone(data: RunData, stop: uses.LoneStop, tick: int) -> str:
 
 
 def list_lost_values(data: RunData) -> Iterator[Unmet]:
-    """Yield a misuse for each value that a function which ran has assigned to a local name instead of a global one."""
+    """Yield a misuse for each value that a function assigned to a local name, though a global name was probably meant.
+
+    Functions that did not run are left out.
+    """
     for lost in uses.list_lost_values(data.facts.tree):
         tick = _find_tick(data, *lost.lines)
         if tick is None and lost.call_line:

@@ -38,7 +38,10 @@ _MAX_SPOT_MM = 20.0
 
 
 def list_wrong_bands(data: RunData) -> Iterator[Unmet]:
-    """Yield a fault for each loop that should wait for black or white, but was ended by another band."""
+    """Yield a fault for each loop that was ended by another band than the one that the program's text names.
+
+    For example, a comment says that the loop waits for black, but a grey band ended it.
+    """
     loops = data.facts.loop_ends
     ends = [line for loop in loops for line in (loop.first_line, loop.last_line)]
     for loop in loops:
@@ -146,7 +149,7 @@ def list_wrong_units(data: RunData) -> Iterator[Unmet]:
 
 
 def _has_moved(records: Array) -> bool:
-    """Return whether a wheel turned further in some records than a wheel that is only coming to rest."""
+    """Return whether a wheel turned in some records of telemetry, farther than a wheel that is coming to rest."""
     return any(
         np.ptp(records[name]) > _MIN_ON_DEG for name in ("left_position_deg", "right_position_deg")
     )

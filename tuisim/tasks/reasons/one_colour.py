@@ -33,7 +33,7 @@ _MIN_WHITE_SHARE = 0.9
 
 @dataclass(frozen=True, slots=True)
 class OneColor:
-    """The only colour that all light sensors that the program reads have seen in a run."""
+    """The only colour that light sensors saw in a run, with the sensor that the program read first."""
 
     tick: int
     """When the program read the first of these sensors."""
@@ -47,9 +47,10 @@ class OneColor:
 def find_one_color(
     records: Array, spec: RunSpec, mat: Field, read_ticks: Mapping[str, Array]
 ) -> OneColor | None:
-    """Return the only colour that all light sensors that the program reads have seen while the robot drove far.
+    """Return the colour that a light sensor saw all the time while the robot drove far; None if there is none.
 
-    The result is None if they saw more colours, if the program read too seldom, or if the robot did not drive far.
+    Only sensors that the program reads are considered. The result is also None if one of them saw several colours, or
+    if the program read too seldom.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).

@@ -118,10 +118,11 @@ def describe_reasons(run: StoredRun) -> list[str]:
 
 
 def describe_end(run: StoredRun) -> dict[str, str]:
-    """Return what a final state says of faults: `waited_for`, what the run waited for in vain, and `went_wrong`.
+    """Return texts on faults for the final state of a run: by `waited_for` and by `went_wrong`.
 
-    `went_wrong` has the reasons of `find_reasons` that a final state does not tell anyway; without one, it says if the
-    mat is blank. It is empty if nothing went wrong, if the run still goes on, or if its mat no longer exists.
+    `waited_for` says what the run waited for in vain. `went_wrong` has the reasons of `find_reasons`, without those
+    that the final state shows in other values; if there are none, it says if the mat is blank. It is empty if nothing
+    went wrong, if the run still goes on, or if its mat no longer exists.
     """
     data = RunData(run)
     waits = find_waits(data)
@@ -327,7 +328,10 @@ def _build_reason(kind: ReasonKind, fault: Unmet) -> Reason:
 
 
 def _find_slips(data: RunData) -> Iterator[Reason]:
-    """Yield a reason for each line that does nothing, from where its loop first ran or, without one, at the end."""
+    """Yield a reason for each line of the program that has no effect or always the same, such as a stop without `()`.
+
+    The time of the reason is when the line, or the loop around it, first ran; if neither did, it is the end of the run.
+    """
     lines, end = data.records["line"], data.run.end
     if end is None:
         return

@@ -181,12 +181,12 @@ class RunData:
         )
 
     def measure(self, loop: LoopEnd, stay: tuple[int, int]) -> Series | None:
-        """Return the values that a loop has read.
+        """Return the values that the program has read for a comparison.
 
         The result is None if they are not known, or if noise or the pen's marks would make the computation slow.
 
         Args:
-            loop: The loop, or another comparison.
+            loop: The comparison: that of a loop's end, or another one.
             stay: The first tick to consider, and the tick after the last one.
         """
         ticks = self.find_read_ticks(loop.read_line)
@@ -201,12 +201,14 @@ class RunData:
         return list_distinct(np.minimum(ticks, len(self.records) - 1))
 
     def measure_ticks(self, loop: LoopEnd, ticks: Array) -> Series | None:
-        """Return the values that a comparison would read at some ticks; None as for `measure`.
+        """Return the values that the program would read for a comparison at some ticks; None if they are not known.
 
-        If it compares the change since an earlier reading, the values are the changes.
+        The result is also None if noise or the pen's marks would make the computation slow. If the comparison is about
+        the change since an earlier reading, the values are the changes.
 
         Args:
-            loop: The loop, or another comparison, whose sensor or motor the program read at least once.
+            loop: The comparison: that of a loop's end, or another one; the program read its sensor or motor at least
+                once.
             ticks: The ticks.
         """
         import numpy as np
@@ -222,10 +224,13 @@ class RunData:
         return replace(series, values=series.values - starts.values[places])
 
     def measure_records(self, loop: LoopEnd, records: Array, ticks: Array) -> Series | None:
-        """Return the values that a comparison would read in some records; None as in `measure`.
+        """Return the values that the program would read for a comparison in some records; None if they are not known.
+
+        The result is also None if noise or the pen's marks would make the computation slow.
 
         Args:
-            loop: The loop, or another comparison, whose sensor or motor the program read at least once.
+            loop: The comparison: that of a loop's end, or another one; the program read its sensor or motor at least
+                once.
             records: The records, structured as `TICK_FIELDS`; they need not be those of the run.
             ticks: The ticks of the records.
         """
@@ -257,7 +262,7 @@ class RunData:
         The result is None if the loop reads neither the position nor the speed of the motor.
 
         Args:
-            loop: The loop, or another comparison.
+            loop: The comparison: that of a loop's end, or another one.
             wheel: `left` or `right`.
             port: The motor's port.
             records: The records, structured as `TICK_FIELDS`.
@@ -279,7 +284,7 @@ class RunData:
         slow.
 
         Args:
-            loop: The loop, or another comparison.
+            loop: The comparison: that of a loop's end, or another one.
             sensor: The sensor.
             read: Column, factor and unit of the measurement.
             records: The records, structured as `TICK_FIELDS`.

@@ -82,9 +82,10 @@ _WHOLE = frozenset({LightRead.REFLECTED, LightRead.REFLECTION})
 
 
 def list_unwatched(data: RunData) -> Iterator[Unmet]:
-    """Yield, for each sensor, the first light between two readings on which the program would have acted differently.
+    """Yield a fault for light that a sensor saw only between two readings, so that the program missed it.
 
-    The earliest is first.
+    A reading in between would have changed the result of a comparison. For each comparison, only the first such light
+    is yielded. The earliest fault is first.
     """
     thresholds = data.facts.find_thresholds(data.run.spec.robot)
     passes = [
@@ -101,12 +102,14 @@ def list_unwatched(data: RunData) -> Iterator[Unmet]:
 def _list_passes(
     data: RunData, sensor: ColorSensorSpec, threshold: ProgramThreshold, ticks: Array
 ) -> Iterator[Unmet]:
-    """Yield the first light between two readings for which a comparison had another result than at both readings.
+    """Yield a fault if the result of a comparison changed and changed back between two readings, so that nobody saw it.
+
+    Only the first such time is yielded.
 
     Args:
         data: The run.
         sensor: The light sensor.
-        threshold: The comparison.
+        threshold: The comparison of the sensor's light with a value.
         ticks: The ticks at which the program read the sensor.
     """
     hz, records = data.hz, data.records

@@ -226,7 +226,7 @@ class _Search:
                     yield awaited
 
     def _find_readings(self, subject: Subject, port: str) -> Array:
-        """Return the indices of the readings of a subject on those lines on which the program waits for it now."""
+        """Return the indices of a subject's readings on the lines on which the program waits for the subject now."""
         import numpy as np
 
         is_meant = self._select(subject, port)
@@ -238,7 +238,7 @@ class _Search:
         return rows
 
     def _select(self, subject: Subject, port: str) -> Array:
-        """Return for each reading whether it is one of a subject, such as a kind of sensor, on a port, shape (n,)."""
+        """Return for each reading whether it is of a subject on a port, such as a touch sensor on `in1`, shape (n,)."""
         import numpy as np
 
         modes = [READING_MODES.index(mode) for mode in MODES[subject]]
@@ -247,7 +247,7 @@ class _Search:
         return is_meant
 
     def _has_seen(self, subject: Subject, port: str, presses: Iterable[HandPress]) -> bool:
-        """Return whether the program has read a subject, on any line, during one of some presses by hand."""
+        """Return whether the program has read a subject, such as a touch sensor, during at least one press by hand."""
         times_s = self._ticks[self._select(subject, port)] / self._hz
         return any(
             ((times_s >= press.from_s) & (times_s < press.until_s)).any() for press in presses
@@ -257,7 +257,7 @@ class _Search:
         return read_facts(self._run.program).find_question(line) if self._asks_text else Question()
 
     def _is_asking(self, subject: Subject, line: int) -> bool:
-        """Return whether the program may wait for a subject on a line: the reading there decides what happens next."""
+        """Return whether the program may wait for a subject on a line: the value there decides what happens next."""
         question = self._ask(line)
         if subject in OUTSIDE_SUBJECTS:
             return True
@@ -346,9 +346,9 @@ class _Search:
         return find_presses(self._run.actions, names, self._hz, len(self._records))
 
     def _skip_answered(self, rows: Array, presses: Sequence[HandPress]) -> Array:
-        """Return those readings that came after the last press, if they go on for at least `WINDOW_S` seconds.
+        """Return the readings after the last press by hand, as the program may wait for another press.
 
-        Otherwise return all of them.
+        If these readings do not go on for at least `WINDOW_S` seconds, return all readings.
 
         Args:
             rows: The indices of the readings.

@@ -83,10 +83,7 @@ def _build_recorded(recording: Recording, open_mat: Callable[[RunSpec], Field | 
 
 
 def describe_so_far(recording: Recording) -> str:
-    """Return a sentence which says that nothing wrong was found yet in a paused run, its time, and the program's lines.
-
-    An action id in braces stands for the action's key.
-    """
+    """Return a sentence about a paused run in which no fault was found yet: its time, and the lines that run."""
     import numpy as np
 
     hz = recording.spec.profile.tick_hz
