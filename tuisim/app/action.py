@@ -46,7 +46,7 @@ class Act(Message):
 
 @dataclass(frozen=True, slots=True)
 class Action(Generic[Host, Now]):
-    """A key with the function that it calls, and its words for the footer, the help and the command palette."""
+    """An action that a key runs: its key, its function, and its texts for footer, help and command palette."""
 
     id: str
     key: str
@@ -233,9 +233,10 @@ CLICKED_KEYS: tuple[KeyWord, ...] = (("letters", "edit"), ("esc", "keys"), ("^p"
 
 
 def find_panel_keys(focused: DOMNode | None) -> tuple[KeyWord, ...]:
-    """Return the `FOOTER_KEYS` of the focused widget, or of the nearest widget around it that has `FOOTER_KEYS`.
+    """Return the keys that the footer shows for the focused widget: its constant `FOOTER_KEYS`.
 
-    The tuple is empty if no widget has them, or if no widget has the focus.
+    If the widget has no such constant, use the nearest widget around it that has one. The tuple is empty if there is
+    none, or if no widget has the focus.
     """
     around = focused.ancestors_with_self if focused else ()
     return next((node.FOOTER_KEYS for node in around if hasattr(node, "FOOTER_KEYS")), ())
@@ -300,9 +301,10 @@ class ActionWords(Widget):
 
 
 async def press(screen: Screen[Any], key: str) -> None:
-    """Run the action that the focused widget binds to a key, or the nearest widget around it that binds it.
+    """Run the action that a key has in the focused widget.
 
-    If none of these widgets binds the key, do nothing.
+    If this widget has no action for the key, run that of the nearest widget around it that has one. If there is none,
+    do nothing.
     """
     for node in (screen.focused or screen).ancestors_with_self:
         if bound := find_bindings(node).key_to_bindings.get(key):
@@ -351,7 +353,7 @@ class KeyFooter(ActionWords):
     async def press_key_of_field(self, event: events.Click) -> None:
         """If a key of the focused text field was clicked in the footer, press that key.
 
-        A phone may lack this key.
+        With a click, the user of a phone can press keys that the phone's keyboard lacks, such as Escape.
         """
         if not self._of_dialog and (label := _find_key(event.x, self._typing)):
             # The click must not reach the app, which would move the focus from the field to the world.

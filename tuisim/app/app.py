@@ -284,7 +284,10 @@ class LabApp(PanelMessages):
         time_travel.go_to_now(self.context)
 
     def _waits(self, event: events.Event) -> bool:
-        """Return whether an event has to wait; a key that needs a run also waits until the mat is prepared."""
+        """Return whether an event must wait until the app can handle it.
+
+        A key that needs a run, for example, waits until the mat is prepared.
+        """
         if self.settings.welcomes and not self.has_greeted:
             return True
         needs_mat = getattr(event, "key", "") in RUN_KEYS and len(self.screen_stack) == 1
@@ -410,7 +413,10 @@ class LabApp(PanelMessages):
         self._frame_timer = self.set_interval(gap_s, self._on_frame_timer)
 
     def _is_starting(self) -> bool:
-        """Return whether the run is starting: drawing a frame now would delay the frame with the first tick."""
+        """Return whether the run is starting.
+
+        Drawing a frame while it starts would delay the frame with its first tick.
+        """
         if not self._starting_until_s:
             return False
         runs = self.run_controller
@@ -537,7 +543,10 @@ class LabApp(PanelMessages):
 
     @on(Driver.SignalResume)
     def pace_again(self) -> None:
-        """Stop waiting for the terminal's answers, which no longer come, as after a suspension of the app."""
+        """Stop waiting for the terminal to report a frame as shown.
+
+        To be called when the report may never come, for example because the app was suspended.
+        """
         self.pacer.record_interruption()
 
     def handle_situation_change(self) -> None:
@@ -578,7 +587,10 @@ class LabApp(PanelMessages):
 
     @property
     def _looks_back(self) -> bool:
-        """Whether an earlier instant than the newest is in view, even an earlier line of the newest tick."""
+        """Whether an instant before the newest one is in view.
+
+        This can also be a line of the program in the newest tick, before the last line that has run.
+        """
         return self.run_controller.timeline.at is not None or self.debugger.position is not None
 
     def action_target(self) -> ActionContext:
@@ -668,7 +680,7 @@ class LabApp(PanelMessages):
         self.action_leave_field()
 
     def on_server_asks(self, message: ServerAsks) -> None:
-        """Do what the web server of the page requests, see `do_asked`."""
+        """Do what the web server that shows the app in a browser requests; `do_asked` lists the requests."""
         do_asked(self.context, message.asked)
 
 

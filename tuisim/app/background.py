@@ -44,8 +44,8 @@ def run(
 ) -> None:
     """Run a function in a thread, and pass its result to `then`. This does not block.
 
-    If the node is removed or other work replaces this work, the function still runs to its end in its thread: `then` is
-    called, but `failed` is not. While the app shuts down, neither is called.
+    The function always runs to its end. If the node is removed meanwhile, or other work replaces this work, `then` is
+    still called, but `failed` is not. While the app shuts down, `then` is not called either.
 
     Args:
         node: The app, screen or widget that the work belongs to.

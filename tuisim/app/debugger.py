@@ -124,7 +124,11 @@ class DebugController:
         self.mark()
 
     def _send_breakpoints(self) -> None:
-        """Send the breakpoints to the live run; if the run executes an older text, with their lines in that text."""
+        """Send the breakpoints to the live run.
+
+        The run may execute an older text than the edited one. A breakpoint on a line is then sent with the number that
+        the line has in the older text. It is not sent if that text lacks the line.
+        """
         lines = self._lines()
         texts = []
         for entry in self.breaks:
@@ -289,7 +293,10 @@ class DebugController:
 
     @property
     def looks_back(self) -> bool:
-        """Whether an earlier instant than the newest is in view, even an earlier line of the newest tick."""
+        """Whether an instant before the newest one is in view.
+
+        This can also be a line of the program in the newest tick, before the last line that has run.
+        """
         return self.position is not None or self._run_controller.timeline.at is not None
 
     @property
@@ -299,7 +306,7 @@ class DebugController:
 
     @property
     def is_away(self) -> bool:
-        """Whether a past instant is in view, or will be once it is computed."""
+        """Whether a past instant is in view, or is being computed to be shown next."""
         return self.looks_back or self.busy
 
     @property
@@ -308,10 +315,11 @@ class DebugController:
         return protocol.Inspect(self.watches, self._thread, self._frame)
 
     def choose_frame(self, by: int) -> None:
-        """Show the variables of another frame of the call stack, at most of its first or last one.
+        """Show the variables of another frame of the call stack.
 
         Args:
-            by: Number of frames: positive towards the callers, negative towards the called functions.
+            by: How many frames to go: positive towards the callers, negative towards the called functions. The choice
+                stops at the first and the last frame.
         """
         if self.view:
             self._frame = min(max(0, self._frame + by), max(0, len(self.view.inspected.stack) - 1))
@@ -337,7 +345,11 @@ class DebugController:
             self._run_controller.send(self.inspect_request)
 
     def poll(self) -> None:
-        """Process what the re-run of the program has computed, and request the variables at the instant in view."""
+        """Keep the variables of the past instant in view up to date; to be called regularly.
+
+        To find past variables, the program runs again in another process. This method handles what that process has
+        sent, and requests the variables of another instant if the view has moved.
+        """
         self.replay.poll()
         timeline = self._run_controller.timeline
         if self.position and timeline.at not in (None, self.position.tick):
@@ -380,7 +392,7 @@ class DebugController:
             self.show()
 
     def go_to_now(self) -> None:
-        """Return to the newest instant, even from an earlier line of the newest tick."""
+        """Return from the past to the newest instant; drop steps and variables that are still being computed."""
         self.position = None
         self._steps.clear()
         if self.replay.busy:

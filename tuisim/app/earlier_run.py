@@ -27,9 +27,9 @@ def find_pose(run: Recording, time_s: float) -> Pose:
 
 
 def find_run_before(later: Recording) -> Recording | None:
-    """Return the newest stored run before the run `later` that `later` repeats; None if there is none.
+    """Return the newest stored run that is older than `later` and had the same program text, arguments and settings.
 
-    Only runs of the same program file are compared.
+    The result is None if there is none. Only runs of the same program file are compared.
 
     Raises:
         LogError: the store cannot be read.
@@ -39,7 +39,10 @@ def find_run_before(later: Recording) -> Recording | None:
 
 
 def find_similar_run(program: Program, spec: RunSpec) -> StoredRun | None:
-    """Return the newest stored run of a program file if it had this text and this specification; else None."""
+    """Return the newest stored run of a program file, if it had the same text and the same specification.
+
+    The result is None if it had not, if there is no such run, or if it cannot be read.
+    """
     with suppress(LogError):
         run = next(_load_runs(program, ""), None)
         if run and run.program.text == program.text and run.spec == spec:

@@ -82,7 +82,8 @@ class Feed:
     def describe_lag(self) -> str:
         """Return up to which time the chart shows the printed samples, such as `drawn to 3.0 of 9.5 s`.
 
-        The text is empty if the chart shows nearly all, because the program does not print faster than the app reads.
+        The chart lags behind while the program prints faster than the app reads. The text is empty if it lags by less
+        than `_MIN_LAG_S`.
         """
         hz = self.recording.spec.profile.tick_hz
         tick = self.recording.rows.find_unread_tick()
@@ -177,11 +178,12 @@ def trace_run(run: Recording, tick: int) -> Points:
 def _count_jumps(
     records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None
 ) -> npt.NDArray[np.int64]:
-    """Return for each record how often the robot was moved by hand up to it, shape (n,).
+    """Return how often the robot was moved by hand up to each record, as an array with shape (n,).
 
     Args:
-        records: Consecutive records.
-        before_mm: The position in the record before them; None if there is none, which counts as a move.
+        records: Consecutive records; each has the state of the robot at one tick.
+        before_mm: The position in the record before them. None if there is none: the first record then counts as a
+            move.
     """
     before_x, before_y = before_mm or (np.nan, np.nan)
     way = np.hypot(
@@ -296,7 +298,7 @@ class PanelFeed:
             self._append(feed.chart_series(mat), logged=False)
 
     def name_output(self) -> None:
-        """Give the output panel the name of the program that has printed, or before the first run, of the open one."""
+        """Give the output panel the name of the program that has printed; before the first run, of the open program."""
         if output := self._panel_area.output:
             program = (self._runs.timeline.recording or self._runs).program
             output.set_program(program.name if program else "")
@@ -325,7 +327,7 @@ class PanelFeed:
     def _count_rows(self) -> int | None:
         """Return the number of output rows up to the past instant in view; None at the newest instant.
 
-        An earlier line of the newest tick also is a past instant.
+        A past instant can also be in the newest tick: a line of the program before the last line that has run.
         """
         timeline = self._runs.timeline
         if (recording := timeline.recording) is None:

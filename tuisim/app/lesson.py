@@ -34,7 +34,7 @@ _ROOMY_ROWS = 33
 
 
 class LessonController:
-    """The lesson that is open in the app, if any: its session, its panel, and the panel with its step beside a log.
+    """The lesson that is open in the app, if any: its progress, its panel, and a panel with its step beside a log.
 
     Args:
         app: Shows notices.

@@ -20,13 +20,14 @@ BUSY = "the app runs a program: S in it, or its button Stop, stops that"
 
 
 def do_asked(context: ActionContext, asked: Mapping[str, Any]) -> None:
-    """Do what the web server of the page requests.
+    """Do what the web server that shows the app in a browser requests.
 
     Args:
         context: The parts of the app.
-        asked: `what`, and its details: `open` a file by its `path`; `stop` the program; show the stored `run` with an
-            `id`; take the `settings` and the `program` of a `cell`, put the robot back to its start if `home` is true,
-            and run the program if `runs` is true, at its `speed` if it has one.
+        asked: The request. Its `what` is one of these words, which has further entries: `open` opens the file `path`;
+            `stop` stops the program; `run` shows the stored run `id`; `cell` applies the `settings` and the `program`
+            of a notebook's cell. With `home`, the robot then goes back to its start; with `runs`, the program runs, at
+            the cell's `speed` if that is not None.
     """
     match asked:
         case {"what": "open", "path": str(path)}:

@@ -36,12 +36,12 @@ class Notice:
 
 
 class NoticeRow(Static):
-    """A row with a notice, on the lower borders of panels, which leave its further rows free.
+    """A notice on the lower borders of the panels; if it has more than one row, the panels leave room for the others.
 
     Args:
-        notice: The notice in the row.
+        notice: The notice to show.
         ended: Called once the whole notice has been shown, or a click has closed it.
-        leave_rows: Called with the number of its further rows.
+        leave_rows: Called with the number of rows for which the panels must leave room.
     """
 
     DEFAULT_CSS = f"""

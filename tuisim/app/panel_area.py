@@ -182,7 +182,7 @@ class PanelArea(Container):
         return beside and panel != self.front and self._can_focus(panel)
 
     def open(self, panel: str) -> None:
-        """Show a panel for this session: that it is shown is not stored for the next start."""
+        """Show a panel for this session only: the next start of the app does not show it for this reason."""
         if self.is_single:
             self.front = panel
             self.lay_out()
@@ -223,9 +223,10 @@ class PanelArea(Container):
         return next((name for name, panel in self.panels.items() if panel in around), "")
 
     def find_pointed_panel(self) -> str:
-        """Return the id of the panel that was clicked last but cannot have the focus, else of the focused panel.
+        """Return the id of the panel that the user works with.
 
-        The result is empty if there is no such panel.
+        This is the panel that was clicked last, if it cannot have the focus; else it is the panel with the focus. The
+        result is empty if there is neither.
         """
         if self.clicked and self.is_shown(self.clicked):
             return self.clicked
@@ -291,8 +292,8 @@ class PanelArea(Container):
         """Show and hide panels, and show a notice about panels that have no room or were hidden to make room.
 
         Args:
-            panels: Panels by id: True shows one, False hides it, None leaves that to the size of the terminal. Panels
-                that were requested later fit first.
+            panels: Panels by id: True shows one, False hides it, None leaves that to the size of the terminal. If there
+                is not enough room for all, the panels of later requests are shown first.
         """
         for panel, show in panels.items():
             self._asked.pop(panel, None)
@@ -394,7 +395,7 @@ class PanelArea(Container):
         self.post_message(self.Rearranged())
 
     def leave_rows(self, rows: int) -> None:
-        """Leave some rows below the panels free, for a notice; none if the notice is on another screen."""
+        """Leave some rows below the panels free for a notice; leave none if the notice is shown on a dialog."""
         rows = rows if self.app.screen is self.screen else 0
         if rows != self._free_rows:
             self._free_rows = rows

@@ -87,7 +87,8 @@ class PlotView(LinesView):
         """Show lines of text with charts.
 
         Args:
-            paint: Gets whether to leave the canvases blank; returns all lines, and the charts, each with its first row.
+            paint: Draws the lines, and returns them all with the charts in them, each chart after the number of its
+                first row. It is called with True if the canvases must stay blank, because pixels will be drawn there.
         """
         graphics = self.graphics
         lines, pictures = paint(graphics is not None)

@@ -40,9 +40,10 @@ class ReasonTour:
         return is_same and self._has_ended is has_ended
 
     def has_gone_wrong(self, runs: RunController) -> bool:
-        """Return whether the run in view is known to have gone wrong, or repeats the earlier run beside it.
+        """Return whether there may be a reason why the run in view went wrong.
 
-        A repetition may differ from the earlier run, which is also a reason.
+        This is so if a reason has been found. It is also so if the run repeats the earlier run beside it, because a
+        difference between the two would be a reason.
         """
         recording = runs.timeline.recording
         earlier = runs.earlier
@@ -86,7 +87,7 @@ class ReasonTour:
 
     @property
     def words(self) -> str:
-        """The present reason with its number, and ids of actions in braces; after the last one, words that say so."""
+        """The present reason with its number; after the last one, words that say so. Ids of actions are in braces."""
         count = len(self.reasons)
         if self._at is None:
             return "This is the end of the run again; {went-wrong} goes to the first reason"

@@ -32,7 +32,7 @@ FoundReasons = tuple[tuple["Reason", ...], "Recording | None"]
 
 
 def look(context: ActionContext) -> None:
-    """Begin to search in the background for the reasons why the run in view went wrong, once after its end."""
+    """After the end of the run in view, search in the background for the reasons why it went wrong; do so only once."""
     recording = context.runs.timeline.recording
     tour = context.reasons
     if recording is None or context.runs.state is not RunPhase.ENDED:
@@ -68,7 +68,8 @@ def find(
         recording: The run.
         earlier: The run to compare with, if the run in view repeats it; else None.
         then: Called with the reasons and the run that was compared.
-        searches: Whether to show errors, and to search the store for a run to compare with if `earlier` is None.
+        searches: Whether the user waits for the reasons. Then errors are shown, and if there is no `earlier` to compare
+            with, the store is searched for such a run.
     """
     session = context.lesson.session
     file = context.loader.goals.file

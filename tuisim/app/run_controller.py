@@ -273,9 +273,9 @@ class RunController:
         )
 
     def find_mat(self, spec: RunSpec) -> Field | None:
-        """Return the prepared mat of the next run, or that of the run in view, whichever is the mat of `spec`.
+        """Return the prepared mat that a specification names, if it is the mat of the next run or of the run in view.
 
-        The result is None if neither is.
+        The result is None if it is neither, or is not prepared yet.
         """
         recording = self.timeline.recording
         mats = (self.mat, self._mat_of_run)
@@ -352,13 +352,13 @@ class RunController:
         self._branch = branch
 
     def _finish_branch(self, paused: protocol.Paused | None = None) -> Branch | None:
-        """Continue a branch that has paused at its instant, and return it; None if no branch is being started.
+        """Continue the run of a branch that has paused at the instant of the branch, and return the branch.
 
-        A program that ends before that instant pauses at its end, and continues from there. A branch that has ended is
-        dropped.
+        The result is None if no branch is being started. The program may end before that instant: it then pauses at its
+        end, and is resumed.
 
         Args:
-            paused: The pause; None if the branch has ended.
+            paused: The pause; None if the run has ended, so that there is nothing to continue.
         """
         branch = self._branch
         self._branch = None
@@ -395,7 +395,12 @@ class RunController:
         self.show_earlier(companion)
 
     def _show_run(self, run: RunHandle, answers: tuple[str, ...] = ()) -> None:
-        """Show a run that was just started, with the former run beside it; arguments as for `Recording`."""
+        """Show a run that was just started, with the former run beside it.
+
+        Args:
+            run: The run.
+            answers: The answers to `input()` that were given in advance.
+        """
         before = self.timeline.recording
         self.close()
         self.run = run

@@ -58,16 +58,21 @@ def describe_remarks(
 
 
 class NearSampleWatch:
-    """Looks for a printed line that is nearly a sample, and reports one for each run."""
+    """Looks for a printed row that is nearly a sample, and gives the user one hint about it in each run."""
 
     def __init__(self) -> None:
         self._told: Recording | None = None
         """The last run of which a line was reported."""
 
     def look(self, recording: Recording, rows: list[OutputRow]) -> list[str]:
-        """Return in a list the line for the output about a printed row that is nearly a sample; at most one per run.
+        """Return a hint for the output if one of the new rows is nearly a sample, as a list of one line.
 
-        The list is empty if no new row is nearly a sample, or if the run has had its line already.
+        Each run gets at most one hint. The list is empty if no new row is nearly a sample, or if the run already had
+        its hint.
+
+        Args:
+            recording: The run.
+            rows: The new rows.
         """
         if self._told is recording or not (words := describe_near_sample(rows)):
             return []

@@ -198,7 +198,7 @@ class Snapshot:
 
     @property
     def planned(self) -> RunSpec:
-        """The specification of the next run; without a plan of its own, that of the run in view."""
+        """The specification of the next run; if there is no plan for it, that of the run in view."""
         return self.next_spec or self.spec
 
 
@@ -222,8 +222,8 @@ class PauseView:
     def find_present(self, record: TickRecord, robot: RobotSpec) -> Present | None:
         """Return what the program would read at the pause; None if that is unknown.
 
-        It is also None if the record is another instant than the pause, or the user has changed something since the
-        pause.
+        The result is also None if the record is not of the instant of the pause, or the user has changed something
+        since then.
         """
         present = self.inspected.present
         key = record.tick, record.actions

@@ -346,11 +346,11 @@ def describe_commands(text: str, timeline: Timeline) -> str:
 
 
 def _parse_condition(word: str, rest: str, text: str) -> ValueCondition | None:
-    """Return the condition in the words for an instant; None if they are no condition.
+    """Return the condition in the words for an instant, such as `left_red_pc < 10`; None if they are no condition.
 
     Args:
         word: The first word.
-        rest: The words without the direction.
+        rest: All words except the one for the direction of the search, such as `back`.
         text: All words, for errors.
     """
     if word == ValueSource.PRINT and rest:
@@ -472,7 +472,9 @@ def _find_printed(search: _Search, condition: ValueCondition) -> int:
 
 
 def find_begins(condition: ValueCondition, true: Array) -> Array:
-    """Return the ticks at which a condition becomes true, in order; for a momentary condition, all at which it is true.
+    """Return the ticks at which a condition becomes true, in order.
+
+    A condition such as `left_color changes` is true only at single instants; then return all ticks at which it is true.
 
     Args:
         condition: The condition.

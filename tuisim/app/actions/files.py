@@ -376,7 +376,7 @@ def own_editor(environment: Mapping[str, str] = os.environ) -> list[str]:
     """Return the command of the user's editor as a list of words, without the file to edit.
 
     Raises:
-        TuisimError: no variable names an editor, or its command cannot be read.
+        TuisimError: neither `VISUAL` nor `EDITOR` is set, or the command in it cannot be read.
     """
     for variable in VARIABLES:
         named = environment.get(variable, "")

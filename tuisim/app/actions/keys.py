@@ -748,7 +748,9 @@ def list_working(now: Situation) -> tuple[str, ...]:
 
 
 def check_config(config: UserConfig) -> None:
-    """Check the keys and the name of the theme in the user's settings; only the app knows which exist.
+    """Check the keys and the name of the theme in the user's settings.
+
+    The code that reads the settings cannot check these, because only the app knows which actions and themes exist.
 
     Raises:
         ConfigError: something in the settings is wrong.

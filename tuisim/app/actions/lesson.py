@@ -78,7 +78,7 @@ def has_more_text(area: PanelArea) -> bool:
 
 
 def show_menu(context: ActionContext) -> None:
-    """Show the menu of lessons: the step before, skip, the robot of the model answer, start over, and all lessons."""
+    """Show the menu of lessons: actions for the open lesson, such as skipping its step, and below them all lessons."""
     from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser
 
     here = []

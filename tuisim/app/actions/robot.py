@@ -168,10 +168,7 @@ def find_world_panel(context: ActionContext) -> World | None:
 
 
 def switch_earlier(context: ActionContext) -> None:
-    """Show the robot of the earlier run beside the robot of the run in view.
-
-    If earlier runs are shown already, hide it.
-    """
+    """Show or hide the robot of an earlier run, which is drawn in grey beside the robot of the run in view."""
     runs = context.runs
     runs.shows_earlier = not runs.shows_earlier
     if runs.earlier is None:

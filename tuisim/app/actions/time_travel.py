@@ -71,8 +71,7 @@ def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -
     Args:
         context: The parts of the app.
         time_s: Simulated time in s; None for the newest instant.
-        sample: Name of a sample printed at that time: the line of the program that printed it is highlighted; empty for
-            none.
+        sample: Name of a sample that was printed at that time; the line that printed it is highlighted. Empty for none.
     """
     timeline = context.runs.timeline
     tick = None if time_s is None else round(time_s * timeline.tick_hz)
@@ -100,7 +99,8 @@ def skip_ticks(context: ActionContext, ticks: int) -> None:
 def step_tick(context: ActionContext) -> None:
     """Go forward one tick: if a past tick is in view, show the next recorded one; else simulate one.
 
-    If an earlier line of the newest tick is in view, go to the newest instant instead.
+    A tick can contain several lines of the program. If one of them in the newest tick is in view, and it is not the
+    last one, go to the newest instant instead.
     """
     if context.runs.in_past:
         skip_ticks(context, 1)
@@ -185,7 +185,7 @@ def go_to_sample(context: ActionContext, words: str) -> None:
 
     Args:
         context: The parts of the app.
-        words: A command of `find`, such as `sample back`.
+        words: Which sample, in words that `timeline.find` understands, such as `sample back` for the previous one.
     """
     try:
         go_to_tick(context, find(words, context.runs.timeline))
@@ -238,7 +238,13 @@ def go_wrong(context: ActionContext) -> None:
 
 
 def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
-    """Go to the next reason why the run went wrong, and show its text; after the last, go to the newest instant."""
+    """Go to the next reason why the run went wrong, and show its text; after the last, go to the newest instant.
+
+    Args:
+        context: The parts of the app.
+        earlier: The earlier run that was compared with this one. It is drawn if the reason is a difference from it.
+            None if no run was compared.
+    """
     tour = context.reasons
     if (reason := tour.advance()) is None:
         go_to_now(context)
@@ -269,7 +275,7 @@ def _say_nothing_wrong(context: ActionContext) -> str:
 def propose_action(context: ActionContext, action: protocol.Message) -> bool:
     """If a past instant is in view, ask whether to branch there with a user action.
 
-    An earlier line of the newest tick also is a past instant.
+    A past instant can also be in the newest tick: a line of the program before the last line that has run.
 
     Returns:
         Whether a past instant is in view; if so, the caller must not apply the action to the live run.

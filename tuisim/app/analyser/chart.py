@@ -164,7 +164,7 @@ class LogChart(LinesPanel):
         return [*lines, *(self._mark_events(model) if marked else []), *measured], self._pictures
 
     def _mark_events(self, model: AnalysisModel) -> list[list[Run]]:
-        """Return the line below the charts, in a list, with a mark at each event such as a threshold crossing."""
+        """Return the line below the charts with a mark at each event, as a list of one line."""
         _, picture = self._pictures[-1]
         if not picture.columns:
             return [[]]
@@ -194,9 +194,9 @@ class LogChart(LinesPanel):
         return max(self._pictures[0][1].columns, 1) if self._pictures else 1
 
     def time_beside(self, time_s: float, columns: int) -> float:
-        """Return the time that is a number of chart columns to the right of `time_s`.
+        """Return the time that is `columns` columns of the chart to the right of `time_s`.
 
-        Both are in the unit of the horizontal axis: seconds, or mm if the runs are aligned by distance.
+        Both times are in the unit of the horizontal axis: seconds, or mm if the runs are aligned by distance.
         """
         low, high = self._model.find_x_limits() if self._model else (0.0, 1.0)
         return time_s + columns * (high - low) / self.columns()

@@ -114,7 +114,12 @@ def _list_bands(model: AnalysisModel) -> Sequence[Cells]:
 
 
 def _format_band(band: Band, *, is_moved: bool) -> Cells:
-    """Return a band as cells; its true level is an empty cell unless noise has moved the levels of the log."""
+    """Return the cells of a band in the pane of the bands.
+
+    Args:
+        band: The band.
+        is_moved: Whether noise has moved the levels of this log; if not, the cell of the true level is empty.
+    """
     return (
         band.variable,
         str(band.number),
@@ -344,9 +349,9 @@ def _build_continuation(
     width: int,
     height: int,
 ) -> list[Line]:
-    """Return the lines of a second table, below a pane, with the columns that the pane has no room for.
+    """Return the lines of a second table, below a pane, with the columns for which the pane has no room.
 
-    Its first column is that of the pane. The list is empty if the second table is too high or too wide as well.
+    The first column of the pane is repeated. The list is empty if the second table does not fit either.
 
     Args:
         heads: The headings of all columns.
@@ -383,10 +388,10 @@ def _count_rows(name: str, model: AnalysisModel, width: int) -> int:
 def _split_below(
     pane: Pane, model: AnalysisModel, width: int, height: int
 ) -> tuple[list[str], int]:
-    """Return the lines of text below the rows of a pane, and how many rows there is room for.
+    """Return the lines of text below the rows of a pane, and how many rows of the pane there is room for.
 
-    If all rows fit, the text gets all other lines, else a sixth of the height. It is left out if only a cut line of it
-    would remain.
+    If all rows of the pane are visible, the text gets all lines that are left; else it gets a sixth of the height. If
+    only one line would remain of a longer text, the text is left out.
     """
     spare = height - 1 - len(pane.rows(model))
     texts = pane.below(model)
@@ -411,8 +416,9 @@ def _choose_columns(
 ) -> tuple[list[int], list[int], int]:
     """Return the indices of the columns to show, the widths of all columns, and the gap between two columns.
 
-    If not all columns fit, a first column with the same text in all rows is left out; if that is not enough, the gap
-    becomes smaller, and then the spare columns are left out.
+    If not all columns fit, columns are saved in this order until they do: a first column with the same text in all rows
+    is left out, the gap becomes smaller, the columns in `pane.spare` are left out one by one. If nothing helps, only
+    the first columns are shown.
     """
     widths = [max(map(len, column)) for column in zip(pane.heads, *rows, strict=True)]
     filled = [index for index in range(len(widths)) if any(row[index] for row in rows)]
@@ -503,9 +509,9 @@ class PaneView(LinesPanel):
             self.styles.max_height = max(_count_rows(self.name_shown, model, width), _MIN_ROWS) + 2
 
     def _compute(self, model: AnalysisModel, pane: str) -> None:
-        """Compute what a pane shows but the model has not computed yet; for a long log, in the background.
+        """Compute the bands or statistics that a pane shows, as far as the model does not have them yet.
 
-        Do nothing if a background job already computes it.
+        For a long log, this is done in the background; do nothing if that work is already being done.
         """
         names = {"bands": model.list_unsearched, "statistics": model.list_unsummed}.get(
             pane, list
@@ -549,7 +555,8 @@ def find_bands(model: AnalysisModel, names: Sequence[str]) -> None:
 def build_band_search(rows: int) -> Search:
     """Return the function that searches a log with this number of rows for bands.
 
-    More than `SEARCHED_AT_ONCE` rows are searched in another process, until the worker that calls this is cancelled.
+    Up to `SEARCHED_AT_ONCE` rows, the function searches directly. Above that, it searches in another process. Call this
+    then in a worker of Textual: if the worker is cancelled, the search stops.
     """
     if rows <= SEARCHED_AT_ONCE:
         return find_plateaus

@@ -137,7 +137,10 @@ class PreviewDialog(Dialog[ReadChoices]):
         return "\n".join(self._preview.log.notes)
 
     def _list_offers(self, name: str) -> list[tuple[str, Any]]:
-        """Return the options of a choice as (label, value); with the first one, the app finds the value in the file."""
+        """Return the options of a choice as (label, value).
+
+        The first option lets the app find the value in the file by itself.
+        """
         chosen = getattr(self._choices, name)
         offers = self._preview.list_offers(name)
         usual = getattr(NO_CHOICES, name)

@@ -220,7 +220,10 @@ class LogScreen(ActionHost, ClosesOnce[None]):
                 self.say(note)
 
     def poll(self) -> None:
-        """Read the log again if it has grown; the pause before that is longer if the last reading took long."""
+        """Read the log again if it has grown; to be called often.
+
+        If the last reading took long, the next one comes later.
+        """
         model = self._model
         if self.job is not None:
             self._show_title(self._describe_progress())

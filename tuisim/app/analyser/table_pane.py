@@ -116,9 +116,9 @@ def _fit_columns(
 
 
 def build_heading(model: AnalysisModel, column: str) -> str:
-    """Return the heading of a column in the table: its name, except that `run` of stored runs becomes `nth run`.
+    """Return the heading of a column in the table: its name, but `nth run` for the column `run` of stored runs.
 
-    The column counts the runs of the log, while the title of the screen has their numbers in the store.
+    This column counts the runs of the log from 1, while the title of the screen has their numbers in the store.
     """
     return f"nth {column}" if column == "run" and model.opened.runs else column
 
@@ -126,7 +126,7 @@ def build_heading(model: AnalysisModel, column: str) -> str:
 def count_rows(model: AnalysisModel) -> str:
     """Return in words how many rows the table shows, and the filter that selects them.
 
-    If the selected column is `index` of a log of stored runs, the text also says what `index` means.
+    If the log is from stored runs and its column `index` is selected, the text also explains the values of that column.
     """
     rows = model.rows
     if rows.columns and rows.chosen == "index" and model.opened.runs:

@@ -64,7 +64,9 @@ class RunWorld:
         """The program of the run; None if it is unknown."""
 
     def find_snapshot(self, time_s: float, row: int) -> Snapshot:
-        """Return the state of robot and run at a time: from the recording, or without one from the row of the log.
+        """Return the state of robot and run at a time, taken from the recording of the run.
+
+        If there is no recording, the state is taken from the row of the log.
 
         Args:
             time_s: Simulated time.
@@ -153,7 +155,10 @@ def load_world(opened: OpenedLog, run: int) -> RunWorld | None:
 
 
 class WorldPane(Vertical):
-    """The column beside the log: the world, the program around the line that printed the sample, the pixels seen."""
+    """The column beside the log.
+
+    It shows the world, the lines of the program around the one that printed the sample, and what the sensors see.
+    """
 
     DEFAULT_CSS = f"""
     WorldPane {{ width: 34%; min-width: 30; }}

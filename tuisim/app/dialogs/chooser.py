@@ -235,7 +235,10 @@ class Chooser(ListDialog):
             )
 
     def clear_preview(self) -> None:
-        """Remove the preview of the previously highlighted entry; a plain list has no preview."""
+        """Remove the preview of the previously highlighted entry.
+
+        This class has no preview, so the method does nothing; subclasses with a preview override it.
+        """
 
     def _search_groups(self, typed: str) -> Sequence[ChoiceGroup]:
         if not (self._suffixes and is_path(typed)):
@@ -476,7 +479,7 @@ class MatPicker(Chooser):
         self._show("")
 
     def show_again(self) -> None:
-        """Show the preview of the mat that is highlighted when this is called."""
+        """Show the preview of the highlighted mat again, because the size of its picture has changed."""
         self._show(self._shown)
 
     @on(OptionList.OptionHighlighted)

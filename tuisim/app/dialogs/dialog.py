@@ -176,7 +176,10 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         self.dismiss(result)
 
     def render_lines(self, crop: Region) -> list[Strip]:
-        """Return the rows of the screen below the dialog with their pixels; Textual would make plain text of them."""
+        """Return the rows of the dialog's background, in which the screen below the dialog is visible.
+
+        Pictures on that screen keep their pixels; Textual's own method would return them as plain text.
+        """
         below = None if self.styles.background.a else self.read_lower_parts(crop)
         if below is None:
             return super().render_lines(crop)
@@ -244,7 +247,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
     async def on_click(self, event: Click) -> None:
         """Press a key of the dialog if the user has clicked the key's word in the footer below the dialog.
 
-        A phone may lack this key.
+        With a click, the user of a phone can press keys that the phone's keyboard lacks, such as Escape.
         """
         keys = {
             _shorten_label(key): key

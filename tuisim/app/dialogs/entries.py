@@ -50,7 +50,8 @@ class _TextList(_List[None], Generic[Entry]):
 
     Args:
         entries: The current entries.
-        run: The run whose columns can be used in entries.
+        run: The specification of the run; the field completes the names of its telemetry columns, such as
+            `left_red_pc`.
         changed: Called with the new entries after each change.
     """
 
@@ -165,7 +166,7 @@ class BreaksDialog(_TextList[Breakpoint]):
 
         Args:
             entries: The current breakpoints.
-            run: The run whose columns can be used in conditions.
+            run: The specification of the run. Conditions can use its telemetry columns, such as `left_red_pc`.
             changed: Called with the new breakpoints after each change.
             lines: Lines of the open program; none without a program.
         """

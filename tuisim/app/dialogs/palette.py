@@ -64,14 +64,18 @@ class Entry(NamedTuple):
 
 
 def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
-    """Return the entries that contain every word of a text; an unknown word is replaced by the most similar known one.
+    """Return the entries that contain every word of a text, the best first.
 
-    Small words of a question, such as `how`, are ignored.
+    Small words of a question, such as `how`, are ignored. A word that no entry contains is replaced by the most similar
+    known word. The entries come in this order:
 
-    The first entries are those whose title, or what follows "Show or hide" in it, starts with the text. Then come those
-    with each word at the start of a word of the title, then those with all words in title and group, then those with
-    all words among their further words. Among equals, entries that show or hide something are first. Pages of the guide
-    are last.
+    1. The title starts with the text; "Show or hide" at the start of a title is not counted.
+    2. Each word is at the start of a word of the title.
+    3. All words are in the title or the name of the group.
+    4. All words are among the further words by which the entry can be found.
+    5. All other entries.
+
+    In each group, entries that show or hide something come first. Pages of the guide come last, in the same order.
     """
     typed_words = typed.lower().rstrip("?").split()
     words = [word for word in typed_words if word not in _QUESTION_WORDS] or typed_words
@@ -182,10 +186,11 @@ def _build_line(entry: Entry, cells: int) -> Text:
 
 
 class Palette(SearchList):
-    """The command palette: returns the id of the chosen action. Actions that work now come first.
+    """The command palette; it returns the id of the action that the user chooses. Actions that work now come first.
 
-    A search also lists pages of the guide, last. For a page it returns `GUIDE_PREFIX` and the page's name; if nothing
-    contains the typed words, `GUIDE_PREFIX` and these words, for a search of the guide.
+    A search also lists pages of the guide, after the actions. If the user chooses a page, the result is `GUIDE_PREFIX`
+    and the name of the page. If nothing matches, Enter returns `GUIDE_PREFIX` and the typed words, so that the caller
+    can search the guide for them.
     """
 
     TITLE_TEXT: str = "Commands"

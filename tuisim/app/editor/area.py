@@ -211,7 +211,7 @@ class CodeArea(TextArea):
     def scroll_cursor_visible(self, center: bool = False, animate: bool = False) -> Offset:
         """Scroll so that the cursor is visible, and return by how much.
 
-        If its line fits as far as the cursor, scroll to the left edge of the text.
+        If the part of the line up to the cursor fits into the widget, scroll to the left edge of the text.
         """
         scrolled = super().scroll_cursor_visible(center, animate)
         x = self.wrapped_document.location_to_offset(self.cursor_location).x
@@ -220,7 +220,7 @@ class CodeArea(TextArea):
         return scrolled
 
     def on_resize(self) -> None:
-        """Scroll to the start of the lines, and to the highlighted line, unless the user types."""
+        """Unless the user types, scroll to the left edge of the text, and up or down to the highlighted line."""
         if not self.typing:
             self.call_after_refresh(self.scroll_to, x=0, animate=False, force=True)
             self.call_after_refresh(self.scroll_to_line, self._lit)
@@ -305,7 +305,11 @@ class CodeArea(TextArea):
 
     @property
     def gutter_width(self) -> int:
-        """Width of the gutter in cells: a breakpoint's marker, a marker of the run or an error, a number, a blank."""
+        """Width of the gutter in cells.
+
+        The gutter has the marker of a breakpoint, the marker of the current line or of an error, the line number, and a
+        blank.
+        """
         return max(2, len(str(self.document.line_count))) + 3
 
     def render_line(self, y: int) -> Strip:
@@ -544,7 +548,7 @@ class CodeArea(TextArea):
         return find_word(self.document.get_line(row), column)
 
     def _locate_word(self, word: str) -> Offset:
-        """Return where on the screen the word begins that ends at the cursor."""
+        """Return the position on the screen of the first letter of `word`, a word that ends at the cursor."""
         x, y = self.cursor_screen_offset
         return Offset(x - cell_len(word), y)
 

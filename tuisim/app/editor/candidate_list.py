@@ -117,7 +117,7 @@ def _build_signature(signature: Signature, indices: range) -> Text:
 class CandidateList(Widget):
     """The list of names that may complete a word, above everything else on the screen.
 
-    The list never has the focus: the text passes on the keys.
+    The focus always stays in the text; the text passes on the keys that are meant for the list.
     """
 
     ALLOW_SELECT = False
@@ -202,7 +202,7 @@ class CandidateList(Widget):
     def can_complete(self, word: str) -> bool:
         """Return whether a dot or a parenthesis typed after a word replaces the word by the chosen name.
 
-        The word is replaced if the user asked for the list, and the word is not a whole name already.
+        It does so if the user asked for the list, and the word alone is not yet a name in the list.
         """
         return (
             self.is_open and bool(word) and not self.is_offered and not self._has_whole_name(word)

@@ -240,7 +240,10 @@ def _ask_jedi(ask: Callable[[], Result], otherwise: Result) -> Result:
 
 
 def _build_script(text: str, path: str) -> tuple[Script, int]:
-    """Return Jedi's object for a program with its prelude before it, and the number of lines of the prelude."""
+    """Return Jedi's object for a program, and the number of lines that were put before its text.
+
+    These lines are the program's prelude: the definitions that tuisim runs before it, such as that of `tank_drive`.
+    """
     import jedi
     from jedi.api.environment import InterpreterEnvironment
 
@@ -302,7 +305,9 @@ def _find_class(script: Script, line: int, column: int) -> str:
 
 
 def _rank(completion: Completion, word: str, owner: str) -> tuple[int, ...]:
-    """Return the sort key of a proposed name: usual names first; private, constant and general ones last.
+    """Return the sort key of a name that Jedi proposes: names that programs often use come first.
+
+    Private names, constants and the names of the general modules of ev3dev2 come last.
 
     Args:
         completion: The name.

@@ -347,8 +347,8 @@ class Document:
         """Show the line of the mistake because of which the text cannot run, if there is one.
 
         Returns:
-            Why the text cannot run; empty if it can run, or if the run in view ran this text, whose own error then says
-            more.
+            Why the text cannot run; empty if it can. Also empty if the run in view is a run of exactly this text: the
+            error of that run then says more.
         """
         self.run_changed()
         is_run = self._ran is not None and self._ran[1] == self._text
@@ -365,9 +365,9 @@ class Document:
 
     @property
     def _lacks_options(self) -> bool:
-        """Whether the program was opened without options of its magic line, because they are wrong.
+        """Whether the magic line has a wrong option or a wrong mat, so that the program was opened without it.
 
-        The user can choose another mat in place of a wrong one.
+        A wrong mat no longer counts once the user has chosen another mat.
         """
         if find_wrong_option(self._text, self._name):
             return True

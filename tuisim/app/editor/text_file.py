@@ -130,10 +130,6 @@ def find_program_data(folder: str, path: str) -> Path:
     Args:
         folder: Name of the folder of the app's data, such as the one for drafts.
         path: Path of the program, or its name if it has no file.
-
-    Args:
-        folder: Name of the folder.
-        path: Path of the program, or its name if it has no file.
     """
     return (
         session_folder()

@@ -81,7 +81,10 @@ def find_matches(lines: Sequence[str], search: str) -> list[tuple[int, int]]:
 
 
 def count_differing_lines(text: str, other: str) -> int:
-    """Return how many lines a diff of two texts changes; a replaced block counts with the lines of its longer side."""
+    """Return how many lines a diff of two texts changes.
+
+    If a block of lines is replaced by a shorter or longer one, the lines of the longer block are counted.
+    """
     matcher = SequenceMatcher(None, source_lines(text), source_lines(other), autojunk=False)
     changes = (op for op in matcher.get_opcodes() if op[0] != "equal")
     return sum(
@@ -102,11 +105,13 @@ MAX_COMPARED = 400
 
 
 class LineMap:
-    """A map between lines of the running text and lines of the shown text, from 1; 0 stands for no line.
+    """Finds a line of the running text in the shown text, which the user may have edited since, and the reverse.
+
+    Lines are numbered from 1; 0 stands for no line.
 
     Args:
         run: Lines of the running text.
-        shown_lines: Lines of the text shown.
+        shown_lines: Lines of the shown text.
     """
 
     def __init__(self, run: Sequence[str], shown_lines: Sequence[str]) -> None:
@@ -129,9 +134,9 @@ class LineMap:
             )
 
     def find_shown_line(self, line: int) -> int:
-        """Return the line of the shown text that is a line of the running text; 0 if it was changed or deleted."""
+        """Return the number that a line of the running text has in the shown text; 0 if it was changed or deleted."""
         return self._to_shown[line] if 0 <= line < len(self._to_shown) else 0
 
     def find_run_line(self, line: int) -> int:
-        """Return the line of the running text that is a line of the shown text; 0 if it was changed or added."""
+        """Return the number that a line of the shown text has in the running text; 0 if it was changed or added."""
         return self._to_run[line] if 0 <= line < len(self._to_run) else 0

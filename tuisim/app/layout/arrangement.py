@@ -70,7 +70,7 @@ class Preset(StrEnum):
 
 
 def is_low(preset: Preset, width: int, height: int) -> bool:
-    """Return whether an area is so low that a preset needs special forms.
+    """Return whether an area is so low that the panels of a preset are arranged by `build_low`.
 
     Such an area has room for the world in its whole width, or for one panel with long lines.
     """
@@ -83,7 +83,7 @@ def is_low(preset: Preset, width: int, height: int) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Plan:
-    """The panels that a preset shows, and the forms in which they are arranged."""
+    """The panels that a preset shows, and the forms to choose from: functions that arrange panels in an area."""
 
     core: tuple[str, ...]
     """Panels that the preset always shows, the most important first."""
@@ -215,7 +215,7 @@ def _fit_panels(
     Args:
         form: Arranges panels in the area.
         panels: Panels that fit if there is room for their minimum size.
-        fill: Further panels, which fit only if all panels are then still larger than that, and easy to read.
+        fill: Further panels. One of them fits only if all panels then still have enough rows to be read easily.
         width: Columns.
         height: Rows.
     """
@@ -266,14 +266,14 @@ def arrange(
     fill: Sequence[str] = (),
     preset: Preset = Preset.STANDARD,
 ) -> PanelLayout:
-    """Return the boxes of panels on a screen, in the form in which the world is largest.
+    """Return the boxes of panels on a screen, arranged so that the world is as large as possible.
 
     Args:
         panels: Ids, the most wanted first.
         width: Columns.
         height: Rows.
         fill: Ids of panels that fill the rest of the screen.
-        preset: The preset, which decides between which forms to choose.
+        preset: The preset. It has the forms to choose from: functions that arrange panels in an area.
 
     Returns:
         Boxes that fill the screen without overlap, without the panels that do not fit.
@@ -309,10 +309,7 @@ def _is_cramped(width: int, height: int) -> bool:
 def _score_forms(
     panels: Sequence[str], fill: Sequence[str], preset: Preset, width: int, height: int
 ) -> Iterator[tuple[tuple[int, float], Node]]:
-    """Yield a score and the arranged panels, as a tree, for each form that may be chosen.
-
-    The highest score is the best.
-    """
+    """Yield the panels of a preset in each possible arrangement, as (score, tree); the highest score is the best."""
     plan = _PLANS[preset]
     is_standard = preset == Preset.STANDARD
     is_cramped = is_standard and "debug" in panels and _is_cramped(width, height)
@@ -385,8 +382,8 @@ def make_room(
 ) -> list[str]:
     """Return the panels to show so that one panel gets a minimum size.
 
-    These are all panels if it then gets that size; else it and the panels outside its own area of the screen, if it
-    then does; else the panel alone.
+    The result is the first of these choices in which the panel gets that size: all panels; the panel and those that
+    have their place in other areas of the screen; the panel alone, whatever its size.
 
     Args:
         panel: The panel that needs room.
@@ -419,7 +416,7 @@ class KeptLayout:
 def load_layout(size: TerminalSize) -> KeptLayout:
     """Return the stored preset and panels for a size of the terminal, without damaged or unknown parts.
 
-    If nothing is stored, return the standard preset, in which no panel was shown or hidden.
+    If nothing is stored, return the standard preset, as if the user had never shown or hidden a panel.
     """
     size_table = _check_table(get_preference(_NAME)).get(size)
     layout_table = _check_table(size_table)

@@ -238,8 +238,8 @@ _MAX_EMPTY_ROWS = 3
 def build_board(panels: Sequence[str], width: int, height: int) -> Node:
     """Return a node with the world and the readings side by side, above a strip with the chart.
 
-    If the area is too narrow or not of medium size, one of these panels is hidden, or a lesson is shown, return the
-    node of `build_wide`.
+    The node of `build_wide` is returned instead if the area is too narrow or not of medium size, if one of these panels
+    is hidden, or if a lesson is shown.
     """
     side = select_panels(panels, PanelPlace.SIDE)
     main = select_panels(panels, PanelPlace.MAIN)
@@ -273,7 +273,15 @@ def _find_strip_rows(height: int) -> int:
 
 
 def _build_board_strip(roomy: Sequence[str], has_output: bool, height: int) -> Node:
-    """Return a node with the chart and the output: side by side, or stacked to the right of code and brick."""
+    """Return a node with the chart and the output.
+
+    They are side by side; if code or brick is shown, that is at the left, and the output is below the chart.
+
+    Args:
+        roomy: `code` and `brick`, as far as they are shown.
+        has_output: Whether the output is shown; if not, the chart is alone.
+        height: Rows of the area.
+    """
     if not roomy:
         parts = ["chart", "output"] if has_output else ["chart"]
         return join_nodes(Axis.COLUMNS, parts, shares=(_CHART_SHARE, 1 - _CHART_SHARE))
@@ -414,7 +422,10 @@ def _find_roomy_rows(roomy: Sequence[str], beside: Sequence[str], height: int) -
 
 
 def _list_read_rows(panels: Sequence[str]) -> tuple[int, ...]:
-    """Return the height in rows of each panel beside a small world: its minimum, for the readings one row more."""
+    """Return the height in rows of each panel that is beside a small world.
+
+    This is the minimum height of the panel, and one row more for the panel with the readings.
+    """
     return tuple(PANELS[panel].min_rows + (panel == "instrumentation") for panel in panels)
 
 
@@ -438,7 +449,9 @@ def _sum_fair_rows(panels: Sequence[str]) -> int:
 
 
 def build_halves(first: Sequence[str], second: Sequence[str], share: float) -> Form:
-    """Return a form with two columns; panels that are in neither column go below them.
+    """Return a form, which is a function that arranges panels, with two columns.
+
+    Panels that belong to neither column go below them.
 
     Args:
         first: Panels of the left column, from the top.

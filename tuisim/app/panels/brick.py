@@ -215,7 +215,10 @@ class Brick(LinesPanel, can_focus=True):
         return next(hit, "")
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Press the button under the mouse; if the right mouse button was used, hold it until the next click."""
+        """Press the button of the brick under the mouse.
+
+        If the right mouse button was used, the button of the brick stays pressed until the next click on it.
+        """
         name = self._find_button(event)
         if not name:
             return

@@ -91,7 +91,7 @@ class Chart(LinesPanel, can_focus=True):
         """Add points to a trace, which is made if it does not exist.
 
         Args:
-            name: The name of a printed sample, or of a column of telemetry, whose trace is hidden at first.
+            name: The name of a printed sample, or of a column of telemetry. The trace of a column is hidden at first.
             times_s: Simulated times in s.
             values: The values at these times.
             logged: Whether the program has printed them.
@@ -125,7 +125,11 @@ class Chart(LinesPanel, can_focus=True):
             self._throttle.ask()
 
     def show_printed(self, time_s: float) -> None:
-        """Show at the cursor the values up to the newest line of the output, which was printed at this time."""
+        """Include the samples up to `time_s` in the values at the cursor.
+
+        At this time, the newest visible line of the output was printed, so that the chart and the output show the same
+        values.
+        """
         if time_s != self._printed_s:
             self._printed_s = time_s
             self._schedule_drawing()
@@ -314,7 +318,7 @@ class Chart(LinesPanel, can_focus=True):
     def _format_values(self, width: int) -> str:
         """Return the values of the drawn traces at the pointer, else at the cursor, as a text; empty if there are none.
 
-        At the cursor they are those of the instant in view, like the newest line of the output.
+        The values at the cursor include the samples in the newest visible line of the output.
         """
         time_s = self._state.cursor_s if self._pointed_s is None else self._pointed_s
         drawn = self._traces.list_drawn()

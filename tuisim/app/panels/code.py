@@ -351,7 +351,12 @@ class Code(Vertical):
             self._area.move_to_code(self.error_line)
 
     def name_line(self, tick: int, line: int) -> None:
-        """Put the cursor on a line of the run's text, and scroll to it, while a tick is in view; 0 for none."""
+        """Put the cursor on a line, and scroll to it, each time that a tick comes into view.
+
+        Args:
+            tick: The tick, such as that of a printed sample.
+            line: The line in the text of the run, from 1; 0 for no line.
+        """
         self._named_line = tick, line
         self._go_to_named_line()
 
@@ -361,7 +366,10 @@ class Code(Vertical):
             self._area.move_to_code(shown_line)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Highlight the line that the program executes; in a live run, the highlight moves once in `LIT_GAP_S`."""
+        """Highlight the line that the program executes.
+
+        In a live run, the highlight moves at most once in `LIT_GAP_S` seconds.
+        """
         in_run = snapshot.state not in (RunPhase.IDLE, RunPhase.ENDED) or snapshot.past
         if in_run != self._in_run:
             self._in_run = in_run
@@ -403,7 +411,7 @@ class Code(Vertical):
             self._area.scroll_to_line(lit)
 
     def _find_shown_line(self, line: int) -> int:
-        """Return the line of the shown text that is a line of the run's text; 0 if it no longer exists."""
+        """Return the number that a line of the run's text has in the shown text; 0 if that text lacks the line."""
         if self._run_lines is None:
             return line
         lines = self._area.document.lines

@@ -77,7 +77,7 @@ def _is_small(now: Snapshot, height: int) -> bool:
 
 
 def _count_rows(now: Snapshot) -> int:
-    """Return the number of rows in which each part of the robot has one row, and pose, clock and state, too."""
+    """Return how many rows the readings need if each part of the robot, the pose, clock and state have one each."""
     robot = now.spec.robot
     ranging = (robot.ultrasonic is not None) + (robot.gyro is not None)
     return 5 + ranging + len(robot.color_sensors) + len(robot.extra_motors) + len(now.further)
@@ -187,8 +187,8 @@ def _build_further_line(column: str, value: float, width: int) -> Line:
 def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
     """Return the readings in columns, with as much detail as the width allows.
 
-    In a narrow panel, the first of these choices that is enough is left out: the names of colours; only the pose; both;
-    these and the speeds; whole columns.
+    If not everything fits, the names of the colours are left out. If this is not enough, the pose is left out instead,
+    then both, then also the speeds, and at last whole columns.
     """
     for detail, with_pose in ((2, True), (1, True), (2, False), (1, False), (0, False)):
         columns, sensing = _arrange_cells(now, height, detail)
@@ -220,12 +220,14 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
 def _add_pose(
     lines: list[Line], columns: list[list[Line]], places: list[list[Line]], width: int
 ) -> None:
-    """Put the pose behind the reading in the last row that has only one reading and enough room; else leave it out.
+    """Write the pose behind a reading; if there is room for it in no row, leave it out.
+
+    The pose goes to the last row that has exactly one reading and enough room.
 
     Args:
-        lines: The rows of the panel; one of them is replaced.
+        lines: The rows of the panel; the row with the pose is replaced.
         columns: The columns of readings.
-        places: The columns of the pose.
+        places: The cells of the pose, in columns.
         width: Columns inside the border.
     """
     pose: Line = []
@@ -262,8 +264,8 @@ def _arrange_cells(now: Snapshot, height: int, detail: int) -> tuple[list[list[L
 
     Args:
         now: The instant.
-        height: Most cells of a column.
-        detail: 2 with speeds and names of colours, 1 without names, 0 without both.
+        height: The largest number of cells in a column.
+        detail: 2 for speeds and names of colours, 1 for speeds only, 0 for neither.
     """
     robot = now.spec.robot
     motors = build_motor_cells(now, with_speed=detail > 0)

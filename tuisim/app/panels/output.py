@@ -301,7 +301,7 @@ class Log(Widget, can_focus=True):
 
     @property
     def _all(self) -> int:
-        """The number of lines to scroll through; all older rows that are no longer stored have one line."""
+        """The number of lines to scroll through: the stored lines, and one line for older rows that are not stored."""
         return len(self._lines) + (1 if self._count > len(self._rows) else 0)
 
     def _find_line(self, index: int) -> Line:

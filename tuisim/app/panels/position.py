@@ -29,11 +29,11 @@ def parse_field(field: str, text: str) -> float:
     """Return the number in a text that was typed into a field of the panel.
 
     Args:
-        field: The name of the field, which has a range.
+        field: The name of the field, such as `x`.
         text: The text.
 
     Raises:
-        ValueError: the text is no number, or out of the range; the message says what is allowed.
+        ValueError: the text is no number, or out of the field's range; the message says what is allowed.
     """
     value = _FIELDS[field]
     try:

@@ -81,7 +81,7 @@ def _round_end_s(now_s: int) -> float:
 def format_times(times: BarTimes, width: int) -> str:
     """Return the times beside the bar: the time in view and, if there is room, the newest time.
 
-    The text is as wide in the past as at the newest instant, so that a column of the bar always is the same time.
+    The text has the same width in the past and at the newest instant; otherwise, the columns of the bar would move.
 
     Args:
         times: The ticks.

@@ -57,9 +57,10 @@ def name_mat(mat: str, layout: str, width: int) -> str:
 
 
 def name_sensors(now: Snapshot, width: int) -> str:
-    """Return the names of the colour sensors for a frame: number, name in the robot, port, name in the program.
+    """Return the names of the colour sensors for the frame of a panel.
 
-    The result is empty if not even the numbers with name and port fit.
+    Each sensor has up to four names: `Sensor1` by its number, its name in the robot, its port, and its name in the
+    program. If there is no room, the last of these is left out; if there is still none, the result is empty.
     """
     prelude = PRELUDE_TEXTS.get(now.program.prelude, "") if now.program else ""
     predefined = {f"in{port}": name for name, port in _PREDEFINED.findall(prelude)}

@@ -148,9 +148,10 @@ class World(Widget, can_focus=True):
             self._say()
 
     def _say_below(self) -> None:
-        """Show in the lower border what dragging does while obstacles are edited.
+        """Show the most useful words in the lower border.
 
-        Otherwise show how far the robot is off the field, or else which other robots are in the picture.
+        While obstacles are edited, these words say what dragging does. Otherwise they say how far the robot is off the
+        field or, if it is on the field, which other robots are in the picture.
         """
         words = "drag to draw or move an obstacle" if self._edits_boxes else ""
         if (now := self._snapshot) is not None and not words:
@@ -288,7 +289,11 @@ class WorldView(PixelView):
     def _follow(
         self, width_px: int, height_px: int, pose: Pose, now: Snapshot, cell: CellPoints
     ) -> Viewport:
-        """Return the part of the world to draw; above zoom 1 it follows the robot, on a floor also off the field."""
+        """Return the part of the world to draw.
+
+        From zoom 2 on, this part follows the robot. If the mat lies on a floor, it also follows the robot off the
+        field.
+        """
         on_floor = now.spec.world.is_open
         previous = self._port
         zoom = self.zoom

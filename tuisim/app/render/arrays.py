@@ -102,10 +102,11 @@ _MIN_ROWS = 4
 
 
 def find_asked_lines(now: Snapshot, before: frozenset[int]) -> frozenset[int]:
-    """Return the lines of the program whose thresholds it compares again and again at an instant.
+    """Return the lines at which the program, at an instant, compares readings with thresholds in a loop.
 
-    Before a run, these are all lines with thresholds. While a function runs, the loop that has called it continues: its
-    lines are taken from `before`, since the text does not tell which loop that is.
+    Before a run, these are all lines with thresholds. A function may have been called in a loop, which then goes on
+    while the function runs. The text of the program does not tell which loop that is: lines outside the function are in
+    the result if they are in `before`.
 
     Args:
         now: The instant.
@@ -133,7 +134,7 @@ def build_face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool)
     Args:
         face: What the sensor sees.
         width: Columns.
-        rows: Most lines.
+        rows: The largest number of lines.
         has_limits: Whether to include a line for thresholds, because at least one sensor has some.
     """
     lines = [_build_value_line(face, width), _scale_line(face, width)]
@@ -178,7 +179,10 @@ def _scale_line(face: DiscFace, width: int) -> Line:
 
 
 def _ring_lines(face: DiscFace, width: int) -> list[Line]:
-    """Return the mean value of each ring of a sensor's area behind a label; in two lines if one is too short."""
+    """Return a line with a label and the mean value of each ring of a sensor's area.
+
+    If the width is too small for this, the label and the values are in two lines.
+    """
     values: Line = [
         part
         for word in face.ring_words
@@ -193,9 +197,10 @@ def _ring_lines(face: DiscFace, width: int) -> list[Line]:
 
 
 def list_border_names(names: Sequence[str], where: Arrangement, *, has_limits: bool) -> str:
-    """Return the text for the frame of the panel: the names of the sensors, or that up is up on the mat.
+    """Return the text for the frame of the panel: the names of the sensors.
 
-    The names are left out if there is only one sensor, or if the lines beside the discs have them.
+    If there is only one sensor, or the lines beside the discs have the names, the text says instead how the discs are
+    turned: `UP_WORDS`.
 
     Args:
         names: The names of the sensors.

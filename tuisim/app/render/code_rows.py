@@ -33,7 +33,7 @@ class _Breaks:
 
 
 def split_rows(program: str, width: int) -> Iterator[str]:
-    """Yield a program as rows of at most `width` cells; only a longer word makes a longer row.
+    """Yield a program as rows of at most `width` cells; a row is longer only if a single word is.
 
     Rows are broken between words, in brackets if possible; elsewhere they end in a backslash. A comment behind a long
     line is put above the line. A program that Python cannot read keeps its lines.

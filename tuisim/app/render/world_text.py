@@ -40,7 +40,7 @@ def draw_world_text(
         trace: What the pen has drawn.
         scene: What else is drawn.
         size: Columns and rows.
-        cell_set: The glyphs of the app; the text has signs if they are ASCII, else dots.
+        cell_set: The glyphs of the app. If they are ASCII, the picture has ASCII signs; else it has Braille dots.
         zoom: Zoom factor.
         has_floor: Whether the mat lies on a floor.
     """
@@ -68,7 +68,7 @@ _MIN_ENLARGED = 1.4
 def build_legend(now: Snapshot, width: int, view: Viewport | None = None) -> str:
     """Return as many words as fit about the other robots in the picture, such as `grey: the earlier run`.
 
-    Without others, the words say by how much the robot is enlarged; they are empty if it is to scale.
+    If there are no other robots, the words say how many times the robot is enlarged; they are empty if it is to scale.
 
     Args:
         now: The instant.

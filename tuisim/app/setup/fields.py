@@ -119,12 +119,12 @@ def _build_robot_field(
 
 
 def _build_value_field(edit_id: str, value: Value, path: Callable[[RobotSpec], str]) -> FormField:
-    """Return the field of a value of the robot.
+    """Return the form field in which the user edits one value of the robot.
 
     Args:
         edit_id: Id of the field.
-        value: The value.
-        path: Returns the path of the value in a robot.
+        value: The label and the limits of the value.
+        path: Returns the path of the value in the settings of a robot, such as `gyro.port`.
     """
 
     def change(robot: RobotSpec, text: str) -> RobotSpec:
@@ -392,9 +392,9 @@ def find(plan: NextRun, edit_id: str) -> FormField | None:
 
 
 def step(edit: FormField, plan: NextRun, by: int) -> str:
-    """Return the value that is `by` steps after the present one in the choices of a field; they are circular.
+    """Return the value that is `by` steps after the present one in the choices of a field.
 
-    If the present value is none of the choices, return the first choice.
+    After the last choice comes the first. If the present value is none of the choices, return the first choice.
 
     Args:
         edit: The field.

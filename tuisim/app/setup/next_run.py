@@ -131,9 +131,10 @@ def plan_spec(spec: RunSpec) -> NextRun:
 
 
 def plan_rerun(spec: RunSpec, program: Program | None = None) -> NextRun:
-    """Return the plan for repeating a run, with the arguments of its program and the presses in its magic line.
+    """Return the plan for repeating a run, with the arguments of its program.
 
-    The mat of the run may be missing; the caller must look for it before the start.
+    If the magic line of the program has the option `press`, the same buttons are pressed. The mat of the run may be
+    missing; the caller must look for it before the start.
     """
     try:
         plan = plan_spec(spec)
@@ -157,7 +158,11 @@ def read_first_line(program: Program | None) -> Mapping[str, Any]:
 
 
 def _resolve_choices(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return the choices with robot, obstacles and profile as objects in place of words, and these words by setting."""
+    """Load the robot, the obstacles and the profile that the choices name.
+
+    Returns:
+        The choices with the loaded objects in place of their names, and these names by setting.
+    """
     resolved = dict(choices)
     words = {}
     for key, load in (
