@@ -31,9 +31,9 @@ MOST_NAME = 80
 
 
 def shortened(text: str, most: int = MOST_REASON) -> str:
-    """Return a text, cut after `most` characters, with `…` at the end if it was cut.
+    """Return the first `most` characters of a text, followed by `…` if the text is longer.
 
-    A damaged file may contain a name of any length.
+    It is for texts from files: in a damaged file, a name can have any length.
     """
     return text if len(text) <= most else f"{text[:most]}…"
 
@@ -145,7 +145,7 @@ class ConfigError(TuisimError):
     """A file, option or value that describes a run is wrong.
 
     Args:
-        file: The file that contains it, if any.
+        file: The file that contains the wrong value; empty if it is not in a file.
         key: The key or option that is wrong, such as `ultrasonic.max_range_mm` or `-x`.
     """
 

@@ -22,11 +22,14 @@ _WELL_KNOWN = ("time", "random", "math", "statistics", "threading", "datetime")
 
 
 def find_meant_names(wrong: str, names: Set[str]) -> list[str]:
-    """Return those of `names` that may be meant by a wrong name, the most likely first; empty if there are none.
+    """Return the names that may be meant by a wrong name, the most likely first; empty if there are none.
 
-    These are the names that begin with the wrong one. If there are none, it is the most similar name; if none is
-    similar, the names that contain the wrong one, or `on` for a wrong name such as `forward`. Names with `_` at the
-    start are never returned.
+    The result has the names that begin with the wrong name. If there are none, it has the most similar name. If no name
+    is similar, it has `on` for a wrong name such as `forward`, else the names that contain the wrong name.
+
+    Args:
+        wrong: The wrong name.
+        names: The names that exist. Those with `_` at the start are never returned.
     """
     public = sorted((name for name in names if not name.startswith("_")), key=lambda n: (len(n), n))
     containing = [name for name in public if wrong in name] if len(wrong) >= _MIN_LETTERS else []
@@ -48,7 +51,10 @@ def _find_shortest(names: Sequence[str]) -> list[str]:
 
 @cache
 def map_modules() -> Mapping[str, str]:
-    """Return the names that the prelude `imports` defines for a program, each with its module."""
+    """Return the names that the prelude `imports` imports for a program, each with its module.
+
+    A prelude is a text that runs before a program and defines names for it.
+    """
     lines = PRELUDE_TEXTS["imports"].removeprefix("from ").split("\nfrom ")
     imports = (line.strip().split(" import ") for line in lines)
     return {name: module for module, names in imports for name in names.split(", ")}

@@ -35,13 +35,17 @@ def parse_module(text: str) -> ast.Module:
     """Return the syntax tree of a module.
 
     Raises:
-        One of `NOT_PYTHON`: it is not Python.
+        One of `NOT_PYTHON`: the text is not Python.
     """
     with _collect_later():
         return ast.parse(text)
 
 
 def parse_expression(text: str) -> ast.Expression:
-    """Return the syntax tree of an expression; raises the errors of `parse_module`."""
+    """Return the syntax tree of an expression.
+
+    Raises:
+        One of `NOT_PYTHON`: the text is not an expression of Python.
+    """
     with _collect_later():
         return ast.parse(text, mode="eval")

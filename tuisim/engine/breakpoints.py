@@ -58,7 +58,7 @@ _NO_CONDITION = {
 
 @dataclass(frozen=True, slots=True)
 class LineBreak:
-    """The rule of a breakpoint that pauses the program when one of its lines is about to run."""
+    """The rule of a breakpoint that pauses the program when a given line of the program is about to run."""
 
     line: int
     condition: str = ""
@@ -123,7 +123,11 @@ class Breakpoint:
 
     @classmethod
     def parse(cls, text: str, run: RunSpec | None = None) -> Breakpoint:
-        """Return the breakpoint that a text describes; without a run, any possible name of a column is accepted.
+        """Return the breakpoint that a text describes, such as `12 if x > 3`; a text that begins with `#` is disabled.
+
+        Args:
+            text: The text.
+            run: The run, whose columns the text may name. Without a run, any word is accepted as the name of a column.
 
         Raises:
             ConfigError: the text is not a valid breakpoint; the hint lists what is allowed.
@@ -140,7 +144,7 @@ _NAME = re.compile(r"\w+(?:[. ]\w+)*\s*%?")
 
 
 def parse_breakpoints(texts: Iterable[str], run: RunSpec | None = None) -> tuple[Breakpoint, ...]:
-    """Return the breakpoints that several texts describe, in their order; each as `Breakpoint.parse` returns it.
+    """Return the breakpoints that several texts describe, in their order; see `Breakpoint.parse`.
 
     Raises:
         ConfigError: a text is not a valid breakpoint.
@@ -219,14 +223,13 @@ def _condition(text: str, word: str, run: RunSpec | None) -> ValueCondition:
 
 
 def _column(text: str, written: str, run: RunSpec | None) -> str:
-    """Return the name of the column that the word `written` names.
-
-    Without a run, return the word itself, if a column can have such a name.
+    """Return the name of the column to which a word in the text of a breakpoint refers.
 
     Args:
         text: The text of the breakpoint, for errors.
-        written: The word in it that names the column.
-        run: The run whose columns are searched.
+        written: The word.
+        run: The run whose columns are searched. Without a run, the word itself is returned if it has the form of a
+            name.
 
     Raises:
         ConfigError: there is no such column.

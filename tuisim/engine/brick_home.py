@@ -9,9 +9,10 @@ HOME = "/home/robot"
 
 
 def parts_in_home(path: str, own_folder: str) -> list[str] | None:
-    """Return the parts of a path below the brick's home folder, `/home/robot`; None for any other path.
+    """Return the parts of a path in the brick's home folder, such as `logs` and `a.csv` for `/home/robot/logs/a.csv`.
 
-    If the program itself is in a folder `/home/robot` of this computer, the result is always None.
+    Return None for a path outside this folder. If the program itself is in a folder `/home/robot` of this computer, the
+    result is always None.
     """
     if not path.startswith(HOME):
         return None
@@ -22,13 +23,13 @@ def parts_in_home(path: str, own_folder: str) -> list[str] | None:
 
 
 def find_beside(parts: Sequence[str], own_folder: str) -> str:
-    """Return the file or folder in the program's folder to which a path below the home folder leads.
+    """Return the file or folder in the program's folder for a path in the brick's home folder; empty if none exists.
 
-    It is not known where in the home folder the program's folder is. So leading parts of the path are left out, one
-    after another, until the rest exists in the program's folder. The result is empty if nothing exists.
+    The home folder may contain the program's folder at any depth. So for the path `a/b/c` in the home folder, `a/b/c`
+    is looked for in the program's folder, then `b/c`, then `c`.
 
     Args:
-        parts: The parts of the path below the home folder.
+        parts: The parts of the path below the home folder, such as `a`, `b` and `c`.
         own_folder: The program's folder.
     """
     ends = (parts[first:] for first in range(len(parts)))

@@ -51,11 +51,11 @@ class Location:
     """The path of the value in the file, such as `ultrasonic.x_mm` or `obstacle[1]`; empty for the top level."""
 
     def at(self, key: str, error: type[ConfigError] | None = None) -> Location:
-        """Return the location of a key in the table at this location.
+        """Return the location of a key's value in the table, or list, at this location.
 
         Args:
-            key: The key.
-            error: The class of errors about it; None for that of this location.
+            key: The key; for a list the index in brackets, such as `[1]`.
+            error: The class of errors about the value; None for the class that this location has.
         """
         joint = "." if self.key and not key.startswith("[") else ""
         return replace(self, key=f"{self.key}{joint}{key}", error=error or self.error)
@@ -81,11 +81,11 @@ def read_named(
     """Read the file that a word names; return its data, the default name of the object in it, and its location.
 
     Args:
-        word: What the user gave: it is not one of the names `known`.
-        what: What it should name, for errors.
+        word: The word that the user gave. The caller has checked that it is not the name of a preset.
+        what: What the word should name, such as `robot`, for errors.
         known: The names of the presets, for errors.
         error: The class of errors.
-        key: The option to blame in errors.
+        key: The option that gives the word, for errors.
         kinds: The suffixes that the file may have.
 
     Raises:
@@ -212,7 +212,9 @@ def _text(path: Path, error: type[ConfigError]) -> str:
 
 
 def close_beside(path: Path, suffixes: Collection[str]) -> list[str]:
-    """Return the names of files in the same folder that are similar to a missing file's; suffixes are not compared.
+    """Return the names of files that are similar to the name of a missing file, and in the same folder.
+
+    The names are compared without their suffixes.
 
     Args:
         path: The missing file.
@@ -332,11 +334,11 @@ def one_of(data: object, at: Location, allowed: Iterable[str]) -> str:
 
 
 def read_value(data: object, value: Value, at: Location) -> Any:
-    """Return a value of a spec, checked and converted from the data of a file.
+    """Return a value from the data of a file, after checking and converting it.
 
     Args:
         data: The data.
-        value: The description of the value.
+        value: The description of the value, which says what is allowed.
         at: The location of the data, for errors.
 
     Raises:
@@ -349,11 +351,15 @@ def read_value(data: object, value: Value, at: Location) -> Any:
 
 
 def read_part(data: object, base: _Spec | type[_Spec], at: Location, **given: object) -> _Spec:
-    """Return a sensor or another spec with the values in a table; the table must not contain the spec's name.
+    """Return a sensor, or another part of a run's specification, with the values in a table of a file.
+
+    The table must not contain the name of the part.
 
     Args:
-        base: A spec whose values stand for those that the table leaves out; or the class of a new spec.
-        given: Values that are not read from the table, by name.
+        data: The table.
+        base: The part whose values are used where the table has none; or the class of the part, for its defaults.
+        at: The location of the table, for errors.
+        given: Values by name that come from the caller, not from the table.
 
     Raises:
         ConfigError: a key is unknown or missing, or a value is wrong.
@@ -374,10 +380,10 @@ def read_part(data: object, base: _Spec | type[_Spec], at: Location, **given: ob
 
 
 def with_values(base: _Spec | type[_Spec], values: Mapping[str, Any], at: Location) -> _Spec:
-    """Return a copy of the spec `base` with other values; if `base` is a class, return a new spec of it.
+    """Return a copy of a part of a run's specification, such as a sensor, with some values replaced.
 
     Args:
-        base: The spec or the class.
+        base: The part. If it is a class, the result is a new part of this class.
         values: The values by name.
         at: The location of the values, for errors.
 
@@ -433,7 +439,12 @@ def _type_info(kind: Any) -> types.Type:
 def _walk(
     data: object, info: types.Type, at: Location
 ) -> Iterator[tuple[str, tuple[object, types.Type]]]:
-    """Yield the location of each value in the data of a file, with the value and the type that it must have.
+    """Yield for each value in the data of a file its key, such as `obstacle[1].x_mm`, and a pair of value and type.
+
+    Args:
+        data: The data.
+        info: The type that the data must have.
+        at: The location of the data.
 
     Raises:
         ConfigError: a value is wrong in a way that the type cannot express, such as a text of two lines.
@@ -556,9 +567,13 @@ def toml_lines(
 
 
 def value_lines(part: Spec, keys: Iterable[str]) -> list[str]:
-    """Return the TOML lines of some values of a spec, with their help as comments; values that are None are left out.
+    """Return some values of a sensor, or of another part, as TOML lines, with the help of each value as a comment.
 
-    `keys` are the names of the values.
+    Values that are None are left out.
+
+    Args:
+        part: The part.
+        keys: The names of the values.
     """
     values = list_values(type(part))
     part_values = {key: getattr(part, key) for key in keys}
@@ -571,7 +586,9 @@ def value_lines(part: Spec, keys: Iterable[str]) -> list[str]:
 
 
 def toml_form(value: Value, found: Any) -> Scalar:
-    """Return a value as TOML files contain it: as a name if it has one, as a list if it is a tuple, else unchanged.
+    """Return a value in the form in which TOML files contain it.
+
+    A value that has a name becomes its name, a tuple becomes a list, and any other value stays unchanged.
 
     Args:
         value: The description of the value.
@@ -604,12 +621,13 @@ def save_toml(
         at: The file, for errors.
         read: Returns the object that the data of a TOML file contains.
         expected: The object to write: `read` must return an equal one for the new contents.
-        check: Raises ConfigError if an existing file is of another kind; by default `read`.
+        check: Called with the data of an existing file; raises ConfigError if the file may not be changed, because it
+            is of another kind. By default, `read` is called.
         kept: Keys of an existing file that stay although `lines` does not have them.
         owner_only: Whether only the owner may read a new file.
 
     Raises:
-        ConfigError: an existing file is of another kind, the file cannot be written, or a file cannot represent the
+        ConfigError: an existing file is of another kind, the file cannot be written, or TOML cannot represent the
             object. An existing file is then unchanged.
     """
     if path.suffix != ".toml":

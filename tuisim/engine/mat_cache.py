@@ -49,9 +49,10 @@ _READ_BYTES = 1 << 20
 
 @dataclass(frozen=True, slots=True)
 class FieldFiles:
-    """The files of a prepared mat: the pixels, and the sums over discs.
+    """The files of a mat that is prepared for colour sensors: one with its pixels, others with sums of pixels.
 
-    Any process may open them while the cache keeps them.
+    The sums say how much red, green and blue a sensor sees in its spot, a disc, at any position. Any process may open
+    the files while the cache keeps them.
     """
 
     width_px: int
@@ -68,7 +69,7 @@ class FieldFiles:
         return (*data, *map(_note_of, data))
 
     def is_for(self, diameters: Collection[int]) -> bool:
-        """Return whether these are the files of a mat of the field's size, with sums of these disc diameters."""
+        """Return whether these are the files of a mat of the field's size, with sums for discs of these diameters."""
         size = self.width_px, self.height_px
         return size == (FIELD_WIDTH_MM, FIELD_HEIGHT_MM) and {
             diameter for diameter, _ in self.sums

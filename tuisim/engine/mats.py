@@ -189,12 +189,12 @@ def own_folder() -> Path:
 
 
 def mats(folder: str | None = None) -> dict[str, Background]:
-    """Return every mat by name: the catalogue in its order, then the user's additional ones.
+    """Return every mat by name: the catalogue in its order, then the user's additional mats.
 
-    A mat of the catalogue whose image is not distributed is included even if its image is missing.
+    The result has all mats of the catalogue, even one that comes without an image, until the user adds the image.
 
     Args:
-        folder: Another folder with the user's own mats, which takes precedence.
+        folder: A folder with mats of the user, which takes precedence over `own_folder`; None for none.
 
     Raises:
         BackgroundError: a folder cannot be read, or the catalogue is wrong.
@@ -212,7 +212,7 @@ def find_mat(word: str, folder: str | None = None) -> Background:
 
     Args:
         word: The name or the path.
-        folder: As for `mats`.
+        folder: A folder with mats of the user, which takes precedence over `own_folder`; None for none.
 
     Raises:
         BackgroundError: it does not exist, or has no image.
@@ -236,7 +236,7 @@ def find_mat(word: str, folder: str | None = None) -> Background:
 
 
 def mat_of_spec(name: str) -> tuple[str, Background]:
-    """Return the mat of a run specification, and the word that names it for `find_mat`.
+    """Return the mat of a run specification, together with a word for which `find_mat` returns this mat.
 
     Args:
         name: The mat's name in the specification.

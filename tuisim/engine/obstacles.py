@@ -58,7 +58,7 @@ def obstacles_from_sides(data: object, at: Location) -> tuple[Obstacle, ...]:
     """Return the obstacles in a list of [x, y, width, height], in mm.
 
     Raises:
-        ConfigError: as for `obstacles_from_list`.
+        ConfigError: the data is not such a list, a value is wrong, or there are too many obstacles.
     """
     if not isinstance(data, list):
         raise at.wrong(f"must be a list of [x, y, width, height], got {quote(data)}")

@@ -102,7 +102,7 @@ class End(StrEnum):
 
 
 class Unended(StrEnum):
-    """The state of a stored run that has no end."""
+    """The state of a stored run of which no end is known: it is running, was interrupted, or its end is damaged."""
 
     RUNNING = "running"
     INTERRUPTED = "interrupted"
@@ -145,7 +145,7 @@ class PauseReason(StrEnum):
 
 
 class LineStep(StrEnum):
-    """How to step from line to line: over calls, into them, out of this function."""
+    """The kinds of steps from line to line: over the calls in a line, into them, or out of the present function."""
 
     OVER = "over"
     INTO = "into"
@@ -468,7 +468,7 @@ class ReplyWanted(Message):
 
 @dataclass(frozen=True, slots=True)
 class Plugged(Message):
-    """The child's event that a part was plugged in because the program looked for it; values as in `PluggedPart`."""
+    """The child's event that a part was plugged in because the program looked for it; fields as in `PluggedPart`."""
 
     port: str
     part: str

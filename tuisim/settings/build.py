@@ -51,7 +51,7 @@ def place_robot(choice: RobotChoice, mat: Background) -> RobotSpec:
 
 
 def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) -> Pose:
-    """Return the start pose. Its coordinates and heading are those of the settings, where they are set, else the mat's.
+    """Return the pose at which the robot starts: the mat's, changed by the coordinates and the heading in the settings.
 
     Within solid walls, the mat's start is moved away from walls that are too close for the robot to turn there.
 
@@ -74,11 +74,13 @@ def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) 
 
 
 def _clamp_inside(at_mm: float, margin_mm: float, size_mm: float) -> float:
-    """Return a coordinate in whole mm, moved at least a margin inside the field; the middle if the margins overlap.
+    """Return a coordinate, moved to at least a margin from the edges of the field if it is closer to one.
+
+    The result is the middle of the field if the margins overlap.
 
     Args:
         at_mm: The coordinate.
-        margin_mm: The margin.
+        margin_mm: The margin; a moved coordinate is in whole mm.
         size_mm: Length of the field along this axis.
     """
     low, high = math.ceil(margin_mm), math.floor(size_mm - margin_mm)
@@ -143,7 +145,7 @@ def build_run_spec(settings: Settings) -> RunSpec:
 
 
 def list_ineffective(spec: RunSpec) -> list[str]:
-    """Return a sentence for each chosen value of a run's robot that has no effect under its profile."""
+    """Return a sentence for each value of a run's robot that was changed, but has no effect under the run's profile."""
     usual = ROBOTS.get(spec.robot.name, ROBOTS[DEFAULT_ROBOT])
     law = spec.profile.motor_law
     sentences = []
@@ -163,10 +165,10 @@ def list_ineffective(spec: RunSpec) -> list[str]:
 
 
 def extract_settings(spec: RunSpec) -> dict[str, Any]:
-    """Return settings, by path, from which `build_run_spec` builds the specification of a run again.
+    """Return the settings from which `build_run_spec` builds an equal specification, by path such as `start.x_mm`.
 
-    The robot, the profile and the obstacles are given by the name of a preset if they equal one. `solid` is None where
-    it equals the profile's default.
+    A robot, a profile or obstacles that equal a preset are given by its name. If the world is as solid as the profile
+    makes it, `solid` is None.
 
     Raises:
         ConfigError: the mat of the run no longer exists.
@@ -191,9 +193,9 @@ def extract_settings(spec: RunSpec) -> dict[str, Any]:
 
 
 def _name_robot(robot: RobotSpec, mat: Background) -> str | RobotChoice:
-    """Return the name of the preset that a robot equals, given the mat that sets the positions of the preset's sensors.
+    """Return the name of the preset that equals a robot when it is placed on a mat; the robot itself if none does.
 
-    The position of the pen makes no difference. If there is no such preset, return the robot itself.
+    The mat sets the positions of the preset's sensors. The position of the pen is not compared.
     """
     for preset in ROBOTS.values():
         on_mat = place_robot(RobotChoice(preset, own_places=False), mat)

@@ -202,7 +202,9 @@ def _convert_error(error: click.UsageError, ctx: click.Context) -> ConfigError:
 
 
 def _explain_case(ctx: click.Context, text: str) -> str:
-    """Return a hint if an option is followed by a value that it does not take, but the other case of its letter does.
+    """Return a hint if the user seems to have typed the letter of an option in the wrong case; empty if not.
+
+    The user has then typed a value after an option that takes none, while the letter in the other case takes one.
 
     Args:
         ctx: The command with its words.

@@ -156,8 +156,8 @@ def _build_app_options() -> list[GroupedOption]:
 def parse_line(line: str, magic: str) -> Arguments:
     """Return the arguments after a magic that sets the world.
 
-    In the result, `help` is the help text if the line asks for it; `app` is the `AppWords` of the magic that shows the
-    app, and None for any other magic.
+    The result has two more attributes. `help` is the help text if the line asks for it, else empty. `app` is the
+    `AppWords` of the magic that shows the app; None for any other magic.
 
     Args:
         line: The words after the magic.

@@ -97,7 +97,7 @@ class Name(Value):
 
 
 class RunValue(NamedTuple):
-    """The description of a run's value that users can set on its own: one of the world or the pen, or the seed."""
+    """The description of a value of a run that users can set: a value of the world or of the pen, or the seed."""
 
     spec_path: str
     """Its path in the specification."""
@@ -106,7 +106,7 @@ class RunValue(NamedTuple):
 
 
 def _find_default(path: str) -> Any:
-    """Return the default of a value of the world or the pen, given its path in the specification."""
+    """Return the default of a value of the world or the pen; `path` is its path in the run specification."""
     *outer, name = path.split(".")
     kind: Any = RunSpec
     for part in outer:
@@ -203,7 +203,7 @@ class Option:
         return "on|off" if isinstance(self.value, Flag) else self.value.metavar
 
     def from_python(self, value: object, key: str) -> Any:
-        """Return the setting for a value of the option in Python code.
+        """Return the setting for a value that Python code gives for the option.
 
         Args:
             value: The value.
@@ -239,7 +239,7 @@ def _build_word(
 
 
 def _build_value_options(*tables: str) -> Iterator[Option]:
-    """Yield an option for each value in some tables of the specification."""
+    """Yield the options that set the values in some tables of the run specification, such as `world`."""
     for path, (spec_path, value, default) in RUN_VALUES.items():
         if value.flags and spec_path.startswith(tables):
             takes_no_value = isinstance(value, Flag) and not default
@@ -434,7 +434,7 @@ _PATHS = frozenset({*_DEFAULTS, "beacon", "floor", *(option.path for option in O
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The settings of a run by path: those that options and files give, and defaults for the others."""
+    """The settings of a run by path, such as `start.x_mm`: those of options and files, and defaults for the others."""
 
     given: Mapping[str, Any] = field(default_factory=dict)
 
@@ -456,9 +456,10 @@ class Settings:
 
     @classmethod
     def merge(cls, *layers: Mapping[str, Any]) -> Settings:
-        """Return the settings of several layers together; a later layer replaces the values of earlier ones.
+        """Return the settings of several layers together, such as those of a file and of the command line.
 
-        The two lists of panels, `panels_on` and `panels_off`, are not replaced: they have the panels of all layers.
+        A later layer replaces the values of earlier ones. Only the two lists of panels, `panels_on` and `panels_off`,
+        have the panels of all layers.
         """
         merged: dict[str, Any] = {}
         for layer in layers:

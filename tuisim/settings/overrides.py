@@ -40,9 +40,9 @@ def resolve_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dic
     """Return the settings, by path, for some keys of a world file.
 
     Args:
-        values: The values by key, with dots for tables, such as `noise.light`. That of `arguments` is a text, which is
-            split into words as in a shell.
-        chosen: The settings to be changed: a key of a robot or profile leaves its other keys unchanged.
+        values: The values by key, with dots for tables, such as `noise.light`. The value of `arguments` is a text,
+            which is split into words as in a shell.
+        chosen: The settings before the change. A key such as `robot.weight` changes only this value of their robot.
         path: The file for errors; paths are relative to its folder.
 
     Raises:
@@ -80,7 +80,8 @@ def resolve_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dic
 def _nest(values: Mapping[str, Any], location: Location) -> dict[str, Any]:
     """Return keys with dots, such as `noise.light`, as nested tables.
 
-    If both `robot` (or `profile`) and keys such as `robot.name` are given, the value of `robot` is under `robot=`.
+    If both `robot` and keys such as `robot.name` are given, the value of `robot` is under the key `robot=`. The same is
+    true of `profile`.
 
     Args:
         values: The values, by key with dots.

@@ -193,7 +193,11 @@ _TABLES: Mapping[str, type] = {
 
 
 def list_table_values(table: str) -> Mapping[str, Value]:
-    """Return the kinds of values that a table of a robot file can have, by key."""
+    """Return the descriptions of the values that a table of a robot file can have, by key.
+
+    Args:
+        table: The key of the table, such as `ultrasonic`.
+    """
     return list_values(_TABLES[table.partition(".")[0]])
 
 
@@ -254,7 +258,7 @@ def _parse_motor(data: object, base: MotorSpec, location: Location) -> MotorSpec
 def _parse_single(
     data: object, mount: Mount, base: RobotSpec, location: Location
 ) -> SensorSpec | None:
-    """Return the sensor that a value in a robot's table describes, for a kind of which a robot has at most one.
+    """Return a sensor of which a robot has at most one, such as the gyro, from its value in a robot's table.
 
     The value `false` removes the sensor: the result is None. Keys missing in a table are as in the base robot's sensor.
 
@@ -493,7 +497,7 @@ def format_robot(
 
 
 def _is_left_out(spec: RobotSpec, key: str) -> bool:
-    """Return whether robot files leave out a value: the first robot files lacked it, and it equals its default."""
+    """Return whether robot files leave out a value: it equals its default, and the first versions did not have it."""
     return _VALUES[key].later and getattr(spec, key) == RobotSpec.__dataclass_fields__[key].default
 
 

@@ -154,7 +154,10 @@ class UserConfig:
         return self.written.get(path, SETTINGS[path].default)
 
     def layer(self, section: Section) -> dict[str, Any]:
-        """Return the settings of a table by path, without the set of glyphs, which depends on the terminal."""
+        """Return the settings of a table of the file by path, as a layer for `Settings.merge`.
+
+        The setting of the glyphs is left out, because it depends on the terminal.
+        """
         return {
             setting.sets: self.values[path]
             for path, setting in SETTINGS.items()
@@ -181,10 +184,10 @@ class UserConfig:
         )
 
     def list_effective(self, *above: Mapping[str, Any]) -> list[str]:
-        """Return a line `NAME = VALUE` for each setting of `[simulation]` in the file that no other layer overrides.
+        """Return a line `NAME = VALUE` for each setting of `[simulation]` in the file that no other layer sets.
 
         Args:
-            above: The layers with precedence over the file: settings by path.
+            above: The layers that take precedence over the file, such as the command line: settings by path.
         """
         return [
             f"{setting.name} = {quote(self.written[path])}"

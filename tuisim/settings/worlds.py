@@ -215,12 +215,12 @@ def _parse_inputs(world: Mapping[str, Any], location: Location) -> tuple[str, ..
 def _load_base(
     word: str, location: Location, resolve: Resolver, mats: str | None, above: tuple[Path, ...]
 ) -> WorldFile:
-    """Return the world on which another one is based.
+    """Return the world on which another world is based.
 
     Args:
-        word: The path of its file, as the other file gives it.
+        word: The path of its file, as it is written in the file of the other world.
         location: The location of that path, for errors.
-        resolve: Resolves a path in the other file.
+        resolve: Resolves a path in the file of the other world.
         mats: A folder of mats that is used if the file names none; None for none.
         above: The files that are based on this one, directly or through others.
 
@@ -306,7 +306,7 @@ def _resolve(folder: Path, referred: list[Path], word: str) -> str:
 def _parse_mat(
     world: Mapping[str, Any], location: Location, resolve: Resolver, mats: str | None
 ) -> dict[str, Any]:
-    """Return by name those of the settings `background` and `mats` (a mat, and a folder of mats) that a file sets.
+    """Return by name the settings `background` (a mat) and `mats` (a folder of mats), if a world file sets them.
 
     Args:
         world: The keys of the file.
@@ -353,7 +353,12 @@ def _resolve_name(
 
 
 def _parse_infrared(world: Mapping[str, Any], location: Location) -> dict[str, Any]:
-    """Return the settings `beacon` and `remote` of a world file by name, those that the file sets."""
+    """Return by name the settings `beacon` and `remote`, if a world file sets them.
+
+    Args:
+        world: The keys of the file.
+        location: The file, for errors.
+    """
     settings: dict[str, Any] = {}
     if "beacon" in world:
         settings["beacon"] = files.read_part(
@@ -420,7 +425,8 @@ def format_world(
     Args:
         spec: The run.
         folder: The folder of the file; paths are relative to it.
-        program, arguments: As for `save_world`.
+        program: The program to run in the world, as a path or as the name of an example; None for none.
+        arguments: The program's arguments.
     """
     settings = extract_settings(spec)
     top: dict[str, Scalar] = {}
@@ -476,6 +482,6 @@ def _format_infrared(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -
 
 
 def _make_relative(path: str, folder: Path) -> str:
-    """Return a path relative to a folder, in a form that differs from a name, such as `./NAME`."""
+    """Return a path relative to a folder; with `./` in front if it looked like the name of a mat or a program."""
     relative = os.path.relpath(user_path(path), folder)
     return relative if os.sep in relative or Path(relative).suffix else f".{os.sep}{relative}"
