@@ -113,6 +113,10 @@ def _name_object(func: ast.expr) -> str:
     return ast.unparse(func.value) if isinstance(func, ast.Attribute) else ""
 
 
+_VARIABLE = re.compile(rf"\.({'|'.join(STARTS)})\(.*\b[a-z]\w*\b(?!=)")
+"""A call that starts motors with speeds that are not constants."""
+
+
 def find_steering(tree: ast.Module, line: int) -> int:
     """Return the line that steers a robot over and over around a line of a program; 0 if nothing does.
 
@@ -131,24 +135,17 @@ def find_steering(tree: ast.Module, line: int) -> int:
     places = functions or [node for node in around if isinstance(node, ast.For | ast.While)]
     if not places:
         return line if any(name_call(node).startswith("follow") for node in around) else 0
-    own = [node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+    own = tuple(node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef))
     calls = [node for node in ast.walk(places[0]) if isinstance(node, ast.Expr)]
-    moves = [call for call in calls if find_call(call, (*ANY_MOVE, *own))]
-    is_one = len({ast.unparse(move) for move in moves}) < 2
-    if not functions and is_one and not any(find_call(move, (*own,)) for move in moves):
-        moves = [move for move in moves if _is_varied(move)]
-    first_lines = sorted(move.lineno for move in moves)
-    return next(iter(first_lines), line if functions else 0)
-
-
-def _is_varied(statement: ast.Expr) -> bool:
-    """Return whether a statement starts motors with speeds that are no constants."""
-    match statement.value:
-        case ast.Call(args=speeds) if find_call(statement, STARTS):
-            return any(
-                find_number(speed) is None and not ast.unparse(speed).isupper() for speed in speeds
-            )
-    return False
+    moves = sorted(
+        (call.lineno, ast.unparse(call)) for call in calls if find_call(call, (*ANY_MOVE, *own))
+    )
+    is_varied = len({move for _, move in moves}) > 1 or any(
+        find_call(call, own) or _VARIABLE.search(ast.unparse(call)) for call in calls
+    )
+    if functions or (moves and is_varied):
+        return moves[0][0] if moves else line
+    return 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -91,16 +91,18 @@ class Remarks:
 
 
 @dataclass(frozen=True, slots=True)
-class Spin:
-    """Moves that turn the two wheels in opposite directions, where the program says that it drives straight on."""
+class NamedAim:
+    """Lines that move the robot, and whose words say where to."""
 
     first_line: int
     last_line: int
+    aim: str
+    """`straight`, `left` or `right`."""
     words: str
-    """The two speeds."""
+    """The two speeds, which turn the wheels in opposite directions; of a turn, what says the side."""
 
 
-def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[Spin]:
+def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
     """Yield the moves of both wheels in opposite directions that should drive the robot straight on."""
     forwards = {
         part
@@ -116,7 +118,7 @@ def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[Spin]:
             is_spin = len(speeds) == 2 and speeds[0] == -speeds[1] != 0
             if is_spin and (first in forwards or remarks.goes_straight(first.lineno)):
                 words = f"{speeds[0]:g} and {speeds[1]:g}"
-                yield Spin(first.lineno, last.end_lineno or last.lineno, words)
+                yield NamedAim(first.lineno, last.end_lineno or last.lineno, "straight", words)
 
 
 def _find_side(text: str) -> str:
@@ -126,19 +128,7 @@ def _find_side(text: str) -> str:
     return sides[0] if is_turn else ""
 
 
-@dataclass(frozen=True, slots=True)
-class NamedTurn:
-    """Lines that turn the robot to a side by their words."""
-
-    first_line: int
-    last_line: int
-    side: str
-    """`left` or `right`."""
-    name: str
-    """What says so."""
-
-
-def list_named_turns(tree: ast.Module, remarks: Remarks) -> Iterator[NamedTurn]:
+def list_named_turns(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
     """Yield the functions and moves of a program whose name or comment says to which side they turn the robot.
 
     Functions that are also called with negative numbers are left out.
@@ -152,13 +142,13 @@ def list_named_turns(tree: ast.Module, remarks: Remarks) -> Iterator[NamedTurn]:
     for node in nodes:
         match node:
             case ast.FunctionDef(name=name) if name not in backwards and (side := _find_side(name)):
-                yield NamedTurn(node.lineno, node.end_lineno or node.lineno, side, name)
+                yield NamedAim(node.lineno, node.end_lineno or node.lineno, side, name)
             case ast.Expr() if find_call(node, ANY_MOVE) and (
                 side := remarks.find_side(node.lineno)
             ):
                 # The line after one that starts motors is the one that waits.
                 last_line = (node.end_lineno or node.lineno) + bool(find_call(node, STARTS))
-                yield NamedTurn(node.lineno, last_line, side, "the comment")
+                yield NamedAim(node.lineno, last_line, side, "the comment")
 
 
 def _list_speeds(statement: ast.stmt) -> list[float]:

@@ -115,6 +115,7 @@ tank_turn.off()
 """
 GOOD = {
     "over bands up to the black": UNTIL_BLACK,
+    "over bands, started in the loop": UNTIL_BLACK.replace("pass", "tank_drive.on(20, 20)"),
     "edge": EDGE.format(seconds=15, left=5, right=20),
     "proportional": P.format(mat="Lollipop", seconds=20, gain=0.4, speed=15),
     "there and back": THERE_AND_BACK,

@@ -119,11 +119,11 @@ def list_wrong_sides(data: RunData) -> Iterator[Unmet]:
         spans = find_spans((lines >= turn.first_line) & (lines <= turn.last_line)).tolist()
         ways = [_measure_turn(data.records[start:end]) for start, end in spans]
         # A positive turn is one to the left.
-        wrong_deg = [deg if turn.side == "right" else -deg for deg in ways]
+        wrong_deg = [deg if turn.aim == "right" else -deg for deg in ways]
         if wrong_deg and min(wrong_deg) >= _MIN_TURN_DEG:
-            other = "left" if turn.side == "right" else "right"
+            other = "left" if turn.aim == "right" else "right"
             text = (
-                f"{turn.name} says {turn.side}, but the robot turned {other} here, "
+                f"{turn.words} says {turn.aim}, but the robot turned {other} here, "
                 f"by {wrong_deg[0]:.0f}°: swap the signs"
             )
             yield Unmet(spans[0][0] / data.hz, turn.first_line, text)
