@@ -40,7 +40,7 @@ def read_comparison(
 def _split_sum(
     value: ast.expr, ending: str, limit: Word, constants: Mapping[str, Word]
 ) -> tuple[ast.expr, str, Word]:
-    """Return a comparison in which numbers added to the value are subtracted from the limit instead.
+    """Return a comparison with the numbers moved to its limit: `light + 5 > 30` becomes `light > 25`.
 
     Args:
         value: The compared expression.
@@ -67,7 +67,7 @@ def _split_sum(
 
 
 def build_difference(test: ast.expr) -> ast.expr:
-    """Return a comparison of two values as one of their difference with 0; other tests unchanged."""
+    """Return a comparison of two values as one with 0: `a > b` becomes `a - b > 0`; other tests unchanged."""
     match test:
         case ast.Compare(left=left, ops=[_], comparators=[right]):
             change = ast.copy_location(ast.BinOp(left, ast.Sub(), right), left)
@@ -78,14 +78,14 @@ def build_difference(test: ast.expr) -> ast.expr:
 def split_start(
     value: ast.expr, ending: str, limit: Word, tree: ast.Module, words: Mapping[str, Word]
 ) -> tuple[ast.expr, str, Word, int]:
-    """Return a comparison in which an earlier reading is no longer subtracted from the value.
+    """Return a comparison without the earlier reading that its value subtracts: `angle - start > 90` as `angle > 90`.
 
     Args:
         value: The compared expression, such as `gyro.angle - start`.
         ending: The operator.
         limit: The constant.
         tree: The program.
-        words: Values of names in the program, which are read as constants.
+        words: The values of names in the program that are read as constants.
 
     Returns:
         The expression without that reading, the operator, the limit, and the line of the reading; 0 without one.
@@ -102,7 +102,10 @@ def split_start(
 def _find_start(
     node: ast.expr, tree: ast.Module, words: Mapping[str, Word]
 ) -> tuple[int, float] | None:
-    """Return the line of the reading in an expression, and the number added to it; None for other expressions."""
+    """Return the line of the reading in an expression such as `start + 5`, and the number that is added to the reading.
+
+    The result is None for other expressions.
+    """
     match node:
         case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
             start, number = _find_start(left, tree, words), find_constant(right, words)
@@ -155,7 +158,7 @@ def list_constants(tree: ast.Module) -> dict[str, Word]:
 
 
 def is_set(node: ast.Name | ast.Attribute) -> bool:
-    """Return whether a node assigns its name, and does not read it."""
+    """Return whether a node of the syntax tree assigns or deletes a name or attribute, and does not read it."""
     return not isinstance(node.ctx, ast.Load)
 
 
@@ -193,9 +196,10 @@ def find_attribute(node: ast.expr) -> str:
 
 
 def find_values(name: str, tree: ast.Module) -> list[tuple[int, ast.expr]]:
-    """Return the lines that assign a variable, each with the assigned expression, or the name's node if unknown.
+    """Return the lines that assign a variable, each with the expression that it assigns.
 
-    The result is empty if several functions share the variable, since their order is not known.
+    If the expression is not known, as in a loop, the syntax node of the name stands for it. The result is empty if
+    several functions share the variable, since their order is not known.
     """
     values: list[tuple[int, ast.expr]] = []
     for node in ast.walk(tree):

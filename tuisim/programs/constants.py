@@ -74,7 +74,7 @@ def _list_values(module: ast.Module) -> list[tuple[ast.expr, str]]:
 
 
 def quote_annotations(text: str) -> str:
-    """Return a program in which annotations with other types than Python's are quoted, so that they are not run."""
+    """Return a program in which annotations with names other than Python's own are quoted, so that they are not run."""
     lines = [line.encode() for line in text.split("\n")]
     nodes: list[ast.expr] = []
     for node in ast.walk(parse_module(text)):

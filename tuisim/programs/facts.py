@@ -91,7 +91,7 @@ def _count_lines(tree: ast.Module) -> int:
 
 
 def _list_span(statement: ast.stmt) -> Iterator[int]:
-    """Yield the numbers of a statement's lines; for a statement with a block, such as a loop, only its first line's."""
+    """Yield the numbers of a statement's lines; for a statement with a block, such as a loop, only the first."""
     is_block = isinstance(statement, _BLOCKS)
     yield from range(
         statement.lineno, statement.lineno + 1 if is_block else (statement.end_lineno or 0) + 1
@@ -172,8 +172,9 @@ class ProgramFacts:
         """Return the numbers of the lines with a call, in ascending order.
 
         Args:
-            call: A name such as `time.sleep`, a method of an object that the prelude defines such as `tank_drive.on`,
-                or the name of a function or method alone. Methods of other objects of the same class are found as well.
+            call: A function such as `time.sleep`; a method of an object that programs have from the start, such as
+                `tank_drive.on`; or the name of a function or method alone. Methods of other objects of the same class
+                are found as well.
 
         Raises:
             SyntaxError, ValueError, RecursionError: the program is not Python.
@@ -200,7 +201,7 @@ class ProgramFacts:
 
     @cached_property
     def counts(self) -> tuple[tuple[int, LoopEnd], ...]:
-        """The lines in loops that add 1 to a variable when a value passes a constant, each with that comparison."""
+        """The lines in loops that count, such as `n += 1` below `if light < 20`, each with the comparison before it."""
         return tuple(list_counts(self.tree, self.constants))
 
     @cached_property
@@ -225,7 +226,7 @@ class ProgramFacts:
 
     @cached_property
     def slips(self) -> tuple[tuple[int, str], ...]:
-        """The lines that do nothing, or always do the same, each with a description of the fault."""
+        """The lines that probably contain a mistake, as they have no effect, or always the same; with descriptions."""
         return tuple(list_slips(self.tree))
 
     def explain_error(self, error: str, line: int) -> str:
@@ -262,9 +263,9 @@ class ProgramFacts:
         return self._places.get(line, (0, range(0)))
 
     def find_light_reads(self, robot: RobotSpec) -> Mapping[str, LightRead]:
-        """Return which kind of reading of each colour sensor the program compares first, by the sensor's name.
+        """Return how the program reads each colour sensor, such as in percent, by the sensor's name.
 
-        For a sensor without a comparison, it is the kind that the program reads first.
+        If it reads a sensor in several ways, the first one that it compares with a value counts, else the first of all.
         """
         return find_light_reads(self._program, robot)
 
@@ -295,7 +296,7 @@ class _Names:
     """Finds the full names of the objects behind a program's names, such as `ev3dev2.motor.MoveTank`.
 
     Args:
-        prelude: The scope of the program's prelude.
+        prelude: The scope of the program's prelude, which runs before it and defines names such as `tank_drive`.
     """
 
     prelude: Scope
@@ -348,7 +349,7 @@ def _build_prelude_scope(prelude: str) -> Scope:
 
 
 def _name_prelude(name: str, prelude: str) -> str:
-    """Return the full name of the object that a prelude defines for a name; without a definition, the name itself."""
+    """Return the full name of the object that a prelude defines for a name such as `tank_drive`; else the name."""
     names = _Names(_build_prelude_scope(prelude))
     return next(iter(names.list_meanings(ast.Name(name), names.prelude)))
 
@@ -362,9 +363,9 @@ def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
 
     Args:
         tree: The program.
-        prelude: Its prelude, a key of `PRELUDE_TEXTS`.
-        wanted: The call: a name such as `time.sleep`, a method of an object that the prelude defines such as
-            `tank_drive.on`, or the name of a function or method alone. Methods of other objects of the same class are
+        prelude: The code that runs before the program and defines names such as `tank_drive`: a key of `PRELUDE_TEXTS`.
+        wanted: A function such as `time.sleep`; a method of an object that the prelude defines, such as
+            `tank_drive.on`; or the name of a function or method alone. Methods of other objects of the same class are
             found as well.
     """
     scopes = _list_scopes(build_scope(Module("", "", tree)))

@@ -28,7 +28,8 @@ def read_function(function: Callable[..., object]) -> ProgramSource:
 
     Each line has the number that it has in the function's file. The program contains everything that the function uses:
     imports of libraries for a brick and of Python's own modules, the text of functions and classes, and values as text
-    or as expressions that compute them. Names without a definition are those of the prelude.
+    or as expressions that compute them. Names without a definition, such as `tank_drive`, are taken from the prelude,
+    the code that runs before programs.
 
     Raises:
         ConfigError: `function` is no function with a name and a source, needs arguments, or uses something that cannot
@@ -79,7 +80,7 @@ class _Block(NamedTuple):
 
     @property
     def is_evaluated(self) -> bool:
-        """Whether Python reads other names when it runs the definition, as for a class or for default values."""
+        """Whether Python reads other names at the definition itself, as for a class or for default values."""
         node = parse_module("\n".join(self.lines)).body[0]
         return not isinstance(node, ast.FunctionDef) or bool(
             node.decorator_list or node.args.defaults or node.args.kw_defaults
@@ -204,12 +205,14 @@ class _Reader:
         self._blocks.append(block._replace(lines=text.split("\n")))
 
     def _add_module(self, name: str, module: ModuleType, names: set[str], user: str) -> None:
-        """Add what code uses of a user's own module, and a `SimpleNamespace` with it in place of the module.
+        """Add the parts of a user's own module that the code uses, and a `SimpleNamespace` that contains them.
+
+        The namespace has the module's name, so that expressions such as `module.part` still work.
 
         Args:
             name: The name of the module in the program.
             module: The module.
-            names: The names that are used of it.
+            names: The names in the module that the code uses.
             user: What uses it, for errors.
         """
         self._claim(name, id(module), user)
@@ -292,7 +295,10 @@ class _Reader:
         return True
 
     def _add_value(self, name: str, around: Surroundings, user: str) -> None:
-        """Add the assignment of a value: as in its file if that gives the same value, else with an expression.
+        """Add the assignment of a value that the code uses.
+
+        The value is assigned as in its file if that gives the same value, otherwise by an expression for the present
+        value.
 
         Args:
             name: The name of the value.

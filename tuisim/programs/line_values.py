@@ -20,8 +20,8 @@ _OWN_NAMES = (ast.Lambda, ast.ClassDef, ast.ListComp, ast.SetComp, ast.DictComp,
 def map_line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ...]]:
     """Return the variables to show beside the lines of a paused program, by line number: those that the line assigned.
 
-    If several lines assign a variable, above the current line or in a loop around it, only the line that ran last and
-    the current line are included. A line that assigns a constant is left out if the variable now has another value.
+    If several lines have assigned a variable, it is shown only beside the line that did so last, and beside the current
+    line. A line that assigns a constant is left out if the variable now has another value.
 
     Args:
         text: The program that runs.
@@ -63,7 +63,7 @@ def _find_function(tree: ast.Module, frame: FrameState) -> _Function | None:
 def _find_values(
     scope: ast.Module | _Function, frame: FrameState | None, variables: Sequence[Variable]
 ) -> dict[int, tuple[Variable, ...]]:
-    """Return the variables that each line of a scope has assigned, by line number.
+    """Return the variables to show beside each line of a scope, by line number: those that the line assigned.
 
     Args:
         scope: The program or a function.

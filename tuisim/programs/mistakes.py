@@ -29,7 +29,10 @@ def find_fault(text: str) -> tuple[str, int] | None:
 
 
 def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """Yield for each kind of slip, such as a stop without `()`, the first line with it and a description."""
+    """Yield lines that probably contain a mistake, such as a stop without `()`, each with a description.
+
+    Of each kind of mistake, only the first line is yielded.
+    """
     for find_slip in (
         _find_uncalled_method,
         _find_equal_branches,
@@ -96,7 +99,10 @@ def _find_uncalled_method(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _list_devices(nodes: Sequence[ast.AST]) -> Iterator[str]:
-    """Yield the names of variables and attributes with objects of classes that a program imports from Pybricks."""
+    """Yield the names of the variables and attributes for devices, such as `motor` in `motor = Motor(Port.A)`.
+
+    Only classes that the program imports from Pybricks are considered.
+    """
     classes = [
         alias.asname or alias.name
         for node in nodes
@@ -119,7 +125,7 @@ def _describe_uncalled(name: ast.expr) -> str:
 def _list_used(nodes: Sequence[ast.AST]) -> Iterator[tuple[int, ast.expr]]:
     """Yield the expressions whose values are compared, tested, computed with or shown, each with the line of the use.
 
-    For a variable that is another name for an attribute, it is the attribute.
+    If a variable only stands for an attribute, as after `press = button.pressed`, the attribute is yielded.
     """
     stored = [node.id for node in nodes if isinstance(node, ast.Name) and is_set(node)]
     aliases: dict[str, ast.expr] = {}
@@ -189,7 +195,7 @@ def _name_function(func: ast.expr) -> str:
 
 
 def _map_empty_functions(nodes: Iterable[ast.AST]) -> dict[str, int]:
-    """Return the lines of functions that never return a value, by the name that no other function has."""
+    """Return the first lines of functions that never return a value, by name; without names that occur twice."""
     functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
     names = [function.name for function in functions]
     return {

@@ -43,7 +43,9 @@ class AttributeCheck:
         self._known: dict[tuple[str, ...], frozenset[str] | None] = {}
 
     def find_unknown_attributes(self, text: str, path: str) -> tuple[UnknownName, ...]:
-        """Return the unknown attributes of names that are assigned only once, in the program or its prelude.
+        """Return the unknown attributes of names that are assigned only once, in the program or in its prelude.
+
+        The prelude is the code that runs before the program and defines names such as `tank_drive`.
 
         Args:
             text: The present text of the program in the editor.
@@ -98,7 +100,10 @@ def _find_definitions(tree: ast.Module) -> dict[str, str]:
 
 
 def _find_uses(tree: ast.Module) -> Iterator[tuple[ast.Attribute, ast.Name]]:
-    """Yield each attribute that is read of a name which is assigned only once, and that name."""
+    """Yield each attribute that the program reads, such as `robot.speed`, and its name before the dot.
+
+    Only names that are assigned once are considered.
+    """
     attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute)]
     assigned = {node.attr for node in attributes if not isinstance(node.ctx, ast.Load)}
     bound = Counter(_list_bound_names(tree))

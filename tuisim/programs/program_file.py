@@ -164,7 +164,10 @@ _DOCSTRING = re.compile(r"[rRuU]?(\"\"\"|'''|\"|')")
 
 @dataclass(frozen=True, slots=True)
 class Magic:
-    """A program's magic line, parsed: the number of the line, the prelude that it selects, and its options."""
+    """The parsed magic line of a program: its number, its options, and the prelude that it selects.
+
+    The prelude is the code that runs before the program and defines names such as `tank_drive`.
+    """
 
     line: int
     """From 1."""
@@ -343,9 +346,9 @@ def _find_docstring_end(lines: list[str]) -> int:
 
 
 def choose_prelude(text: str, path: str = "") -> str:
-    """Return the prelude for a program without a magic line.
+    """Return the prelude for a program without a magic line: the code that defines names such as `tank_drive` for it.
 
-    The prelude is `none` if the program imports the library, or uses no name of a prelude.
+    The prelude is `none` if the program imports the library itself, or uses no name that a prelude defines.
 
     Args:
         text: The program.
@@ -420,7 +423,8 @@ def parse_program(
 def parse_unfinished(text: str, name: str) -> Program:
     """Return a program that is being edited.
 
-    Without a magic line and imports of a library, the program has the default prelude.
+    A program without a magic line that imports no library gets the default prelude, which defines names such as
+    `tank_drive`.
     """
     source = parse_program(text, name, is_unfinished=True)
     if source.has_magic or has_library_import(text):
@@ -449,7 +453,7 @@ def read_program(
         as_python: Whether to accept a file that is not UTF-8: wrong bytes become lone surrogates, and the program
             raises Python's own error when it is run. If this is False, such a file raises ConfigError.
         alone: Whether other files in its folder are not its modules, as in a folder with the files of a whole class.
-        is_unfinished: As in `parse_program`.
+        is_unfinished: Whether to accept a wrong magic line, without its options, so that it can be corrected.
 
     Raises:
         ConfigError: the file is missing, a directory, not Python text or too large, or its magic line is wrong.
@@ -498,8 +502,8 @@ def build_program(
         path: Its file, which may not exist; names of files in its magic line are relative to its folder. None if the
             program has no file.
         name: Its name, for errors and tables.
-        alone: As in `read_program`.
-        is_unfinished: As in `parse_program`.
+        alone: Whether other files in its folder are not its modules, as in a folder with the files of a whole class.
+        is_unfinished: Whether to accept a wrong magic line, without its options, so that it can be corrected.
 
     Raises:
         ConfigError: its magic line is wrong.

@@ -146,7 +146,7 @@ class ProgramSettings:
     decided: Decided
 
     def apply(self, program: Program) -> Program:
-        """Return a program with the prelude, arguments and shown ports of these settings."""
+        """Return a program with these settings: the prelude, the arguments, and the ports that its text shows."""
         prelude = self.settings["preload"] or program.prelude
         return replace(
             program,
@@ -279,9 +279,10 @@ def build_program_settings(
 
 
 def find_free_paths(settings: Settings) -> frozenset[str]:
-    """Return the paths among `PROGRAM_PATHS` that the user has not chosen.
+    """Return the settings that the user has not chosen, so that the program's source may decide them.
 
-    If the user has chosen the floor, the walls count as chosen, too.
+    They are paths among `PROGRAM_PATHS`, such as `robot`. If the user has chosen the floor, the walls count as chosen,
+    too.
     """
     free = {path for path in PROGRAM_PATHS if settings.given.get(path) is None}
     return frozenset(free if "floor" in free else free - {*GROUND_PATHS})
@@ -295,7 +296,7 @@ def decide(
     Args:
         source: The program.
         settings: The settings that are chosen.
-        free: The paths that the user has not chosen.
+        free: The paths of the settings that the user has not chosen, from `find_free_paths`.
         insists: Whether a chosen profile for another library is an error; otherwise it is replaced.
 
     Raises:
@@ -343,7 +344,7 @@ def _decide_ground(facts: SourceFacts, free: Collection[str]) -> dict[str, bool]
 
     Args:
         facts: The facts in the source of the program.
-        free: The paths that the user has not chosen.
+        free: The paths of the settings that the user has not chosen.
     """
     ground = {"floor": True, "walls": facts.senses_walls} if "floor" in free else {}
     return {path: value for path, value in ground.items() if path in free}
@@ -360,13 +361,13 @@ def _find_refused(facts: SourceFacts, profile: str | ProfileSpec) -> tuple[Refus
 
 
 def _find_shown(facts: SourceFacts, free: Collection[str]) -> tuple[str, ...] | None:
-    """Return the ports whose parts the text of the program shows, see `Decided.shown_ports`.
+    """Return the ports for which the text of the program shows what is plugged in.
 
-    The result is None if the user has chosen a robot.
+    The result is None if the user has chosen a robot, or if the program does not import its library.
 
     Args:
         facts: The facts in the source of the program.
-        free: The paths that the user has not chosen.
+        free: The paths of the settings that the user has not chosen.
     """
     return facts.shown_ports if "robot" in free else None
 
@@ -386,7 +387,7 @@ def _check_prelude(program: Program) -> None:
 
 
 def _find_law(named: str | ProfileSpec) -> MotorLaw | None:
-    """Return the motor law of a profile, or of the profile with this name.
+    """Return the motor law of a profile, given as such or by its name: how motors move, and for which library.
 
     The result is None if there is no such profile; another function reports that.
     """
@@ -408,7 +409,10 @@ def _is_fitting(settings: Settings, facts: SourceFacts) -> bool:
 
 
 def _can_move(law: MotorLaw, library: Library, is_for_hub: bool) -> bool:
-    """Return whether a motor law is for a library and, if the program is for a hub, also for hubs."""
+    """Return whether a profile's motor law is for a library and, if the program is for a hub, also for hubs.
+
+    The law says how motors move, and which library gives them commands.
+    """
     return law.library is library and (law is MotorLaw.PYBRICKS_4 or not is_for_hub)
 
 
@@ -458,8 +462,9 @@ def choose_robot(source: ProgramSource, name: str) -> ProgramRobot:
 def _read_run_facts(source: ProgramSource) -> SourceFacts:
     """Return the facts in the source of a program that apply to its run.
 
-    A program of the course that uses the default robot's parts on the same ports runs on the default robot: other
-    sizes, sides and mountings in its text apply only if it uses Pybricks, or has the rules of a real brick.
+    If the program was not written for a real brick and has the default robot's parts on the same ports, it runs on the
+    default robot, whatever its text says of sizes, sides and mountings. A Pybricks program always has the robot of its
+    text.
     """
     facts = read_source_facts(source.program)
     brings_rules = facts.library is Library.PYBRICKS or _has_brick_rules(source, facts)
@@ -469,12 +474,18 @@ def _read_run_facts(source: ProgramSource) -> SourceFacts:
 
 
 def _has_brick_rules(source: ProgramSource, facts: SourceFacts) -> bool:
-    """Return whether a program is for a real brick and has no sign of a program of the course."""
+    """Return whether a program was written for a real brick: it imports a library, and nothing comes from the course.
+
+    A magic line, or a name that only the course's simulator has, shows that a program comes from the course.
+    """
     return facts.library is not None and not facts.of_course and not source.has_magic
 
 
 def _describe_course_rules(source: ProgramSource) -> str:
-    """Return by which rule of the course a program with its own imports reads light; empty if it does not."""
+    """Return a text on the scale on which a program reads light, if the rules of the course are a surprise; else empty.
+
+    They are if the program imports the library itself, as for a real brick, but has a magic line of the course.
+    """
     if not source.has_magic or _BRICK_LIGHT not in source.program.text:
         return ""
     facts = read_source_facts(source.program)
@@ -493,7 +504,7 @@ def _describe_decision(
         source: The program.
         facts: The facts in its source.
         layer: The settings that it decides.
-        free: The paths that the user has not chosen.
+        free: The paths of the settings that the user has not chosen.
     """
     program = source.program
     if facts.for_other_hub:

@@ -123,7 +123,7 @@ class Question:
 
 
 def shorten(word: Word) -> Word:
-    """Return a word of a library in the form of the tables of words: in lower case, without prefixes such as `color_`.
+    """Return a word such as `COLOR_RED` in a short form, `red`: in lower case, and without a prefix of the library.
 
     A number is returned unchanged.
     """

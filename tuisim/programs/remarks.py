@@ -81,7 +81,7 @@ class Remarks:
         return _find_side(comment or (above if above.startswith("#") else ""))
 
     def has_centimetres(self, line: int, number: float | None) -> bool:
-        """Return whether a line, or the line above it, contains this number with the unit cm."""
+        """Return whether a line, or the line above it, contains a number with the unit cm, such as `20 cm`."""
         text = self._read_lines(line - 1, line)
         return bool(number) and bool(re.search(rf"\b{number:g}\b\W{{0,6}}cm\b", text))
 

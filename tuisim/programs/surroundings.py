@@ -121,7 +121,10 @@ class Surroundings:
         return self.file if text.rstrip() == self._text.rstrip() else ""
 
     def find_expression(self, name: str) -> ast.expr | None:
-        """Return the expression that a statement assigns only to a name; None if there is none."""
+        """Return the expression that the last assignment of a global name gives to it.
+
+        The result is None if there is none, or if the statement also assigns other names.
+        """
         match self.find(name)[0]:
             case ast.Assign(targets=[ast.Name()], value=value):
                 return value
@@ -130,9 +133,9 @@ class Surroundings:
         return None
 
     def find_import(self, name: str) -> str:
-        """Return a statement that imports a name as these surroundings do; empty if it is not from a library.
+        """Return a statement that imports a name as these surroundings do, such as `from math import pi as pi`.
 
-        Libraries are those for a brick, and Python's own.
+        The result is empty if the name is not imported from a library for a brick, or from one of Python's own modules.
         """
         module, original = self._find_module(name)
         return f"from {module} import {original} as {name}" if is_library(module) else ""
@@ -158,9 +161,9 @@ class Surroundings:
         return "", ""
 
     def list_attributes(self, name: str, text: str) -> set[str]:
-        """Return the attributes that a text reads of a user's own module.
+        """Return the attributes of a user's own module that a text reads, such as `speed` in `settings.speed`.
 
-        The result is empty for another module, or if the text uses the module otherwise than by reading its attributes.
+        The result is empty for other modules, and if the text uses the module in another way, such as as an argument.
 
         Args:
             name: The name of the module in these surroundings.

@@ -27,10 +27,10 @@ _SPEEDS = "Speed"
 
 
 def list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoopEnd]:
-    """Yield each use in a loop of a reading that was taken before the loop and that nothing in the loop reads again.
+    """Yield each use of an old reading in a loop: the program took the reading before the loop, and never again in it.
 
-    A use is a comparison with a constant, another test, or a move; the last two are yielded without an operator. The
-    first and last line of a use are those of the loop.
+    A use is a comparison with a constant, another test, or a move. For the last two, the operator is empty. The first
+    and last line of a use are those of the loop.
 
     Args:
         tree: The program.
@@ -56,9 +56,9 @@ def _list_scopes(tree: ast.Module) -> Iterator[ast.Module | _Function]:
 
 
 def _list_reads_before(loop: _Loop, nodes: list[ast.AST]) -> dict[str, ast.Assign]:
-    """Return the assignments before a loop that read an attribute, by name: the last one of each name.
+    """Return the last assignment of each variable before a loop, by name, if it reads an attribute of a device.
 
-    Names that the loop assigns itself are left out.
+    Variables that the loop assigns itself are left out.
 
     Args:
         loop: The loop.
@@ -242,7 +242,7 @@ def _read_test(
 
 @dataclass(frozen=True, slots=True)
 class LostValue:
-    """A value that a function assigns to a local name, although it probably means the same name of the program."""
+    """A value that a function assigns to a local name, although it probably means a global one: `global` is missing."""
 
     line: int
     name: str
@@ -260,7 +260,7 @@ class LostValue:
 def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
     """Yield each value that a function assigns to a local name and never uses, if the program uses this name, too.
 
-    A `print` of the value is no use, and neither is a `return` if no call uses the result of the function.
+    Printing the value does not count as a use. Returning it counts only if a call uses the result of the function.
     """
     functions = [node for node in tree.body if isinstance(node, _Function)]
     outside = [*walk_scope(tree)]

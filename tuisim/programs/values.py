@@ -39,9 +39,9 @@ class ValueWriter:
         """Return an expression with a given value; a NumPy number becomes a Python number.
 
         Raises:
-            ConfigError: the same object would be created twice, or the value is of a kind that cannot be written. These
-                can: constants, members of an Enum, functions and classes of the user or of Python, containers, and
-                objects that consist of them.
+            ConfigError: the same object would be created twice, or the value is of a kind that cannot be written. The
+                kinds that can be written are constants, members of an Enum, functions and classes of the user or of
+                Python, containers, and objects that consist of them.
         """
         if getattr(value, "shape", None) == ():
             value = value.item()
@@ -108,7 +108,7 @@ def write_value(value: object, known: Collection[str] = ()) -> str:
         known: Other names that the expression may use.
 
     Raises:
-        ConfigError: as of `ValueWriter.write`; or the expression needs other names.
+        ConfigError: the value cannot be written as an expression, or its expression needs other names.
     """
     writer = ValueWriter()
     with suppress(ConfigError, RecursionError):
@@ -128,7 +128,7 @@ def is_plain(value: object) -> bool:
 
 
 def list_parts(kind: type) -> Sequence[str]:
-    """Return the names of the fields of a NamedTuple or dataclass that is created from exactly their values.
+    """Return the names of the fields of a NamedTuple or dataclass, if their values are all that creates an object.
 
     The result is empty for any other class.
     """

@@ -58,7 +58,7 @@ class LoopEnd:
 
 
 def list_blocks(tree: ast.AST) -> Iterator[list[ast.stmt]]:
-    """Yield the statements of each block in a tree: of the module, and of what its statements contain."""
+    """Yield the lists of statements in a syntax tree: the body of the module, of each function, loop and branch."""
     for node in ast.walk(tree):
         for name in ("body", "orelse"):
             block = getattr(node, name, None)
@@ -225,7 +225,9 @@ def _build_end(
     tree: ast.Module,
     words: Mapping[str, Word],
 ) -> LoopEnd | None:
-    """Return a comparison as the end of a loop; None if it compares no reading, and nothing that stays as it is.
+    """Return a comparison as the end of a loop; None if nothing shows on what it depends.
+
+    The loop must read the value from a device; or the value must have been set before the loop, which cannot end then.
 
     Args:
         loop: The loop.
@@ -256,7 +258,11 @@ def _build_end(
 
 
 def _is_short(number: Word | None, operator: str, limit: Word) -> bool:
-    """Return whether a number does not meet a comparison with a limit, and neither is a flag, which may stay."""
+    """Return whether a variable's number has to change before `number operator limit` is true.
+
+    The result is False for flags, which may keep their value: numbers compared by `!=`, or 0 with 1 and the reverse. It
+    is also False if one of the values is not a number.
+    """
     is_number = isinstance(number, int | float) and isinstance(limit, int | float)
     is_flag = operator == "!=" or {number, limit} == {0, 1}
     return is_number and not is_flag and not COMPARE[operator](number, limit)

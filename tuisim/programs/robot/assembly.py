@@ -85,12 +85,12 @@ class BuiltRobot:
 
 
 def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot | None:
-    """Return the robot that a program needs; None if the usual robot has every part on its port.
+    """Return the robot that a program needs: the usual robot with changes; None if the usual robot fits as it is.
 
     Args:
         mentions: The devices that the program creates.
         name: The name of the program.
-        usual: The robot that is changed.
+        usual: The usual robot of the program's brick or hub.
 
     Raises:
         RobotError: a value in the program is impossible, such as a wheel of 0 mm.
@@ -337,7 +337,7 @@ class _Builder:
         }
 
     def _list_exact(self) -> Iterator[str]:
-        """Yield the names of the size fields that the program sets by a `DriveBase`, even if to the usual sizes."""
+        """Yield the names of the size fields that the program sets by a `DriveBase`, even to the usual sizes."""
         for pair in self.mentions.pairs:
             if PAIRS[pair.class_name].takes_motors:
                 yield from ["wheel_diameter_mm"] if pair.wheel_mm else []

@@ -15,11 +15,11 @@ _ATTRIBUTES = frozenset({"reflected_light_intensity_pc", "full_reflected_light_i
 
 
 def has_course_names(modules: Mapping[str, Module], text: str) -> bool:
-    """Return whether a program uses names that only exist in the programs of the course.
+    """Return whether a program uses names that only the course's simulator has, such as `reflected_light_intensity_pc`.
 
     Args:
         modules: The program and its own modules.
-        text: The text of the program, whose names may be defined by a prelude.
+        text: The text of the program, which may use names such as `tank_drive` that are defined before it runs.
     """
     trees = [module.tree for module in modules.values()]
     defined = {name for tree in trees for name in find_definitions(tree)}

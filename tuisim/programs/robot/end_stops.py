@@ -112,8 +112,8 @@ class Mechanics:
         Args:
             port: The motor's port.
             targets: The positions.
-            places: Values to which the program sets the motor's position, for example at an end stop, from which the
-                targets are then measured.
+            places: The values to which the program sets the motor's position, for example 0 at an end stop. Targets
+                that come later are measured from there.
         """
         far = max(
             (abs(target.deg - place) for target in targets for place in places or (0.0,)), default=0

@@ -285,7 +285,7 @@ class Evaluation:
                             yield from self._read_class(inner, name, is_bound=False)
 
     def look_up(self, table: SourceCollection, wanted_keys: Sequence[Value]) -> Iterator[Value]:
-        """Yield the items of a list or dict that some keys can select; all items if the keys are unknown."""
+        """Yield the values that `table[key]` can have for each of some possible keys; all items if no key is known."""
         keys = table.keys
         for key, item in zip(keys or range(len(table.items)), table.items, strict=True):
             of_key = (
@@ -371,9 +371,10 @@ class Evaluation:
         return () if is_unpacked else None
 
     def arguments(self, parameter: Parameter) -> list[tuple[Value, Call | None]]:
-        """Return the values that a parameter can have, each with the call that gives it.
+        """Return the values that a parameter can have, each with the call that passes it.
 
-        For the default, the call is None.
+        The call is None if no known call passes a value: then the value is the parameter's default, or the object for
+        `self`.
         """
         name = parameter.argument.arg
         function = parameter.function
@@ -412,7 +413,7 @@ class Evaluation:
 
 
 def _add_call(call: ast.Call | None, values: Iterable[Value]) -> Iterator[Value]:
-    """Yield the values; in an instance without a call in its attribute `via`, the attribute is set to `call`."""
+    """Yield the values; in objects without the attribute `via`, set it to `call`, the call that makes them."""
     for value in values:
         yield (
             replace(value, via=call) if isinstance(value, Instance) and value.via is None else value

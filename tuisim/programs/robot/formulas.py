@@ -12,9 +12,9 @@ _TURN_DEG = 360
 
 
 def find_formula_size(node: ast.AST) -> tuple[str, float] | None:
-    """Return field name and number of a wheel's size in an expression that divides by the wheel's circumference.
+    """Return the name and the number of a wheel's size in a formula that divides by the wheel's circumference.
 
-    The result is None for any other expression.
+    For example, `distance / (math.pi * 56)` gives `wheel_diameter` and 56. The result is None for other expressions.
     """
     match node:
         case ast.BinOp(op=ast.Div(), right=product) if isinstance(product, ast.BinOp):
@@ -41,9 +41,9 @@ def find_formula_size(node: ast.AST) -> tuple[str, float] | None:
 
 
 def read_girth(product: ast.expr) -> tuple[str, float] | None:
-    """Return what is multiplied by π in a product: `diameter` or `radius` as text, and the number.
+    """Return the name and the number of the wheel's size in a product for a circumference, such as `math.pi * 56`.
 
-    The result is None if the product is not π · d or 2 · π · r.
+    The name is `wheel_diameter` or, for a product 2 · π · r, `wheel_radius`. The result is None for other products.
     """
     factors = [*_list_factors(product)]
     numbers = [

@@ -262,11 +262,13 @@ class _MechanicsReader:
     def _find_ways(
         self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope
     ) -> Iterator[bool]:
-        """Yield for each speed in calls that move some motors without an end whether it is a speed forwards.
+        """Yield whether a speed is forwards, for each speed that a call gives to one of some motors.
+
+        Only calls without an end are considered, such as `motor.run(-200)`.
 
         Args:
             nodes: The nodes of the syntax tree.
-            ports: The ports of the motors.
+            ports: The ports of the motors to consider.
             scope: The scope that contains the nodes.
         """
         ports = [*ports]
@@ -310,9 +312,9 @@ class _MechanicsReader:
     # Touch sensors
 
     def _read_press(self, statements: list[ast.stmt], scope: Scope) -> None:
-        """Record that a motor runs until a touch sensor is pressed, if the last of some statements waits for that.
+        """Record that a motor presses a touch sensor, if statements run the motor until the sensor is pressed.
 
-        It is recorded only if no other motor moves in these statements.
+        The last statement must wait for the press, and no other motor may move in the statements.
         """
         last = statements[-1]
         base = find_awaited_touch(last)

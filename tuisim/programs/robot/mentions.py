@@ -67,7 +67,10 @@ class Mention:
     """Turns of the motor per turn of what it drives, as the program says."""
 
     def makes(self, value: Instance) -> bool:
-        """Return whether the device's call creates an instance, or is in the `__init__` of the instance's class."""
+        """Return whether an object in the program is this device: the call that makes the device made the object.
+
+        In a class of the program, this may be the call `super().__init__(port)`.
+        """
         return _is_maker(self.call, self.owner, value)
 
 
@@ -95,7 +98,10 @@ class Pair:
     """The polarity that the program gives for the motors, for a class that takes one."""
 
     def makes(self, value: Instance) -> bool:
-        """Return whether the pair's call creates an instance, or is in the `__init__` of the instance's class."""
+        """Return whether an object in the program is this pair: the call that makes the pair made the object.
+
+        In a class of the program, this may be the call `super().__init__(left, right)`.
+        """
         return _is_maker(self.call, self.owner, value)
 
 
@@ -193,14 +199,15 @@ class _Reader:
     def _list_ways(
         self, name: str, call: Call, whole: Evaluation
     ) -> Iterator[tuple[Evaluation, Call | None]]:
-        """Yield an evaluation for each call of the function in which a device is created, and that call.
+        """Yield an evaluation for each call of the function in which a device is created, together with the call.
 
-        If the function is called at most once, or too often, yield only the evaluation of the whole program, and None.
+        The evaluation finds the values of expressions with the arguments of this call. If the function is called at
+        most once, or more than `_MAX_WAYS` times, yield only `whole` and None.
 
         Args:
             name: The library class of the device.
             call: The call that creates the device.
-            whole: The evaluation of the program.
+            whole: The evaluation of the whole program.
         """
         function = call.scope.node
         calls = whole.calls.get(function, ()) if isinstance(function, FUNCTIONS) else ()
@@ -241,7 +248,7 @@ class _Reader:
                     calls.setdefault(node, []).append(replace(call, is_bound=is_bound))
 
     def _sort_init(self, value: Value, call: Call, calls: dict[Function, list[Call]]) -> None:
-        """Record a call such as `super().__init__()` or `Base.__init__(self)` as a call of the class.
+        """Record a call such as `super().__init__()` or `Base.__init__(self)` as a call of the base class.
 
         Args:
             value: The object before `.__init__`.
@@ -660,9 +667,10 @@ def _needs_motors(name: str) -> bool:
 
 
 def _is_maker(call: ast.Call | None, owner: Scope | None, value: Instance) -> bool:
-    """Return whether a call creates an instance.
+    """Return whether a call makes an object.
 
-    It does if it is the instance's own call, or if it calls `__init__` in the class whose scope is `owner`.
+    It is then the object's own call, or a call such as `super().__init__()` in the object's class, whose scope is
+    `owner`.
     """
     if value.call is not None and value.call is call:
         return True

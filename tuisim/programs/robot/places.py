@@ -25,9 +25,9 @@ _ROW = (Side.LEFT, Side.MIDDLE, Side.RIGHT)
 
 
 def add_sides(mentions: Sequence[Mention]) -> list[Mention]:
-    """Return the mentions; of three colour sensors that one call creates, the names get left, centre and right.
+    """Return the mentions; if one call creates three colour sensors in a row, name them left, centre and right.
 
-    This is done only if none of the program's names for the three sensors says a side.
+    This is done only if none of the program's own names for the three sensors says a side.
     """
     calls = [
         mention.call for mention in mentions if mention.kind is DeviceKind.COLOR and mention.port
@@ -48,7 +48,7 @@ def add_sides(mentions: Sequence[Mention]) -> list[Mention]:
 def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorSpec]) -> bool:
     """Return whether a program's names put one of its colour sensors on another side than in the usual robot.
 
-    Unless the program has an additional colour sensor, names count only if all of them say a side.
+    If the program has only colour sensors that the usual robot has, this requires that all their names say a side.
 
     Args:
         mentions: The devices that the program creates, by port.
@@ -68,7 +68,7 @@ def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorS
 
 
 def choose_likeliest(sensors: list[SensorSpec], mention: Mention) -> SensorSpec:
-    """Return the sensor among some that a program most likely means, by its name for the sensor."""
+    """Return the sensor on the side that the program's name for it says, as in `left_sensor`; else the first one."""
     side = find_side(mention.names)
     return next((sensor for sensor in sensors if sensor.name == side), sensors[0])
 

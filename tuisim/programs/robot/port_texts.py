@@ -15,9 +15,9 @@ _PORT = re.compile(r"(?:ev3-ports:)?(out[A-D])")
 
 
 def add_port_texts(mentions: Mentions, modules: Iterable[Module]) -> Mentions:
-    """Return the mentions of a program; those of a program that creates no device get motors.
+    """Return the mentions of a program, completed with motors if the program creates no device.
 
-    There is a motor for each port, such as `outA`, that a text in the program names.
+    There is a motor for each port that a text in the program names, such as `outA`.
     """
     if mentions.devices or mentions.pairs:
         return mentions

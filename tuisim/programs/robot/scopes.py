@@ -92,10 +92,10 @@ class Scope:
         return []
 
     def list_items(self, node: ast.expr) -> Iterator[ast.expr]:
-        """Yield an expression and, if it is a loop variable, the expressions that it may stand for in turn.
+        """Yield an expression and, if it is the variable of a loop, also the attributes that the loop goes over.
 
-        These are the attributes in the list or tuple over which the loop goes, such as `tank.left_motor`. For a loop
-        over `tank.motors.values()`, `tank` is yielded.
+        For `for motor in (tank.left_motor, tank.right_motor)`, these are the two attributes. For a loop over
+        `tank.motors.values()`, `tank` is yielded.
         """
         yield node
         for binding in self.names.get(node.id, ()) if isinstance(node, ast.Name) else ():

@@ -178,7 +178,10 @@ class _Search:
 
 @lru_cache(16)
 def _list_imported(module: Module) -> list[str]:
-    """Return the names of all modules that the imports of a module may mean, each package before the modules in it."""
+    """Return the names of all modules that a module may import, each package before the modules in it.
+
+    For `from package import name`, these are `package` and `package.name`, as `name` may be a module.
+    """
     imported: list[str] = []
     for node in ast.walk(module.tree):
         match node:
@@ -223,9 +226,9 @@ EV3_MODULES = frozenset({"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3de
 
 
 def find_hub(modules: dict[str, Module]) -> str:
-    """Return the hub, one of `HUBS`, for which a program or one of its own modules is.
+    """Return the hub for which a program or one of its own modules is written, one of `HUBS`.
 
-    The result is empty for the EV3, or if unknown.
+    The result is empty for the EV3, or if the hub is unknown.
     """
     names = _list_all_imported(modules)
     if not EV3_MODULES.isdisjoint(names):

@@ -32,7 +32,7 @@ _PRELUDE = "*prelude"
 
 @dataclass(frozen=True, slots=True)
 class ProgramThreshold:
-    """A value in a program with which it compares a colour sensor's reading, or to which it controls the reading."""
+    """A number with which a program compares a colour sensor's reading, or at which it tries to keep the reading."""
 
     read: LightRead
     sign: str
@@ -43,12 +43,12 @@ class ProgramThreshold:
     """Where, in the program itself."""
 
     def holds(self, value: float) -> bool | None:
-        """Return whether the comparison is true for a reading; None if the value is a target, see `is_aim`."""
+        """Return whether the comparison is true for a reading; None if there is no comparison, see `is_aim`."""
         return None if self.is_aim else bool(COMPARE[self.sign](value, self.value))
 
     @property
     def is_aim(self) -> bool:
-        """Whether the value is a target to which the program controls the reading, not one that it compares with."""
+        """Whether the program tries to keep the reading at this value, as a line follower does."""
         return self.sign == AIM
 
     @property
@@ -75,10 +75,10 @@ def find_light_read(text: str) -> LightRead:
 
 @lru_cache(maxsize=4)
 def find_light_reads(program: Program, robot: RobotSpec) -> Mapping[str, LightRead]:
-    """Return, by sensor name, which kind of reading of each colour sensor comes first in a program.
+    """Return how a program reads each colour sensor, such as in percent, by the sensor's name.
 
-    A reading that is compared comes before others. For a sensor without a reading in the text, it is the kind that
-    `find_light_read` returns.
+    If it reads a sensor in several ways, the first one that it compares with a value counts, else the first of all. For
+    a sensor that the text does not read, the result is that of `find_light_read`.
     """
     usual = find_light_read(program.text)
     reads: dict[str, tuple[int, LightRead]] = {}
@@ -155,9 +155,9 @@ def _read_mentions(program: Program) -> Mentions | None:
 
 
 def _find_comparisons(mentions: Mentions) -> Iterator[tuple[str, ProgramThreshold]]:
-    """Yield the sensor's port and the threshold for each comparison of a reading with a constant.
+    """Yield a pair for each comparison of a reading with a constant: the sensor's port, and the threshold.
 
-    The port may be empty.
+    The port is empty if the program does not give it.
     """
     for scope in mentions.scopes:
         if scope.module.name:

@@ -12,35 +12,35 @@ from tuisim.programs.robot.scopes import Function, Scope
 
 @dataclass(frozen=True, slots=True)
 class LibraryModule:
-    """An expression's value that is a module of one of the libraries for a brick."""
+    """A possible value of an expression in a program: a module of a library for a brick."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class LibraryClass:
-    """An expression's value that is a class of a library for a brick."""
+    """A possible value of an expression in a program: a class of a library for a brick."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class SourceModule:
-    """An expression's value that is a module of the program."""
+    """A possible value of an expression in a program: one of the program's own modules."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class OwnClass:
-    """An expression's value that is a class of the program."""
+    """A possible value of an expression in a program: a class that the program defines."""
 
     scope: Scope
 
 
 @dataclass(frozen=True, slots=True)
 class OwnFunction:
-    """An expression's value that is a function of the program."""
+    """A possible value of an expression in a program: a function that the program defines."""
 
     node: Function
     scope: Scope
@@ -51,7 +51,7 @@ class OwnFunction:
 
 @dataclass(frozen=True, slots=True)
 class Instance:
-    """An expression's value that is an object, created by a call of a class."""
+    """A possible value of an expression in a program: an object, which a call of a class created."""
 
     of: OwnClass | LibraryClass
     call: ast.Call | None = None
@@ -62,14 +62,14 @@ class Instance:
 
 @dataclass(frozen=True, slots=True)
 class Parent:
-    """An expression's value that is the result of `super()` in a method of a class."""
+    """A possible value of an expression in a program: the result of `super()` in a method of a class."""
 
     of: Scope
 
 
 @dataclass(frozen=True, slots=True)
 class SourceCollection:
-    """An expression's value that is a list, tuple, set or dict, with its items in the program's text."""
+    """A possible value of an expression in a program: a list, tuple, set or dict whose items the text shows."""
 
     node: ast.List | ast.Tuple | ast.Set | ast.Dict
     scope: Scope

@@ -101,7 +101,10 @@ def _steers(devices: Sequence[Mention]) -> bool:
 
 
 def _turns_sensor(devices: Sequence[Mention], wheels: Collection[str]) -> bool:
-    """Return whether a program has a distance sensor and a motor, not of a wheel, that by its name turns the sensor."""
+    """Return whether a program has a distance sensor, and a motor whose name says that it turns the sensor.
+
+    Motors of the wheels do not count.
+    """
     has_sensor = any(
         device.kind in (DeviceKind.ULTRASONIC, DeviceKind.INFRARED) for device in devices
     )
@@ -128,7 +131,10 @@ def _choose_pair(pairs: Sequence[Pair]) -> WheelMotors | None:
 def _choose_single(
     devices: Sequence[Mention], kinds: Mapping[str, DeviceKind], tools: Collection[str]
 ) -> WheelMotors | None:
-    """Return two separately created motors that must be the wheels by their names, class or number; None if unclear."""
+    """Return the two motors of the wheels if the program creates them one by one; None if it is unclear which.
+
+    Their names or their class decide or, if only two motors are possible, their number.
+    """
     by_port: dict[str, Mention] = {}
     for device in devices:
         if device.kind.is_motor and device.port and device.port not in tools:
@@ -319,7 +325,7 @@ def _pick_diameter(named: Sequence[tuple[str, Size]]) -> Size | None:
 
 
 def _find_in_formulas(mentions: Mentions) -> Iterator[tuple[str, Size]]:
-    """Yield the wheel sizes in a program's formulas, each with the name of its size."""
+    """Yield the wheel sizes in a program's formulas, each after its name, such as `wheel_diameter`."""
     for scope in mentions.scopes:
         for node in scope.body:
             if (size := find_formula_size(node)) and isinstance(node, ast.expr):
@@ -327,7 +333,10 @@ def _find_in_formulas(mentions: Mentions) -> Iterator[tuple[str, Size]]:
 
 
 def _find_named(mentions: Mentions) -> Iterator[tuple[str, Size]]:
-    """Yield the numbers in a program with the name of a wheel size, in the unit in which they are written."""
+    """Yield the numbers to which a program gives the name of a wheel size, such as `WHEEL_CM`, each after this name.
+
+    Each number is in the unit in which the program has it.
+    """
     evaluation = mentions.evaluation
     if evaluation is None:
         return
@@ -373,10 +382,10 @@ def _read_number(value: object) -> float:
 
 
 def _pick_only(named: list[tuple[str, Size]], limits: tuple[float, float]) -> Size | None:
-    """Return the size in mm on which all sizes with names agree; None if they differ, or if none is within the limits.
+    """Return a wheel size in mm if all numbers for it are about equal; None if they differ, or if none is possible.
 
     Args:
-        named: The sizes in the unit of their names, each with its name.
+        named: The numbers for the size in the program's units, each after the program's name for it.
         limits: The least and the greatest possible size in mm.
     """
     low, high = limits

@@ -132,7 +132,7 @@ def is_girth(name: str) -> bool:
 
 
 def find_girth(name: str, number: float) -> float:
-    """Return a wheel's circumference from a number whose name is such as `MM_PER_DEGREE` or `DEGREES_PER_CM`.
+    """Return a wheel's circumference from a number and its name, such as `MM_PER_DEGREE` or `DEGREES_PER_CM`.
 
     The result is in the unit of length in the name; 0 for other names.
     """
@@ -147,7 +147,7 @@ def find_girth(name: str, number: float) -> float:
 def _is_alone(name: str, measure: frozenset[str]) -> bool:
     """Return whether a name is only one long word for a measure, perhaps with a unit, as `diameter_mm`.
 
-    No other word then says whose measure it is: that of a wheel is assumed.
+    Such a name does not say what is measured, so it is taken for a wheel's.
 
     Args:
         name: The name.

@@ -117,7 +117,10 @@ def _compare(use: LoopEnd, series: Series) -> Array:
 
 
 def _find_next_reading(data: RunData, line: int, tick: int) -> int:
-    """Return the tick of the next reading, after `tick`, of the sensor or motor that a line of the program reads."""
+    """Return the tick of the next reading, after `tick`, of the sensor or motor that a line of the program reads.
+
+    If there is no further reading, the result is the number of ticks in the recording.
+    """
     ports = list_distinct(data.readings["port"][data.readings["line"] == line])
     ticks = data.reading_ticks[np.isin(data.readings["port"], ports)]
     later = ticks[ticks > tick]

@@ -83,7 +83,10 @@ def _build_recorded(recording: Recording, open_mat: Callable[[RunSpec], Field | 
 
 
 def describe_so_far(recording: Recording) -> str:
-    """Return a sentence about a paused run in which no fault was found yet: its time, and the lines that run."""
+    """Return a sentence about a paused run in which no fault was found yet: its time, and the lines that run.
+
+    An action id in braces stands for the action's key.
+    """
     import numpy as np
 
     hz = recording.spec.profile.tick_hz
