@@ -16,7 +16,10 @@ IntArray = NDArray[np.int64]
 
 
 def find_spans(is_so: NDArray[np.bool_]) -> IntArray:
-    """Return where an array is true: for each stretch its first index and the index after its last, shape (n, 2)."""
+    """Return the stretches in which an array is true, as an array of shape (n, 2).
+
+    Each row has the first index of a stretch, and the index after its last one.
+    """
     edges: IntArray = np.flatnonzero(np.diff(is_so, prepend=False, append=False))
     return edges.reshape(-1, 2)
 

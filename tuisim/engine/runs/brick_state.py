@@ -106,7 +106,7 @@ class BrickState:
         return tuple(self.leds.get(name, 0) for name in names if is_shown)
 
     def extrapolate_turns(self, time_s: float, tick_hz: int) -> tuple[tuple[float, float], ...]:
-        """Return where the motors in `turns` will be at a later time, and their speeds, if the speeds do not change.
+        """Return the positions and speeds of the motors in `turns` at a later time, if their speeds do not change.
 
         Args:
             time_s: The later time, in simulated seconds.
@@ -171,7 +171,11 @@ def build_console_row(screen: TextScreen) -> str:
 
 
 def build_motors_row(turns: Iterable[tuple[float, float]]) -> str:
-    """Return the text of an output row that stores `BrickState.turns`, which are valid from the tick of the row on."""
+    """Return the text of an output row that stores positions and speeds of motors, valid from the row's tick on.
+
+    Args:
+        turns: The positions and speeds, as in `BrickState.turns`.
+    """
     return json.dumps(list(turns))
 
 
@@ -188,7 +192,7 @@ DRAWN_STREAMS = frozenset({Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MO
 
 
 def is_sound(stream: Stream, text: bytes) -> bool:
-    """Return whether an output row about the brick's state can be genuine: written by the functions of this module.
+    """Return whether an output row about the brick's state can have been written by the functions of this module.
 
     Args:
         stream: The stream of the row, one of `DRAWN_STREAMS`.

@@ -159,7 +159,7 @@ class CommandIndex:
     def read_scale_changes(self) -> list[ScaleChange]:
         """Read all further commands, but use only those that change a scale; return `scale_changes` with all changes.
 
-        A scale is the number of degrees that the program counts while a motor turns by one.
+        A scale is the number of degrees that the program counts while a motor turns by one degree.
         """
         import numpy as np
 
@@ -221,7 +221,9 @@ class CommandIndex:
         self._change_ticks.extend((times[changes] * self._hz // NS_PER_S).tolist())
 
     def _note_wheels(self, rows: Array) -> None:
-        """Store for each wheel what the last command to its motor, or to a drive base, makes it do, in `WHEEL_WORDS`.
+        """Store what the last command to each wheel makes it do: one of the texts in `WHEEL_WORDS`.
+
+        Such a command is one to the wheel's motor or to a drive base.
 
         Args:
             rows: Rows of recorded commands; those that do not move or stop a wheel are ignored.
@@ -235,9 +237,9 @@ class CommandIndex:
                 self._wheels[part] = describe_aim(Call(int(row["call"])), row["values"].tolist())
 
     def describe_wheels(self) -> str:
-        """Return how the program has left its wheels, in words of `WHEEL_WORDS`, such as `still set to turn`.
+        """Return how the program has left its wheels: one of the texts in `WHEEL_WORDS`, such as `still set to turn`.
 
-        If the wheels differ, return those of their words that come first in `WHEEL_WORDS`.
+        If the two wheels differ, return the text that comes first in `WHEEL_WORDS`.
         """
         return min(self._wheels.values(), key=WHEEL_WORDS.index, default=WHEEL_WORDS[-1])
 
@@ -262,9 +264,9 @@ class CommandIndex:
                 self.scale_changes.append((self._find_tick(time_ns), port, scale))
 
     def _read_codes(self, rows: Array) -> Array:
-        """Return for each command a number that combines its robot, its call and its part.
+        """Return a number for each command; it is the same for commands with the same robot, call and part.
 
-        If a command plugs parts in, add the robot with these parts to the known robots.
+        A command that plugs parts in changes the robot: the new robot is added to the known ones.
 
         Args:
             rows: Rows of recorded commands.
@@ -314,14 +316,17 @@ class CommandIndex:
     # Finding
 
     def find_scales(self, tick: int) -> dict[str, float]:
-        """Return by port how many degrees the program counts for one degree of the motor, at a tick.
+        """Return how many degrees the program counts at a tick while a motor turns by one degree, by the motor's port.
 
         The number is 1 for a port that is missing in the result.
         """
         return {port: scale for when, port, scale in self.scale_changes if when <= tick}
 
     def list_changes(self, tick: int) -> list[SimulationCommand]:
-        """Return the commands of `IMMEDIATE_CALLS` in a tick, in order."""
+        """Return the commands in a tick that change immediately what the program reads: those of `IMMEDIATE_CALLS`.
+
+        They are in the order in which they were given.
+        """
         first, end = (side(self._change_ticks, tick) for side in (bisect_left, bisect_right))
         size = COMMAND_RECORD.size
         records = COMMAND_RECORD.iter_unpack(self._changes[first * size : end * size])
@@ -469,9 +474,9 @@ def _name_call(code: int) -> str:
 
 
 def _find_mains() -> Array:
-    """Return for each kind of command which of its values is the main one, whose range is shown for repeated commands.
+    """Return for each kind of command the index of its main value, of which repeated commands show the range.
 
-    The result has the index of that value at the index of the `Call`.
+    This index is at the index of the `Call` in the result.
     """
     import numpy as np
 

@@ -83,7 +83,10 @@ class CallWords:
 
 
 def _name_driver_calls() -> dict[Call, CallWords]:
-    """Return the descriptions of the commands of the kernel's driver, which all have the same values."""
+    """Return the words for the commands to a motor's driver in the brick's kernel, by the kind of command.
+
+    All these commands have the same list of values.
+    """
     action = Quantity(names=STOP_ACTIONS)
     points = _DPS, _DEG, _PERCENT, _MS, _MS, _MS, action
     texts = {
@@ -167,7 +170,7 @@ _WITHOUT: Mapping[Call, str] = {
 
 
 def describe_aim(call: Call, values: Sequence[float]) -> str:
-    """Return what a command makes a turning wheel do, in words of `WHEEL_WORDS`.
+    """Return what a command makes a turning wheel do: one of the texts in `WHEEL_WORDS`, such as `stopping`.
 
     Args:
         call: The kind of command, one of `MOVES`.
@@ -186,8 +189,8 @@ def describe_command(
 
     Args:
         call: The kind of command.
-        values: The values of one of the commands.
-        low, high: The lowest and the highest main value of all of them; see `CallWords.main`.
+        values: The values of the command, or of one of its repetitions.
+        low, high: The lowest and the highest main value of the command and its repetitions; see `CallWords.main`.
         tick_hz: Ticks per second of the run, to show numbers of ticks in seconds.
     """
     if call is Call.PLUG:

@@ -126,9 +126,10 @@ def touches_solid(pose: PoseTuple, spec: RunSpec) -> bool:
 
 
 def _find_stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
-    """Yield each stretch of pushing that is long enough for the motors to stall.
+    """Yield the stretches of ticks in which the wheels pushed the robot against something until they stalled.
 
-    With noise, the wheels may turn a little between two stretches; if the motors ran on, these are one stretch.
+    With noise, the wheels may turn a little during a push. So two stretches are joined if they are close together, and
+    the motors ran on between them.
     """
     # Imported on demand: in most worlds nothing is solid.
     import numpy as np

@@ -132,10 +132,11 @@ def build_samples_frame(runs: Iterable[StoredRun]) -> pd.DataFrame:
 def sample_columns(runs: Iterable[StoredRun]) -> dict[str, Any]:
     """Return the samples of one or more runs as columns by name, in the order of the runs and of printing.
 
-    Columns, as SAMPLE_COLUMNS: `index` timedelta64[ns] since the first sample of its run was printed; `variable` the
-    name; `value`; `time` in s, simulated, of the print or as printed; `run` numbers the runs of this frame from 1;
-    `x_mm`, `y_mm`, `heading_deg` the pose of the robot at the tick of the print, NaN if that tick was lost; `line` in
-    the program.
+    The columns are those of `SAMPLE_COLUMNS`. `index` is the time since the first sample of the run was printed, as
+    timedelta64[ns]. `variable` and `value` are the sample's name and number. `time` is the time in the printed line, or
+    else the simulated time of the print, in s. `run` is the number of the run in the result, from 1. `x_mm`, `y_mm` and
+    `heading_deg` are the robot's pose at the tick of the print, NaN if that tick was lost. `line` is the program's line
+    that printed the sample.
 
     Raises:
         LogError: a recording is damaged.
@@ -197,9 +198,9 @@ def build_telemetry_columns(
 ) -> dict[str, Array]:
     """Return the telemetry of a run as columns by name, with one row per tick, including tick 0 (the start).
 
-    Damaged records are omitted, see `describe_damage`. Columns: `time` in s, simulated; MOTION_COLUMNS; those of every
-    mounted sensor, such as `left_red` (0 … 255), `ultrasonic_mm`, `gyro_deg`, `gyro_rate_dps`; those of every motor
-    with a driver, such as `left_asked_dps`; `line`, the source line that spent the time, 0 for none.
+    The columns are `time` in simulated seconds; MOTION_COLUMNS; those of every sensor, such as `left_red` (0 … 255),
+    `ultrasonic_mm`, `gyro_deg`; those of every motor with a driver, such as `left_asked_dps`; and `line`, the program's
+    line that ran when the tick passed, 0 for none. Damaged records are left out; see `describe_damage`.
 
     Args:
         run: The run.
@@ -234,8 +235,8 @@ def compute_column_values(
         run: The run.
         actions: The user's actions, which may have changed the noise.
         field: The mat.
-        field_at: Returns the mat as the sensors saw it in a tick; needed if the records do not begin with tick 0, or
-            some are left out. None: the pen's marks are drawn on it as the records say.
+        field_at: Returns the mat with the pen's marks, as the sensors saw it, for a tick record. With None, the marks
+            follow from the records, which must then begin with tick 0 and have no gaps.
     """
     spec = run.spec
     sensors = [
@@ -284,14 +285,15 @@ def list_scale_changes(run: CommandedRun) -> list[ScaleChange]:
 def compute_scales(
     ticks: Array, robot: RobotSpec, changes: Iterable[ScaleChange]
 ) -> dict[str, FloatArray]:
-    """Return how many degrees the program counts, at some ticks, while a motor turns by one.
+    """Return at some ticks how many degrees the program counts while a motor turns by one degree.
 
-    The keys are the prefixes of the motors' columns. Motors without a change are missing: the number is 1.
+    The keys are the prefixes of the motors' columns, such as `left`; the values have shape (n,). Motors without a
+    change are missing: the number is 1.
 
     Args:
         ticks: Numbers of ticks, shape (n,).
         robot: The robot.
-        changes: As for `list_scale_changes`.
+        changes: The changes of these numbers, from `list_scale_changes`.
     """
     import numpy as np
 
@@ -314,8 +316,8 @@ def _compute_column(
     """Return a column that is computed from measured ones: its value at every tick, shape (n,).
 
     Args:
-        of: Computes its values from one row of measured values for each tick.
-        columns: The columns of its owner, such as a sensor.
+        of: Computes the values of the column from rows of measured values, one row for each tick.
+        columns: All columns of the sensor or motor to which the column belongs.
         measured: The measured columns by name.
         spec: The run.
     """
@@ -328,14 +330,14 @@ def _compute_column(
 def find_lacking_columns(
     spec: RunSpec, names: Collection[str], read: Callable[[str], Array]
 ) -> dict[str, Callable[[], Array]]:
-    """Return a function for each column of a run that its telemetry lacks, but from which it can be computed.
+    """Return functions that compute those columns of a run that its telemetry lacks, by the name of the column.
 
-    The keys are the names of these columns. The functions return their values at every tick.
+    Each function returns the values of its column at every tick. A column that cannot be computed has no function.
 
     Args:
         spec: The run.
         names: The columns that the telemetry has.
-        read: Returns one of them, by its name.
+        read: Returns the values of a column that the telemetry has, by its name.
     """
 
     def compute(of: Any, columns: Sequence[Column]) -> Array:
@@ -443,7 +445,8 @@ def _measure_columns(
         noises: The result of `_list_noises`.
         spec: The run.
         field: The mat.
-        field_at: As for `compute_column_values`.
+        field_at: Returns the mat with the pen's marks, as the sensors saw it, for a tick record. With None, the marks
+            follow from the records.
     """
     import numpy as np
 

@@ -84,7 +84,7 @@ STALL_FACTOR = 2.0
 
 
 class RunFolders(Protocol):
-    """The place where the folder of a new run is created: a `RunStore`, or a `TemporaryRun`."""
+    """The object that creates the folder of a new run: a `RunStore`, or a `TemporaryRun`."""
 
     def create_run(
         self,
@@ -105,9 +105,9 @@ class RunFolders(Protocol):
 
 
 def _build_template_key(program: Program, spec: RunSpec, field: FieldFiles) -> Hashable:
-    """Return the key of the template that can fork a run.
+    """Return the key of a run's template. Runs with the same key can be forked from the same template.
 
-    It includes everything but the program, the options, the seed, the noise and the start, which may differ.
+    They may differ in the program, the options, the seed, the noise and the start, which are not part of the key.
     """
     world = replace(spec.world, noise=NoiseSpec(), start=Pose(0.0, 0.0, 0.0))
     # The identities of the mat's files are part of the key, so that a template never uses files that were replaced.
@@ -126,7 +126,7 @@ def _list_needs(program: Program, field: FieldFiles) -> list[Path]:
 class RunHandle:
     """The host's control of one run: its child process, its pipes and its recording. `start_run` creates it.
 
-    The child is forked from a template for runs of the same robot and world, if there is one.
+    The child is forked from a template if there is one: a process that is prepared for this robot and this world.
 
     Args:
         program: The program.
@@ -134,8 +134,8 @@ class RunHandle:
         field: The files of the prepared mat.
         options: How the run is executed.
         store: Where the run folder is created.
-        of_many: Whether other runs of this robot and world follow soon: if there is no template, one is made now, and
-            forks this child. Otherwise `prepare_next` makes one.
+        of_many: Whether other runs of this robot and world follow soon. If so, a missing template is made now, and
+            forks this child. If not, `prepare_next` can make one later.
         isolated: Whether the child runs in bubblewrap; no template forks it then.
     """
 
@@ -202,7 +202,7 @@ class RunHandle:
         if neither."""
 
     def _start(self, *, of_many: bool, isolated: bool) -> None:
-        """Start the child process; `of_many` and `isolated` are as for the class."""
+        """Start the child process; `of_many` and `isolated` are the arguments of the class."""
         program = self.program
         run = self._run
         try:
@@ -325,7 +325,7 @@ class RunHandle:
                 end_group(self._process.pid)
 
     def _find_excess(self, telemetry: TelemetryView) -> str:
-        """Return a text that says which recording is larger than the limits of the run allow; empty if none is."""
+        """Return which limit the recording exceeds, such as `it has recorded more than 20 s`; empty if none."""
         with suppress(OSError):
             if (self.folder / LOG_FILE).stat().st_size > MAX_BYTES:
                 return f"it has written more than {MAX_BYTES >> 20} MiB to {LOG_FILE}"
@@ -377,7 +377,7 @@ class RunHandle:
         )
 
     def _find_falsified(self) -> str:
-        """Return a text that says what in an ended run's folder cannot come from the simulation; empty if all can."""
+        """Return why the files of an ended run cannot all come from the simulation; an empty text if they can."""
         end = self._announced
         # A run that could not begin, or had no space on the disk, may have incomplete files.
         is_whole = end is not None and end.end not in (End.CRASHED, End.DISK_FULL)

@@ -56,10 +56,11 @@ class MotorsWriter(MappedWriter):
         return self._map
 
     def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
-        """Rewrite the records of the first `ticks` ticks for another set of motors.
+        """Rewrite the records of the first `ticks` ticks for a new set of motors.
 
         Args:
-            sources: For each new motor the number that it had before; None for one that has been at rest.
+            sources: For each motor of the new set its index in the old set; None for a motor that was not in it. Its
+                records become 0, as it has been at rest.
             ticks: How many ticks are recorded.
         """
         before, after = self._size // MOTOR_RECORD.size, len(sources)
@@ -89,12 +90,14 @@ class MotorsWriter(MappedWriter):
 def arrange_records(
     recorded: bytes, before: int, sources: Sequence[int | None], ticks: int
 ) -> bytes:
-    """Return the records of all ticks for another set of motors. Records of new motors are 0.
+    """Return the records of all ticks, rewritten for a new set of motors.
 
     Args:
-        recorded: The records of the old motors.
-        before: The number of old motors.
-        sources, ticks: As for `MotorSink.arrange`.
+        recorded: The records of the old set.
+        before: The number of motors in the old set.
+        sources: For each motor of the new set its index in the old set; None for a motor that was not in it. Its
+            records are 0.
+        ticks: How many ticks are recorded.
     """
     numbers = array("Q", recorded)
     after = len(sources)

@@ -10,7 +10,10 @@ RAW_BYTES = 4 << 20
 
 
 def create_raw_file(fd: int) -> int:
-    """Return the descriptor of a new file in memory, to replace descriptor `fd`, 1 or 2; the file's size is fixed.
+    """Create a file of fixed size in memory, which is to replace stdout or stderr; return its descriptor.
+
+    Args:
+        fd: The descriptor that the file will replace: 1 or 2.
 
     Raises:
         OSError, AttributeError: this system has no such files, or no descriptors left.

@@ -148,7 +148,11 @@ class Readings:
     """Number of readings for which the file had no space."""
 
     def find(self, modes: tuple[str, ...]) -> Array:
-        """Return the rows of those readings that were taken in one of these modes, such as `US-DIST-CM`, in order."""
+        """Return the rows of those readings for which the sensor was in one of some modes, in order.
+
+        Args:
+            modes: The names of the modes, such as `US-DIST-CM`.
+        """
         import numpy as np
 
         rows: Array = self.rows[

@@ -137,10 +137,10 @@ class Recording:
         return self._marks.at(tick)
 
     def instant(self, record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
-        """Return the run's values at a tick, with the changes that the program's commands in it made immediately.
+        """Return the run's values at a tick, including what commands in that tick changed after its record was made.
 
-        They include the values of the motors' drivers, unless their file is damaged, and for each motor how many
-        degrees the program counts while it turns by one.
+        Such a command is a reset of the gyro. The values include those of the motors' drivers, unless their file is
+        damaged, and for each motor how many degrees the program counts while it turns by one degree.
 
         Args:
             record: The record of the tick.

@@ -105,7 +105,7 @@ class CommandCheck:
 
 
 def _narrow_ranges(call: Call, part: int, sim: Simulation) -> tuple[Range, ...]:
-    """Return the allowed range of each value of a command; that of a speed depends on the kind of motor.
+    """Return the allowed range of each value of a command; the range of a speed depends on the kind of motor.
 
     Args:
         call: The kind of command.
@@ -170,7 +170,7 @@ def replay(
 
     Args:
         spec: The run, as it began.
-        commands: The program's commands in their order, with all values of their records.
+        commands: The program's commands in their order, as `RecordedCommands.unpack` yields them.
         actions: The user's actions, in the order of the ticks.
         last_tick: The last tick to simulate.
         limit_s: Seconds of processor time that the simulation may take.

@@ -49,9 +49,9 @@ Passed = Callable[[], None]
 
 
 class ReplayDebugger:
-    """A debugger of a recorded run. It repeats the run, and pauses at a requested instant.
+    """A debugger of a recorded run. It runs the program again (the re-run), and pauses at a requested instant.
 
-    To go back, it starts the run again.
+    To go back, it starts another re-run.
 
     Args:
         arrived: Called with the position of the pause and the program's state there.
@@ -86,7 +86,13 @@ class ReplayDebugger:
     # Requests
 
     def go(self, recording: Recording, at: Position, look: protocol.Inspect) -> None:
-        """Pause the re-run at an instant of a recording, and request the program's state with `look`."""
+        """Pause the re-run at an instant of a recording, and request the program's state there.
+
+        Args:
+            recording: The recording of the run to repeat.
+            at: The instant.
+            look: The request for the program's state.
+        """
         self._line = 0
         self._request = look
         self._back = 0

@@ -59,7 +59,10 @@ _TOLD = frozenset({End.FINISHED, End.RAISED, End.TIME_LIMIT, End.DEADLOCK})
 
 @dataclass(frozen=True, slots=True)
 class StoredRun:
-    """A run in a folder, whose views also follow a run that is still running."""
+    """A run that is read from its folder, whether it is over or still running.
+
+    The views `telemetry` and `output` also return what a running run records later.
+    """
 
     folder: Path
     id: str
@@ -137,7 +140,7 @@ class StoredRun:
         """Return the files of the mat that `open_mat` opens; if necessary, they are prepared again.
 
         Raises:
-            LogError: as `open_mat`.
+            LogError: the mat no longer exists, or its image has changed.
         """
         try:
             made_on = None if self.field is None else FieldFiles.from_plain(self.field)

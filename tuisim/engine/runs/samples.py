@@ -77,9 +77,10 @@ def parse_sample(text: str) -> tuple[str, float, float | None] | None:
 
 
 def describe_near_sample(rows: Iterable[OutputRow]) -> str:
-    """Return a text that says which of the first rows are nearly samples and how to make them some; empty if none are.
+    """Return a hint that names printed rows which are nearly samples, and says how to print samples; empty if none are.
 
-    One row is named for each name.
+    Such a row is `speed: 5 cm`, where a sample is `speed: 5`. For each name, the hint has only the first such row. Rows
+    after the first `_MAX_ROWS_READ` are not read.
     """
     places: dict[str, str] = {}
     remedies: list[str] = []

@@ -174,13 +174,13 @@ def _cut_off(
     step: tuple[Array, Array],
     echoes: Array,
 ) -> Array:
-    """Return the lengths of rays after they are cut off at the first of some edges; see `ultrasonic.find_first_hit_mm`.
+    """Return the lengths of rays, cut off at the first edge that each ray hits; see `ultrasonic.find_first_hit_mm`.
 
     Args:
-        nearest_mm: The lengths without the edges, shape (n,).
+        nearest_mm: The lengths without these edges, shape (n,).
         edges: Edges parallel to one axis.
-        start: Where the rays begin: across the edges, and along them.
-        step: Change in each direction per mm along a ray.
+        start: Where the rays begin: their coordinates across the edges, and those along the edges.
+        step: How much each of these coordinates changes per mm along a ray.
         echoes: Whether the edges return an echo at each tick.
     """
     across, along = start

@@ -104,9 +104,10 @@ class SteppedRun:
         self._run(time_ns, 1, right_dps)
 
     def order(self, ticks: int, commands: Iterable[SimulationCommand]) -> list[SimulationCommand]:
-        """Return commands in the order of their times, checked for a call of `advance` with the same number of ticks.
+        """Return commands in the order of their times, after checking that they lie within the next `ticks` ticks.
 
-        A command may also be given at the tick at which that call ends.
+        They can then be passed to `advance` with the same number of ticks. A command may also be given at the tick at
+        which this step ends.
 
         Raises:
             ConfigError: a command lies before the present tick, or after the last one.

@@ -376,7 +376,8 @@ class RunStore:
             most_bytes: Maximum number of bytes of output to read.
 
         Returns:
-            The run, the columns that are final and can be stored, and the number of bytes read.
+            The completed row; those of its columns, by name, that cannot change any more and may be stored in the
+                catalogue; and the number of bytes read.
         """
         is_open = info.end in _MAY_CHANGE
         if not is_open and info.samples is not None:

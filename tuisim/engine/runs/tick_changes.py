@@ -38,9 +38,9 @@ def apply_commands(
 
     Args:
         instant: The values that the record of the tick has.
-        running: Whether the left and the right wheel's motor had a command in that record.
+        running: Whether the left and the right wheel's motor had a command when the record was made.
         commands: The commands in the tick, in order.
-        law: The motor law of the run.
+        law: How the motors of the run move.
     """
     positions_deg = [instant.left_position_deg, instant.right_position_deg]
     speeds_dps = [instant.left_speed_dps, instant.right_speed_dps]
@@ -79,7 +79,7 @@ def _find_position_deg(call: Call, values: Values, scale: float) -> float | None
     Args:
         call: The kind of command.
         values: Its values.
-        scale: How many degrees the program counts for one of the motor.
+        scale: How many degrees the program counts while the motor turns by one degree.
     """
     match call:
         case Call.SET_COUNT | Call.RENUMBER:

@@ -235,9 +235,9 @@ class _View(ABC):
             self._damage = f"{self._path.name} cannot be read: {reason}"
 
     def _is_withheld(self, error: OSError) -> bool:
-        """Return whether a file error means that this machine forbids reading a file that its owner may read.
+        """Return whether an error means that this machine forbids reading a file although its permissions allow it.
 
-        No program can cause that.
+        A program cannot cause such an error.
         """
         try:
             return isinstance(error, PermissionError) and bool(self._path.stat().st_mode & S_IRUSR)
@@ -425,10 +425,10 @@ class TelemetryView(_View):
         return end
 
     def _read_again(self, begin: int, end: int) -> memoryview:
-        """Read records that were dropped from memory from the file again, and return them.
+        """Read records from the file again that are no longer in memory, and return them.
 
-        Only a program can have changed them in the meantime. Changed records are replaced by the oldest record in
-        memory: the reader learns of the damage later, and must not fail before.
+        Only a program can have changed these records since they were read. A changed record is replaced by the oldest
+        record in memory, so that the reader does not fail here: it learns of the damage later.
         """
         assert self._source is not None
         size = TICK_RECORD.size

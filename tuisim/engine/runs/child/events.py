@@ -90,11 +90,13 @@ def _is_sound(value: object) -> bool:
 
 
 class EventStream:
-    """The events that arrive in the pipe of a child, read without blocking, and checked: not all are allowed.
+    """The events that a child sends through a pipe, read without blocking.
+
+    Each event is checked, because the program in the child could write to the pipe, too.
 
     Args:
-        descriptor: The read end, non-blocking.
-        allowed: The classes of events that this run can send besides those of every run.
+        descriptor: The read end of the pipe, non-blocking.
+        allowed: The classes of events that this run can send, besides those that every run can send.
     """
 
     def __init__(self, descriptor: int, allowed: _Kinds) -> None:

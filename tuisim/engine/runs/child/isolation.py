@@ -147,8 +147,8 @@ class Quota:
     """The limits of an isolated program: its threads, its sockets, and what it may add to its folders.
 
     Args:
-        pid: The program's process.
-        folders: The program's folders, before it begins; empty names are ignored.
+        pid: The program's process, before the program begins.
+        folders: The folders that the program may change; empty names are ignored.
     """
 
     def __init__(self, pid: int, folders: Iterable[str | Path]) -> None:

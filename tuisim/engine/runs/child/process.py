@@ -109,7 +109,11 @@ MAX_SHOWN = 500
 
 
 class _Starts:
-    """What this process has started: the warm process, the templates, and the number of children."""
+    """What this process has started: the warm process, the templates, and the number of children.
+
+    The warm process has imported the runtime, and forks children. A template is also prepared for a robot and a world:
+    the children that it forks start even sooner.
+    """
 
     warm: WarmProcess | None = None
     templates: ClassVar[OrderedDict[Hashable, Template]] = OrderedDict()
@@ -161,15 +165,15 @@ def start_child(
         lock_fd: The folder's lock, which the child inherits; the descriptor of this process is closed.
         working_directory: Initial working directory, if it still exists.
         run: The contents of the `run.json` in the folder.
-        template_key: Names the template that forks the child; None, or a missing template, for the warm process.
+        template_key: The key of the template that forks the child. If it is None, or there is no such template, the
+            warm process forks the child.
         makes_template: Whether a missing template is made, and then forks the child.
         isolated_with: The files and folders that the child needs besides its run folder and its working directory. The
-        child is then a new process, isolated from the others. None starts it without isolation.
+            child is then a new process, isolated from the others. None starts it without isolation.
 
     Returns:
         The process; the write end of the pipe for commands and the read end of the pipe for events, both non-blocking;
-            and
-        the write end of the lifeline, a pipe: the child is killed when it is closed.
+            and the write end of the lifeline, a pipe: the child is killed when it is closed.
     """
     _Starts.count += 1
     if _Starts.count > 1 and isolated_with is None:
@@ -213,14 +217,15 @@ def _open_pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
 
 
 def prepare_template(key: Hashable, folder: Path, run: Mapping[str, Any]) -> None:
-    """Fork a template from the warm process, unless there is one for the key, or the warm process does not run.
+    """Fork a template from the warm process: a process that is prepared for a robot and a world, and forks children.
 
-    It does not block until the template is ready.
+    Do nothing if there is a template for the key, or if the warm process does not run. Do not block until the template
+    is ready.
 
     Args:
-        key: Names the template.
-        folder: The folder of a run that has this key.
-        run: The contents of its `run.json`, as it was started.
+        key: The key of the template.
+        folder: The folder of a run of this robot in this world.
+        run: The contents of the folder's `run.json`, as the run was started.
     """
     with _Starts.lock:
         if _Starts.warm is not None and _Starts.warm.is_usable:
@@ -250,7 +255,7 @@ def _fork(
         log_fd: Descriptor of the file for its error output.
         inherited: Further descriptors that it gets.
         run: The contents of the `run.json` in the folder.
-        key: Names the template.
+        key: The key of the template; None for none.
 
     Returns:
         The child; None if the warm process does not run, or cannot fork one.

@@ -104,9 +104,12 @@ class ForkedChild:
 
 
 def _continue_parent(pid: int) -> None:
-    """Continue the stopped parent of a child that has exited: it must report the exit.
+    """Continue the parent of a child that has exited, because the program may have stopped the parent by a signal.
 
-    A program can stop that process by a signal.
+    The parent must run to report the exit.
+
+    Args:
+        pid: The child.
     """
     # Without /proc, or with another user's process, nothing can be done.
     with suppress(OSError, ValueError):
@@ -152,8 +155,9 @@ class ForkClient:
             folder: The run folder.
             working_directory: The child's initial working directory.
             environment: The child's environment variables.
-            files: Descriptors for the child: first its error output. A template then gets a socket; any other child
-                gets its commands, its events, its lifeline and its lock.
+            files: Descriptors for the child. The first one is for its error output. A template also gets a socket. Any
+                other child also gets the pipes of its commands and events, its lifeline (a pipe: when it is closed, the
+                child is killed) and its lock.
             run: The contents of the `run.json` in the folder.
             serves: Whether the child becomes a template.
 
