@@ -24,7 +24,7 @@ class Channel:
         self._rest = b""
 
     def send(self, event: Message) -> None:
-        """Send an event to the host, the process that has started the run; if that has ended, do nothing."""
+        """Send an event to the host, the process that has started the run; do nothing if the host has ended."""
         data = event.encode()
         try:
             while data:

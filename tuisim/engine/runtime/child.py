@@ -79,8 +79,8 @@ SPARE_FRAMES = 100
 class KnownPrograms:
     """The compiled code of programs that are run more than once.
 
-    When a program is run for the first time, or when there is an error or a warning to report, the process of the run
-    compiles it instead.
+    It has no code for a program that runs for the first time, or whose compilation gives an error or a warning: then
+    the process of the run compiles the program itself, and reports the error.
     """
 
     def __init__(self) -> None:
@@ -155,8 +155,8 @@ class Interrupts:
 
     Args:
         session: The run.
-        soft_codes: Code objects of the runtime in which a handler may raise an exception; in all other code of the
-            runtime it must not.
+        soft_codes: Code objects of the runtime in which a handler may raise an exception. A handler must not raise one
+            anywhere else in the runtime.
     """
 
     def __init__(self, session: Session, soft_codes: frozenset[types.CodeType]) -> None:
@@ -307,7 +307,8 @@ class Child:
     """One run with all its parts: first prepared for a robot in a world, then connected to a run folder and the host.
 
     Args:
-        config: The run, or another one that differs at most in what `expect` changes.
+        config: The configuration of the run, or of another run of this robot in this world; `expect` then sets the
+            rest.
     """
 
     def __init__(self, config: RunConfig) -> None:
@@ -326,11 +327,11 @@ class Child:
         self._known_programs = KnownPrograms()
 
     def expect(self, folder: Path, changes: Mapping[str, Any]) -> None:
-        """Set the run that comes next, without executing anything of its program.
+        """Set the configuration of the run that comes next, and compile its program if it was run before.
 
         Args:
             folder: The run folder.
-            changes: What is different from the run before, as the host sends it; see `derive_config`.
+            changes: What differs from the configuration before, as the host sends it; see `derive_config`.
         """
         self._config = config = derive_config(self._config, folder, changes)
         drops_annotations = config.spec.profile.motor_law.library.drops_annotations

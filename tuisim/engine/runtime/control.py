@@ -145,7 +145,7 @@ class RunControl:
         live: Whether the run is paced and can be paused.
         speed: 1.0 is real time, 0 as fast as possible; a run that is not live is not paced.
         paused: Whether to start paused.
-        script: Known user actions, in the order of their ticks.
+        script: User actions that are known before the run starts, in the order of their ticks.
     """
 
     def __init__(
@@ -295,7 +295,8 @@ class RunControl:
 
         Args:
             session: The run.
-            moment: Where the run pauses. User actions take effect during the pause only if it is right before a tick.
+            moment: The instant at which the run pauses. If it is right before a tick, user actions take effect during
+                the pause; otherwise they wait for the next tick.
 
         Raises:
             StopProgram: the run has to stop.
@@ -328,7 +329,11 @@ class RunControl:
     def _raise_here(self, session: ControlledRun, before_tick: bool = False) -> None:
         """Raise `StopProgram` in this thread, which has waited for commands, if a stop is requested.
 
-        Without this call it would be raised in the main thread. `before_tick` is as for `Session.check_stop`.
+        Without this call, the main thread would raise it.
+
+        Args:
+            session: The run.
+            before_tick: Whether a tick is about to run and no code of the program comes before it.
         """
         try:
             session.check_stop(before_tick)
@@ -336,9 +341,9 @@ class RunControl:
             self.holding = False
 
     def replay_next(self, session: ControlledRun, kind: type[Answer | Reply]) -> bool:
-        """Apply the next known user action if it is an answer to the question that the program asks now.
+        """Apply the next known user action if it is the answer to the question that the program asks now.
 
-        An answer that came only after some simulated time is not applied here.
+        An answer is not applied here if it came only after some simulated time.
 
         Args:
             session: The run.

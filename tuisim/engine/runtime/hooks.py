@@ -122,7 +122,10 @@ class ErrorHooks:
         self.write(f"Exception in thread {name}:\n{self.report(error).text}")
 
     def _show_ignored(self, ignored: Any) -> None:
-        """Show an error that Python cannot raise, such as one in a `__del__`; a stop is raised again later."""
+        """Show an error that Python cannot raise, such as one in a `__del__`.
+
+        If it is the exception that stops the run, do not show it: it will be raised again.
+        """
         error = ignored.exc_value
         if isinstance(error, StopProgram):
             self._session.stop_lost()

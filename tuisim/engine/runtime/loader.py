@@ -67,11 +67,11 @@ def _check_encoding(text: str, file: str) -> None:
     """Raise a SyntaxError, as Python does, if the bytes of a file are not text in the encoding that it declares.
 
     Args:
-        text: The text of the file, in which each such byte is a surrogate.
+        text: The text of the file, in which each byte that does not fit the encoding is a surrogate.
         file: The name of the file, for the error.
 
     Raises:
-        SyntaxError: the encoding is none of text, a byte does not fit it, or there is a null byte.
+        SyntaxError: the declared encoding is not a text encoding, a byte does not fit it, or there is a null byte.
     """
     if "coding" in text[:_MAX_DECLARATION] and (declared := _find_declared_encoding(text)):
         number, encoding = declared
@@ -167,7 +167,14 @@ _IMPORT = re.compile(r"^\s*(?:from|import)\s+ev3dev2\b", re.MULTILINE)
 
 
 def add_prelude_note(error: BaseException, text: str) -> None:
-    """Add a note to the error about a predefined name that the program has not enabled; it says how to get the name."""
+    """Add a note to a NameError about a predefined name that the program has not enabled: how to get the name.
+
+    Any other error stays unchanged.
+
+    Args:
+        error: The error.
+        text: The text of the program.
+    """
     if not isinstance(error, NameError) or not error.name:
         return
     statement = _find_statement(error.name)

@@ -67,8 +67,10 @@ class OwnModules(PathFinder):
 
     Args:
         run_folder: Where the copies are stored.
-        known: Modules of the run that is repeated; they are loaded instead of the files.
-        brick_folder: The folder in which modules of the brick's home folder are found; empty without a brick.
+        known: If an earlier run is repeated, the modules that were stored with it; they are loaded instead of the
+            files.
+        brick_folder: The program's folder, in which modules of the brick's home folder are looked for; empty without a
+            brick.
         drops_annotations: Whether annotations are left out, not evaluated.
     """
 
@@ -138,7 +140,9 @@ def install_finder(run_folder: Path, brick_folder: str, drops_annotations: bool)
 
     Args:
         run_folder: The folder of the run.
-        brick_folder, drops_annotations: As for `OwnModules`.
+        brick_folder: The program's folder, in which modules of the brick's home folder are looked for; empty without a
+            brick.
+        drops_annotations: Whether annotations are left out, not evaluated.
     """
     finders: list[Any] = sys.meta_path
     finders[finders.index(PathFinder)] = OwnModules(

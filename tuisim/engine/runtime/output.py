@@ -50,9 +50,11 @@ class Addresses:
     """The numbers that stand for addresses in printed texts, and are the same in every run.
 
     Each object whose address is printed gets the next number of a fixed sequence. Only addresses that Python itself
-    writes are changed, after ` at 0x`, and the identifiers of threads. A number that cannot be an address stays
-    unchanged. A number stands for an object as long as the object exists; a later object at the same address gets
-    another number, because it depends on the machine which memory is used again.
+    writes, after ` at 0x`, and the identifiers of threads are replaced. A number that cannot be an address stays
+    unchanged.
+
+    An object keeps its number as long as it exists. A later object at the same address gets another number: which
+    memory is used again depends on the machine.
 
     Args:
         names: Returns the program's global names.
@@ -157,7 +159,11 @@ class Addresses:
 
 
 def _is_meant(one: object, before: str) -> bool:
-    """Return whether the text before an address can refer to this object, and not to an earlier one at the address."""
+    """Return whether the text before an address can refer to an object: it has the name of the object's class.
+
+    If not, it refers to an earlier object at the same address. An object of the program's own class always fits,
+    because its `__repr__` can write any text.
+    """
     kind = type(one)
     # The `__repr__` of a program's own class need not contain the name of the class.
     is_own = kind.__flags__ & _HEAP_TYPE and not str(kind.__module__).startswith("tuisim")

@@ -113,10 +113,11 @@ MAX_REST_NS = NS_PER_S // 2
 def finish_moves(session: Session) -> str:
     """Run until all moves to a position or for a time have ended; then let the wheels come to rest.
 
-    If a motor would turn on for ever, do not wait for the wheels.
+    If a motor is still set to turn, which would never end, do not wait for the wheels.
 
     Returns:
-        Which motors would turn on for ever, in words; empty for none, and for motors without a driver.
+        A text that names the motors that are still set to turn, such as `ended while outB was still set to turn`; empty
+            if there are none.
 
     Raises:
         StopProgram: the time limit is reached, or the user stops the run.

@@ -130,9 +130,9 @@ class RawOutput:
         self.drain_all()
 
     def write(self, fd: int, data: Any) -> int:
-        """Write to a descriptor, pass the bytes to the receiver immediately if it is 1 or 2, and return their number.
+        """Write bytes to a descriptor as `os.write` does, which it replaces, and return the number of bytes written.
 
-        It replaces `os.write`.
+        If the descriptor is 1 or 2, the bytes are passed to its receiver immediately.
         """
         count = self._write(fd, data)
         drained = self.drain_all()

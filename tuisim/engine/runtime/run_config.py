@@ -40,7 +40,11 @@ class RunConfig:
 
     @property
     def starts_in_own_folder(self) -> bool:
-        """Whether the program starts in its own folder. Examples do not, because their files are for the user."""
+        """Whether the program starts in its own folder, not in the user's working directory.
+
+        It depends on the profile. An example never starts in its own folder, because the files that it writes are for
+        the user.
+        """
         program = self.program
         if not self.spec.profile.starts_in_own_folder or not (
             program.path or program.module_folder

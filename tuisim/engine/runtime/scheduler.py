@@ -340,7 +340,7 @@ class Scheduler:
 
         Args:
             function: The function to call in it.
-            daemon: Whether the end of the program does not wait for it.
+            daemon: Whether the program may end while the thread still runs.
 
         Raises:
             RuntimeError: too many threads, for the limit or for the machine.

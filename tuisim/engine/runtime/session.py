@@ -181,11 +181,11 @@ class Session:
         return self._pen.field
 
     def spend(self, duration_ns: int, code: int = -1) -> None:
-        """Let simulated time pass, even while calls are free of charge.
+        """Let simulated time pass, even while other calls take no time, as during the program's preparation.
 
         Args:
             duration_ns: How long.
-            code: What the program reads in this time, see `DeviceSession.note_reading`; -1 for nothing.
+            code: What the program reads in this time, one of `READING_CODES`; -1 for nothing.
         """
         until = self.now + duration_ns
         line = 0
@@ -228,7 +228,7 @@ class Session:
         """Record that the program has read something; a repetition while no time passes is not recorded again.
 
         Args:
-            code: What it has read, see `DeviceSession.note_reading`.
+            code: What it has read, one of `READING_CODES`.
             line: The line of the program; 0 for the present one.
         """
         readings = self.readings
@@ -239,7 +239,7 @@ class Session:
         readings.add(code, now, line or self.program_line(3))
 
     def charge(self, cost_ns: int) -> None:
-        """Let the simulated time of a call pass, unless calls are free of charge."""
+        """Let the simulated time of a call pass; do nothing while calls are free of charge."""
         if not self.free:
             self.spend(cost_ns)
 
@@ -263,8 +263,8 @@ class Session:
 
         Args:
             timeout_ns: The timeout.
-            again: Whether the caller would only wait again after the timeout, so that a longer wait has the same
-                effect.
+            again: Whether the caller repeats this call after the timeout, and does nothing else. The timeout may then
+                be made longer, which is faster and has the same effect.
         """
         if again and not self.flags & THREADS:
             # Nothing else can change during the wait, so many short waits are equivalent to one long wait.
@@ -289,7 +289,10 @@ class Session:
             self.channel.send(Plugged(part.port, part.part, part.tick, part.line, part.role))
 
     def is_tried(self, error: type[Exception]) -> bool:
-        """Return whether the program would catch an error raised now, so that it only tests which devices there are."""
+        """Return whether the program would catch an error that is raised now.
+
+        Such a program only tries which devices there are.
+        """
         # Imported on demand: few programs look for a device that is missing.
         from tuisim.engine.runtime.handlers import is_caught
 
@@ -319,7 +322,11 @@ class Session:
         self.output.row(row, stream)
 
     def messages(self) -> list[Any]:
-        """Return all answers of the notebook's responder, oldest first; wait for pending ones in no simulated time."""
+        """Return all answers that the notebook's responder has given to calls of `pyState()`, oldest first.
+
+        A responder is a function of the notebook that answers the program. If it has still to answer, block until it
+        has; no simulated time passes.
+        """
         self.command()
         steering = self.steering
         if not steering.replay_next(self, Reply) and self.replies and self.stop_reason is None:
@@ -438,8 +445,8 @@ class Session:
         """Process commands of the host, and raise an exception if the program has to stop.
 
         Args:
-            before_tick: Whether a tick is about to run and no code of the program comes before it: a position that a
-                re-run can find again.
+            before_tick: Whether a tick is about to run, and no code of the program comes before it. A re-run can stop
+                at the same tick then.
 
         Raises:
             StopProgram: when a stop is requested, and again once the time for cleanup is over.
@@ -480,7 +487,7 @@ class Session:
         self.flags |= STOPPING
 
     def stop_lost(self) -> None:
-        """Make the next check raise the stop again, because Python has dropped it, such as in a `__del__`."""
+        """Make the next check raise `StopProgram` again, because Python has dropped it, such as in a `__del__`."""
         self._stop_raised_at = None
 
     def program_line(self, skipped: int = 1) -> int:

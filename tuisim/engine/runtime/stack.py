@@ -43,7 +43,9 @@ def show_whole_stacks() -> Iterator[None]:
 
 
 def _iterate_visible(walk: Iterable[Any], file_of: Callable[[Any], str]) -> Iterator[Any]:
-    """Yield those items whose frames a program may see: frames of tuisim, and those below the program, are left out.
+    """Yield those items of a stack whose frames a program may see.
+
+    Frames of tuisim are left out, and so are the frames from which the program was started.
 
     Args:
         walk: Items that stand for the frames of a stack.

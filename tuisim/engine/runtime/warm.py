@@ -49,13 +49,15 @@ _change_folder = os.chdir
 
 
 def serve(socket_fd: int) -> Child | None:
-    """Fork a child for each request until the host closes the socket; return in each child, not in this process.
+    """Fork a child for each request of the host; return in each child that is to run a program.
+
+    This process, and each child that becomes a template, serves requests until the host closes the socket.
 
     Args:
         socket_fd: The socket to the host.
 
     Returns:
-        The prepared child, if a template has forked this one.
+        The prepared child if this process was forked from a template; None if it was forked from the warm process.
     """
     for name in _NEEDED_LATER:
         import_module(name)
@@ -105,7 +107,7 @@ class ForkServer:
         """Fork a child for each request of the host; return only in each child.
 
         Returns:
-            The request, with the descriptors of its `channel`.
+            The request for the child in which the call returns; its `channel` has the descriptors that came with it.
         """
         while True:
             ready = wallclock.select_files([self._socket, self._ended], [], [])[0]

@@ -53,8 +53,7 @@ Apart = Callable[[Callable[[], bytes]], bytes | None]
 class LineCondition:
     """The condition of one line breakpoint.
 
-    If the evaluation cannot run code of the program, it takes place in this process, otherwise in a copy of the
-    process.
+    A condition that cannot run code of the program is evaluated in this process, any other in a copy of the process.
 
     Args:
         text: An expression without syntax errors.
@@ -70,10 +69,10 @@ class LineCondition:
         self._plain = all(isinstance(node, _PLAIN_NODES) for node in nodes)
 
     def holds(self, frame: types.FrameType, apart: Apart) -> str:
-        """Return why a breakpoint with this condition pauses the program now, such as `is true`; empty if it does not.
+        """Return why the condition pauses the program at a line, such as `is true`; empty if the program goes on.
 
         Args:
-            frame: Where the expression is evaluated.
+            frame: The frame of the line, in which the expression is evaluated.
             apart: Calls a function in a copy of the process.
         """
         names: Mapping[str, Any] = frame.f_locals
@@ -156,15 +155,22 @@ class Watcher:
                         self._after_tick[break_point.text] = check
 
     def match_tick(self) -> tuple[str, str] | None:
-        """Return the text of a breakpoint that matches after this tick, and its value; None if none matches."""
+        """Return a breakpoint whose condition has become true in this tick; None if there is none.
+
+        Returns:
+            The text of the breakpoint, and the value that its condition tests, as text.
+        """
         return _find_first((text, check()) for text, check in self._after_tick.items())
 
     def match_row(self, row: str, stream: Stream) -> tuple[str, str] | None:
-        """Return the text of a breakpoint that a printed row matches, and the matching value; None if none matches.
+        """Return a breakpoint whose condition is met by a printed row; None if there is none.
 
         Args:
             row: The text of the row.
             stream: The stream of the row.
+
+        Returns:
+            The text of the breakpoint, and the value in the row that its condition tests, as text.
         """
         if stream not in SAMPLE_STREAMS:
             return None

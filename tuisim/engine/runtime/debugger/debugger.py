@@ -80,9 +80,9 @@ NEXT_LINE = Step(None, ENDLESS_DEPTH)
 
 
 def find_code_line(program: types.CodeType | None, line: int) -> int:
-    """Return `line`, or the next line that has code: the program would never pause at a line without code.
+    """Return the first line with code from `line` on, because the program never pauses at a line without code.
 
-    After the last line with code, and for 0, return `line`.
+    Return `line` itself if there is no such line, or if it is 0.
     """
     if program is None or not line:
         return line

@@ -47,8 +47,9 @@ def run_apart(
         session: The run, frozen in the copy.
         scheduler: The program's threads.
         work: The function to call in the copy.
-        limit_s: CPU seconds after which the copy is killed: load on the machine changes no result.
-        go_on: Called when a command has arrived; returns whether to wait on for the result.
+        limit_s: CPU seconds after which the copy is killed. As real time does not count, a slow machine changes no
+            result.
+        go_on: Called when a command has arrived; returns whether to continue to wait for the result.
 
     Returns:
         The result; None if it did not come in time.

@@ -158,10 +158,10 @@ def evaluate(
 
 
 def evaluate_truth(text: str, names: Mapping[str, Any], builtin: Any) -> str:
-    """Return `.`, followed by the reason for a pause if the condition of a breakpoint gives one.
+    """Evaluate the condition of a breakpoint; return `.`, followed by the reason for a pause if there is one.
 
-    Such a reason is that the condition is true, cannot be evaluated, or takes too long. A condition that is false, or
-    has an undefined name, gives none.
+    The result is `.is true`, or begins with `.cannot be evaluated` or `.takes too long`. It is `.`, and the program
+    does not pause, if the condition is false or has an undefined name.
 
     Args:
         text: The condition, an expression.

@@ -240,7 +240,7 @@ def finish_resource(session: Session, module: types.ModuleType) -> None:
 
 
 def finish_pandas(session: Session, module: types.ModuleType) -> None:
-    """Patch pandas after its import: its present time is simulated, although its compiled code does not call `time`."""
+    """Patch pandas after its import, so that its present time is simulated: its compiled code does not call `time`."""
     cost = session.sim.spec.profile.clock_read_ns
     stamp = module.Timestamp
     period = module.Period

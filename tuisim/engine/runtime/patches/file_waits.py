@@ -138,7 +138,10 @@ class FileWaits:
     # selectors
 
     def finish_selectors(self, module: types.ModuleType) -> None:
-        """Patch `selectors` after its import: selectors wait in simulated time; the real functions poll the files."""
+        """Patch `selectors` after its import, so that selectors wait in simulated time.
+
+        The real functions still poll the files.
+        """
         selector: Any = module
         selector.SelectSelector._select = staticmethod(self._select)
         for name in ("SelectSelector", *_SELECTORS):
@@ -172,9 +175,9 @@ class FileWaits:
     def _build_noting(
         self, look: Callable[[], Found], descriptors: Iterable[int]
     ) -> Callable[[], Found]:
-        """Return a function that polls as `look` does, and records a reading at each poll that finds no new connection.
+        """Return a function that polls sockets as `look` does, and records a reading if no new connection is ready.
 
-        If none of the descriptors is the socket of a server, it is `look` itself.
+        Return `look` itself if none of the descriptors is a socket that listens for connections.
         """
         if not any(map(_is_server, descriptors)):
             return look
@@ -399,9 +402,10 @@ def _has_devices(selector: Any) -> bool:
 
 
 def _join_parts(real: Any) -> Callable[..., int]:
-    """Return a replacement of `sendmsg`, which isolated programs may not use: it sends its parts with `send`.
+    """Return a replacement of `sendmsg`, which isolated programs may not use.
 
-    With ancillary data, such as descriptors, it calls the real `sendmsg`, which is refused there.
+    The replacement joins the parts of a message and sends them with `send`. For a message with ancillary data, such as
+    descriptors, it calls the real `sendmsg`, which fails in an isolated program.
     """
 
     @wraps(real)

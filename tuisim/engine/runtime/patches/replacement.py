@@ -83,7 +83,8 @@ def replace(
     Args:
         module: A module such as `os`, most of whose functions come from `posix`.
         name: Name of the function, a builtin or one in Python.
-        does, takes: As for `build_replacement`.
+        does: The function to call instead.
+        takes: Smallest and largest number of positional arguments of a builtin; see `build_replacement`.
     """
     real = getattr(module, name)
     replacement = (

@@ -19,11 +19,10 @@ ALARMS = ("alarm", "setitimer", "getitimer")
 
 
 class Interrupt:
-    """The interrupt that a program sends to itself, such as with `os.kill`.
+    """The interrupt (SIGINT) that a program sends to itself, such as with `os.kill`.
 
-    It reaches the main thread at an instant that is the same in every run.
-
-    The runtime uses the signal itself, so the program's handler is only stored here.
+    Its handler is called in the main thread, at an instant that is the same in every run. The real signal is not used,
+    so the program's handler is only stored here.
 
     Args:
         session: Knows the program's lines.
