@@ -58,7 +58,7 @@ AUTO = "auto"
 
 @dataclass(frozen=True, slots=True)
 class PortKind:
-    """The driver, the modes and the empty status that all input ports, or all output ports, have in common."""
+    """What all input ports, or all output ports, have in common: driver, modes, and the status without a device."""
 
     driver_name: str
     modes: tuple[str, ...]
@@ -169,9 +169,10 @@ def all_ports(session: DeviceSession) -> list[SimDevice]:
 
 
 def ports_hint(session: DeviceSession, class_name: str) -> str:
-    """Return a hint for the error about a missing motor or sensor, which lists those that the robot has, by port.
+    """Return a hint for the error about a missing motor or sensor: which motors or sensors the robot has, by port.
 
-    `class_name` is the kernel's name of the class of devices; the hint is empty for other classes than these two.
+    `class_name` is the kernel's name of the class of the missing device. The hint is empty if that is neither the class
+    of motors nor the class of sensors.
     """
     if class_name not in (MOTOR_CLASS, SENSOR_CLASS):
         return ""
@@ -221,7 +222,10 @@ class BuiltBrick:
             self.colors[path] = sensor
 
     def _add(self, class_name: str, name: str, port: str, device: SimDevice) -> str:
-        """Add a device under the next number that its class never used, as the kernel does, and return its path."""
+        """Add a device under the next number of its class, and return its path.
+
+        As in the kernel, the number of a removed device is not used again.
+        """
         path = self.paths[port] = self.files.add_numbered(class_name, name, device)
         return path
 

@@ -61,9 +61,9 @@ class SimDevice:
         writers: Functions that accept the written text, by attribute.
         costs: Cost of a read in ns, by attribute, if it differs from the default.
         number_writers: Functions that accept a written integer, by attribute.
-        notifying: Attributes whose changes end a `poll` of their files. Each has a function that returns another value
-            after a change.
-        temporary: Attributes whose files exist only while their readers raise no ENOENT.
+        notifying: Attributes whose changes end a `poll` of their files, each with a function whose result differs after
+            a change.
+        temporary: Attributes that do not always exist: there is no file for one while its reader raises ENOENT.
         codes: What is recorded of a read, by attribute; see `DeviceSession.note_reading`.
     """
 

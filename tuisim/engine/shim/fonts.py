@@ -70,7 +70,7 @@ _CAPITAL = 0.7
 
 @dataclass(frozen=True, slots=True)
 class Face:
-    """The properties of a font that its name contains."""
+    """The properties of a font that can be read from its name, such as `courB24`."""
 
     size_px: int
     bold: bool

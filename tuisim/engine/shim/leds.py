@@ -204,7 +204,7 @@ def patch_led_module(session: DeviceSession, module: types.ModuleType) -> None:
 
 
 def mend_trigger(led_class: Any) -> None:
-    """Fix reading an LED's trigger: the library unpacks the one value that it reads into two."""
+    """Fix the library's property `trigger` of an LED, which fails: it expects two values where it reads only one."""
 
     @wraps(led_class.trigger.fget)
     def get_trigger(self: Any) -> str:

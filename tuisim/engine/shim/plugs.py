@@ -108,7 +108,12 @@ class Plugs:
             device.is_opened = True
 
     def refuse_value(self, path: str, number: int) -> NotSimulated | None:
-        """Return the error for reading a value that the sensor at a path has in no mode; None if a mode has it."""
+        """Return the error for reading a value that no mode of a sensor has; None if a mode has it.
+
+        Args:
+            path: The path of the sensor's device.
+            number: The number of the value, such as 3 for `value3`.
+        """
         found = (
             sensor for port, sensor in self._built.sensors.items() if self.find_path(port) == path
         )
@@ -201,7 +206,7 @@ class Plugs:
         return port not in shown and not self._built.files.by_path[path].is_opened
 
     def _keep_wheels(self, without: Sequence[str]) -> list[PluggedPart]:
-        """Return the wheels' motors that the program uses, as parts without wheels.
+        """Return the motors of the wheels that the program uses, described as motors that drive no wheel.
 
         Args:
             without: Ports whose motors are left out.

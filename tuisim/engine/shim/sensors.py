@@ -157,7 +157,7 @@ class LegoSensor:
         return self._values[n]
 
     def refuse_value(self, number: int) -> NotSimulated | None:
-        """Return the error for reading `value{number}` if the sensor has that value in no mode, else None.
+        """Return the error for reading `value{number}` if no mode of the sensor has that value; None if a mode has it.
 
         A program that reads such a value was written for a sensor that is not simulated.
         """

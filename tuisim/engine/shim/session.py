@@ -68,8 +68,7 @@ class DeviceSession(Protocol):
 
         Args:
             timeout_ns: The timeout.
-            again: Whether the caller would only wait again after the timeout, so that a longer wait has the same
-                effect.
+            again: Whether the caller would wait again after the timeout anyway; the call may then block for longer.
         """
 
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
@@ -83,7 +82,10 @@ class DeviceSession(Protocol):
         """
 
     def messages(self) -> list[Any]:
-        """Return all answers of the notebook's responder, oldest first; wait for pending ones in no simulated time."""
+        """Return all answers of the notebook's `roboSim.responder` to printed lines, oldest first.
+
+        The call waits, without simulated time, for answers that are still missing.
+        """
 
     def show(self, row: str, stream: Stream) -> None:
         """Record what the brick shows: a row of output in the format of `engine.runs.brick_state`.

@@ -25,7 +25,7 @@ from tuisim.engine.shim.waits import Wait, waits_for
 class Patience:
     """A record of whether the library calls `poll` only to wait until a motor has stopped.
 
-    The call of `poll` itself does not say so.
+    The arguments of `poll` do not tell for what the library waits.
     """
 
     def __init__(self) -> None:
@@ -82,8 +82,8 @@ def connect(
     Args:
         session: The run.
         brick: The devices.
-        plugs: Plugs in a missing device.
-        hint: Returns a hint for the error about a missing device of a class.
+        plugs: Adds a missing device to the robot.
+        hint: Returns a hint for the error about a missing device, given the device's class.
     """
     import ev3dev2
 
@@ -194,9 +194,9 @@ def _patch_device(device_class: Any, brick: DeviceFiles) -> None:
 
 
 def _charge_memory(device_class: Any, session: DeviceSession) -> None:
-    """Make reads of attributes whose values the library has cached take simulated time: that of the library's own code.
+    """Let simulated time pass when the library returns an attribute's value from its cache.
 
-    Nothing changes if the profile gives no such time.
+    It is the time that the library's own code takes for this. Nothing changes if the profile gives no such time.
 
     Args:
         device_class: The library's class of devices.
@@ -284,7 +284,7 @@ def _patch_tank(motor: Any, plugs: Plugs) -> None:
 
 
 def refuse_values(sensor: Any, plugs: Plugs) -> None:
-    """Patch `value` of a class of sensors: it raises NotSimulated for a value that the sensor has in no mode."""
+    """Patch `value` of a class of sensors: it raises NotSimulated if no mode of the sensor has the value to read."""
     read = sensor.value
 
     @wraps(read)

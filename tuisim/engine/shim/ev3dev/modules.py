@@ -101,10 +101,10 @@ def virtual_module(session: DeviceSession) -> types.ModuleType:
             obey(sim, session.now, 0, Call.MOVE_PEN, 0.0)
 
         def setColor(self, *_given: object, **_named: object) -> None:  # noqa: N802
-            """Do nothing: the robot has one colour, see the option --pen-color."""
+            """Do nothing: the robot's pen has only one colour, which the option --pen-color sets."""
 
         def setWidth(self, *_given: object, **_named: object) -> None:  # noqa: N802
-            """Do nothing: the robot has one width, see the option --pen-width."""
+            """Do nothing: the robot's pen has only one width, which the option --pen-width sets."""
 
     kinds: list[Any] = [GPSSensor, Pen, *(type(name, (_Unsimulated,), {}) for name in _UNSIMULATED)]
     names = {kind.__name__: kind for kind in kinds}
@@ -155,7 +155,7 @@ def install(session: DeviceSession, built: BuiltBrick, plugs: Plugs) -> None:
     Args:
         session: The run.
         built: The brick.
-        plugs: Plugs in missing devices.
+        plugs: Adds missing devices to the robot.
     """
     sys.meta_path.insert(0, refuse_other((PYBRICKS,), Library.EV3DEV2))
     sys.meta_path.append(MissingLibrary())
@@ -228,9 +228,10 @@ def glue_module(session: DeviceSession) -> types.ModuleType:
         )
 
     def pyState() -> dict[str, list[Any]]:
-        """Return `{"messages": [...]}` with all answers of a notebook's responder, oldest first; none without one.
+        """Return `{"messages": [...]}` with all answers of the notebook's `roboSim.responder`, oldest first.
 
-        The call waits, without simulated time, until the responder has answered every printed line.
+        The list is empty if the notebook has no responder. The call waits, without simulated time, until the responder
+        has answered every printed line.
         """
         return {"messages": session.messages()}
 

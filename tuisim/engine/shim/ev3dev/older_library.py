@@ -24,7 +24,10 @@ INSTALL = "pip install 'tuisim[ev3dev]'"
 
 
 class MissingLibrary:
-    """Module finder whose error says how to install `ev3dev`; it is the last, so an installed library comes first."""
+    """Module finder that raises an error for the library `ev3dev`, which says how to install it.
+
+    It is the last finder, so it is only asked if `ev3dev` is not installed.
+    """
 
     def find_spec(self, fullname: str, *_: object) -> importlib.machinery.ModuleSpec | None:
         """Return None for other modules than `ev3dev`.
@@ -81,8 +84,8 @@ def finish_core(
     Args:
         session: The run.
         module: The module.
-        plugs: Plugs in missing devices.
-        hint: Returns a hint for the error about a missing device of a class.
+        plugs: Adds missing devices to the robot.
+        hint: Returns a hint for the error about a missing device, given the device's class.
     """
     core: Any = module
     draw_with_the_bricks_font(core.Screen)

@@ -77,7 +77,10 @@ NAMES: Mapping[str, str] = {
 
 
 def numbered(names: str) -> Iterator[tuple[str, int]]:
-    """Yield the names in a text with their numbers: that of `NAME=5`, or else one more than the number before."""
+    """Yield each name in a text with its number: `KEY_A=30 KEY_S` gives `KEY_A` with 30, then `KEY_S` with 31.
+
+    A name without a number gets one more than the name before it; the first name gets 0.
+    """
     number = -1
     for word in names.split():
         name, _, given = word.partition("=")
@@ -88,8 +91,8 @@ def numbered(names: str) -> Iterator[tuple[str, int]]:
 def codes_module(name: str) -> types.ModuleType:
     """Return a module with the codes of input events, like `evdev.ecodes`.
 
-    In it each code has a name, whose value is its number; for each group of codes there is a table of the names by
-    number.
+    The module has a constant for each code, whose value is the code's number. For each group of codes, it also has a
+    table of the names by number.
 
     Args:
         name: The name of the module.
@@ -306,9 +309,9 @@ _looked = _Looked()
 
 
 def point_at_gamepads(error: BaseException) -> None:
-    """Add a note to an error if the program has listed the input devices: that only the brick's buttons exist.
+    """Add a note to the error of a program that probably looks for a gamepad: only the brick's buttons exist.
 
-    Such a program probably looks for a gamepad.
+    If the program has not listed the input devices, add no note.
     """
     if _looked.for_devices and isinstance(
         error, NameError | LookupError | AttributeError | StopIteration | TypeError

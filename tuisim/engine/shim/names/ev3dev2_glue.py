@@ -11,5 +11,8 @@ def get_clock() -> float:
 
 
 def pyState() -> dict[str, list[Any]]:
-    """Return `{"messages": [...]}` with all answers of a notebook's responder, oldest first; none without one."""
+    """Return `{"messages": [...]}` with all answers of the notebook's `roboSim.responder`, oldest first.
+
+    The list is empty if the notebook has no responder.
+    """
     return {}

@@ -135,9 +135,9 @@ class Brick:
         obey(self.session.sim, self.session.now, part, call, *numbers)
 
     def command(self) -> int:
-        """Count a command, which takes no simulated time; see `DeviceSession.command`.
+        """Count a command of the program, and return the simulated time in microseconds.
 
-        Return the simulated time in microseconds.
+        The command takes no simulated time, as long as there are not too many; see `DeviceSession.command`.
         """
         self.session.command()
         return self.session.now // 1000
@@ -180,16 +180,16 @@ class Brick:
             self.session.wait_for_motor((until_us - self.now_us) * 1000)
 
     def require_no_task(self) -> None:
-        """Check that the program runs no task.
+        """Check that the program is not inside `run_task`, where some calls are not allowed.
 
         Raises:
-            RuntimeError: it runs one.
+            RuntimeError: `run_task` is running.
         """
         if self.in_task:
             raise RuntimeError("This can only be called before multitasking starts.")
 
     def say_stalled(self, what: str, call: str) -> None:
-        """Print a message, once for each blocked part, that a call waits because something blocks a motor.
+        """Print a message that a call waits because something blocks a motor; print it only once for each blocked part.
 
         Args:
             what: What is blocked, with its verb, such as `the wheels are`.

@@ -145,7 +145,7 @@ class System(Connected):
 
 
 class Buttons(hubs.Buttons):
-    """The buttons of a hub or a controller."""
+    """The buttons of a hub or a controller under version 4 of Pybricks, which returns pressed buttons as a set."""
 
     COLLECT = set
 
@@ -177,7 +177,7 @@ class Light(AnimatedLight, hubs.Light):  # type: ignore[misc]
 
 
 class EV3Brick(hubs.EV3Brick):
-    """The EV3 brick under version 4 of Pybricks."""
+    """The EV3 brick under version 4 of Pybricks: its parts have the methods of that version, and it has a `system`."""
 
     buttons = Buttons()
     battery = Battery()

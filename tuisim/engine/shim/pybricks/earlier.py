@@ -57,5 +57,9 @@ EARLIER_MEMBERS: Mapping[str, str] = {
 
 
 def name_replacement(_owner: str, name: str) -> str:
-    """Return a colon and what version 4 has in place of an earlier attribute; empty if that is unknown."""
+    """Return what version 4 has in place of an attribute of an earlier version, for the end of an error message.
+
+    An example is `: control.pid() sets them` for `set_pid_settings`. The text is empty for a name without a known
+    replacement.
+    """
     return f": {EARLIER_MEMBERS[name]}" if name in EARLIER_MEMBERS else ""

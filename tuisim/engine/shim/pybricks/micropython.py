@@ -178,7 +178,10 @@ def clock_names(session: DeviceSession) -> dict[str, Callable[..., Any]]:
 
 
 def ticks_add(ticks: int, delta: int) -> int:
-    """Return what a counter of ticks shows `delta` ticks after it shows `ticks`; it wraps to 0 after its period."""
+    """Return the value of a tick counter `delta` ticks after the value `ticks`.
+
+    After its period, the counter restarts at 0.
+    """
     return (operator.index(ticks) + operator.index(delta)) % TICKS_PERIOD
 
 
@@ -220,7 +223,7 @@ def _lenient(real: Callable[..., Any], fitted: Callable[..., Any]) -> Callable[.
 
 
 def _named_tuple(name: str, fields: Any, **named: Any) -> type:
-    """Return a named tuple class in which names that Python does not allow are changed."""
+    """Return a named tuple class. As in MicroPython, any names are allowed: those that Python forbids are replaced."""
     return namedtuple("_" + re.sub(r"\W", "_", name.strip()), fields, rename=True, **named)
 
 

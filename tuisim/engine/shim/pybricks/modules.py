@@ -91,7 +91,12 @@ def read_version_4(hub: str = "") -> Names:
 
 
 def _name_later(owner: str, name: str) -> str:
-    """Return a colon and a hint that a class of Pybricks 4 has this attribute; empty if it does not have it."""
+    """Return a hint that Pybricks 4 has an attribute, for the end of an error message; it begins with a colon.
+
+    Args:
+        owner: The name of the class.
+        name: The name of the attribute; if the class does not have it in Pybricks 4 either, the hint is empty.
+    """
     later = next((names[owner] for names in read_version_4().values() if owner in names), None)
     return ": Pybricks 4 has it, which --profile pybricks4 chooses" if hasattr(later, name) else ""
 
@@ -125,7 +130,7 @@ def refuse_name(hub: str, module: str, name: str) -> NoReturn:
 
     Raises:
         NotSimulated: version 2.0, another module or another hub has the name; the error is also an ImportError.
-        AttributeError: nothing has it.
+        AttributeError: no version, module or hub has the name.
     """
     from tuisim.engine.shim.pybricks.earlier import EARLIER, EARLIER_MODULES
 

@@ -39,10 +39,10 @@ def gear_ratio(gears: Any) -> float:
     """Return how many turns a motor makes for one turn of the part that it drives.
 
     Args:
-        gears: None, the teeth of one gear train, or a list of trains.
+        gears: None for no gears, the numbers of teeth of one gear train, such as `[12, 36]`, or a list of gear trains.
 
     Raises:
-        TypeError, ValueError: it is something else.
+        TypeError, ValueError: `gears` has another form, or a gear has no teeth.
     """
     if gears is None:
         return 1.0
@@ -56,14 +56,14 @@ def gear_ratio(gears: Any) -> float:
 
 
 def ending_of(stops: tuple[type[Enum], ...], then: Any) -> Ending:
-    """Return the ending of a move that a member of the library's `Stop` stands for.
+    """Return what a motor does after a move, given as a member of the library's enumeration `Stop`.
 
     Args:
-        stops: The classes of such members.
+        stops: The enumerations `Stop` of all versions that the program may use.
         then: The member.
 
     Raises:
-        TypeError: it is not such a member.
+        TypeError: `then` is not a member of any of them.
     """
     if not isinstance(then, stops):
         raise TypeError(f"a Stop is needed, not {then!r}")
@@ -93,7 +93,7 @@ class DCMotor(Connected):
         self.brick.tell(self.brick.session.sim.find_number(self.simulated), call, *values)
 
     def _command(self) -> None:
-        """Count a command to the motor, which takes no simulated time, and check that no drive base uses the motor.
+        """Count a command to the motor (see `DeviceSession.command`), and check that no drive base uses the motor.
 
         Raises:
             OSError: a drive base moves or holds the motor.
@@ -428,9 +428,11 @@ class Control(Connected):
         return self._access(stall_speed=speed, stall_time_ms=time)
 
     def trajectory(self) -> tuple[int, ...] | None:
-        """Return the present trajectory: four times in ms, four positions, the speed and the two accelerations.
+        """Return the present trajectory as eleven numbers; None if there is no trajectory.
 
-        All but the times are in the controller's counts (per second). Return None if there is no trajectory.
+        They are the times in ms, then the positions, of four points: the start, the begin and the end of the constant
+        speed, and the end. The speed, the acceleration and the deceleration follow. Positions are in the controller's
+        counts, the speed in counts/s, the two accelerations in counts/s².
         """
         trajectory = self._control.trajectory
         if trajectory is None:

@@ -28,9 +28,9 @@ def wait(time: float) -> None:
 
 
 def wait_until(end_us: int) -> Waiting[None]:
-    """Wait until a simulated time in microseconds: yield that time, until which the caller has to let time pass.
+    """Yield the time `end_us`, in microseconds, until the simulation has reached it: the caller has to wait until then.
 
-    Yield it again if a motor ends a move before that time, so that the caller would go on too early.
+    It is yielded more than once if the caller goes on too early, because a motor has ended a move.
     """
     if Connected.brick.command() == end_us:
         yield end_us
@@ -39,7 +39,7 @@ def wait_until(end_us: int) -> Waiting[None]:
 
 
 def localtime(seconds: float | None = None) -> clock.struct_time:
-    """Return the date and time of a number of seconds, by default of the simulated present."""
+    """Return the local date and time at `seconds` after the beginning of 1970, by default at the simulated present."""
     return clock.localtime(seconds)
 
 

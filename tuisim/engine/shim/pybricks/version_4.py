@@ -51,7 +51,7 @@ class Stop(NamedEnum):
 
 
 class Motor(motor.Motor):
-    """A motor under version 4 of Pybricks."""
+    """A motor under version 4 of Pybricks, which has more methods than under 2.0, such as `done` and `settings`."""
 
     STOPS = (*motor.Motor.STOPS, Stop)
     model = refused_part("Motor", "model", MODEL)
@@ -75,7 +75,7 @@ class Motor(motor.Motor):
             self.control.pid(*kind.compute_gains(tolerance)[:2])
 
     def _command(self) -> None:
-        """Count a command to the motor, which takes no simulated time.
+        """Count a command to the motor (see `DeviceSession.command`).
 
         If a drive base moves or holds the motor, stop the drive base, so that both its motors coast.
         """
@@ -190,9 +190,10 @@ class Control(motor.Control):
         integral_deadzone: float | None = None,
         integral_rate: float | None = None,
     ) -> tuple[int, ...] | None:
-        """Set the gains kp, ki and kd in micro-Nm per degree (and second), and the two numbers for the integral.
+        """Set the gains `kp`, `ki` and `kd`, and the dead zone and the rate of the integral.
 
-        Without arguments, return all five.
+        Without arguments, return all five. The gains are in micro-Nm per degree, per degree and second, and per degree
+        per second.
         """
         gains = super().pid(kp, ki, kd, integral_deadzone, integral_rate)
         return gains and gains[:5]
@@ -204,7 +205,7 @@ class Control(motor.Control):
 
 
 class DriveBase(robotics.DriveBase):
-    """A robot with two driven wheels, under version 4 of Pybricks."""
+    """A robot with two driven wheels under version 4 of Pybricks. It has more moves than under 2.0, such as `arc`."""
 
     CONTROL = Control
     MIN_SIZE_MM = 1
@@ -231,7 +232,8 @@ class DriveBase(robotics.DriveBase):
         """Turn to the direction of a point, and drive there.
 
         Args:
-            dx, dy: How far the point is in mm, along heading 0 and to the left of that.
+            dx, dy: The way to the point in mm: `dx` in the direction of heading 0, and `dy` to the left of that
+                direction.
             then: What the motors do at the end.
         """
         return self.brick.finish(self._move_by(whole(dx), whole(dy), then), self.stop)
@@ -385,7 +387,7 @@ class GyroDriveBase(DriveBase):
 
 
 class ColorSensor(ev3devices.ColorSensor):
-    """The EV3 colour sensor under version 4 of Pybricks."""
+    """The EV3 colour sensor under version 4 of Pybricks, which returns `Color.NONE` for no colour, not None."""
 
     def color(self, surface: bool = True) -> Any:
         """Return the colour that the sensor sees; `Color.NONE` if there is none."""
@@ -394,13 +396,13 @@ class ColorSensor(ev3devices.ColorSensor):
 
 
 class InfraredSensor(ev3devices.InfraredSensor):
-    """The EV3 infrared sensor under version 4 of Pybricks."""
+    """The EV3 infrared sensor under version 4 of Pybricks, which returns pressed buttons as a set, not a list."""
 
     COLLECT = set
 
 
 class GyroSensor(ev3devices.GyroSensor):
-    """The EV3 gyro under version 4 of Pybricks."""
+    """The EV3 gyro under version 4 of Pybricks, which programs can calibrate."""
 
     def calibrate(self) -> None:
         """Calibrate the gyro, which sets the angle to 0."""
@@ -408,7 +410,7 @@ class GyroSensor(ev3devices.GyroSensor):
 
 
 class StopWatch(tools.StopWatch):
-    """A stopwatch, which starts when it is created, under version 4 of Pybricks."""
+    """A stopwatch under version 4 of Pybricks, which also says whether it is running."""
 
     def running(self) -> bool:
         """Return whether the stopwatch is running."""

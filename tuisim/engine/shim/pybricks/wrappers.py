@@ -46,12 +46,10 @@ class Motor(motor.Motor):
         Args:
             kp, ki, kd: The gains.
             tight_loop_limit: Has no effect.
-            angle_tolerance, speed_tolerance: How near to its target angle in degrees, and to its target speed in
-                degrees per
-            second, a move is done.
-            stall_speed, stall_time: The speed in degrees per second below which, and the time in ms after which, the
-                motor is
-            stalled.
+            angle_tolerance, speed_tolerance: A move is done when the motor is as near as this to its target angle, in
+                degrees, and to its target speed, in degrees per second.
+            stall_speed, stall_time: A motor is stalled when it has been slower than this speed, in degrees per second,
+                for this time, in ms.
         """
         self.control.pid(kp, ki, kd)
         self.control.target_tolerances(speed_tolerance, angle_tolerance)

@@ -199,8 +199,8 @@ class Running:
     Args:
         session: The run.
         steps: The steps of the commands, each of which yields how long it takes.
-        several: Whether more sounds may follow the first one. A thread then runs them, even if the program never calls
-            `poll`.
+        several: Whether the commands may play more than one sound. A thread then runs the steps, even if the program
+            never calls `poll`.
     """
 
     def __init__(self, session: DeviceSession, steps: Steps, several: bool = False) -> None:

@@ -183,7 +183,7 @@ class Process:
         return status
 
     def communicate(self, input: Any = None, timeout: float | None = None) -> tuple[Any, Any]:  # noqa: A002
-        """Block until the process ends, and return its output and its error output; None for one that is not a pipe.
+        """Block until the process ends, and return its output and its error output; each is None without a pipe for it.
 
         Raises:
             subprocess.TimeoutExpired: it takes longer than `timeout` seconds.
@@ -260,7 +260,7 @@ class System:
 
 
 def finish_asyncio(module: types.ModuleType) -> None:
-    """Refuse processes of `asyncio`; called after the import of its event loop."""
+    """Patch the event loop of `asyncio` after its import, so that it refuses to start processes."""
 
     async def refuse(*_args: object, **_kwargs: object) -> NoReturn:
         hint = "use subprocess.run, or os.system for commands of the brick"

@@ -123,7 +123,7 @@ FOREIGN_MODES: Mapping[str, str] = {
 def of_driver(name: str) -> Hardware | None:
     """Return the hardware that an ev3dev driver is for; None if the driver is simulated.
 
-    As in the library, part of the name of a simulated driver is enough.
+    As in the library, `name` may also be only a part of the name of a simulated driver.
     """
     if any(name in simulated for simulated in SIMULATED):
         return None
@@ -154,12 +154,12 @@ def _told(where: str, kind: Hardware, name: str) -> tuple[str, str]:
 
 
 def foreign_mode(mode: str, port: str, plugged: str) -> NotSimulated | None:
-    """Return the error for a mode that belongs to a sensor that is not simulated; None for any other mode.
+    """Return the error for a mode that only sensors have that are not simulated; None for any other mode.
 
     Args:
         mode: The mode, which the sensor on the port does not have.
         port: The port.
-        plugged: The driver of the sensor on it.
+        plugged: The driver of the sensor on the port.
     """
     driver = FOREIGN_MODES.get(mode, "")
     kind = of_driver(driver)
@@ -203,7 +203,7 @@ def _refused(
 
 
 def _texts(value: object) -> list[str]:
-    """Return the texts in a value, which is one or a list of them; leave out anything else."""
+    """Return the texts in a value as a list: the value itself if it is a text, or the texts in a list or tuple."""
     return [
         one
         for one in (value if isinstance(value, list | tuple) else [value])
@@ -220,7 +220,10 @@ def _named(kind: type) -> str:
 
 
 def other_sensors_note(device: Any, class_name: str) -> str:
-    """Return a note for the error about a missing sensor whose driver was not named; empty for other devices."""
+    """Return a note for the error about a missing sensor, which says which sensors are simulated.
+
+    The note is empty if the program has named the sensor's driver, and for devices that are not sensors.
+    """
     if class_name != "lego-sensor" or "driver_name" in device.kwargs:
         return ""
     return "If it is none of the sensors of ev3dev2.sensor.lego, it is not simulated."

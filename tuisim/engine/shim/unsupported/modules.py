@@ -25,7 +25,7 @@ from tuisim.engine.core.profile import Library
 
 @dataclass(frozen=True, slots=True)
 class Instead:
-    """Names of parts in one library that a program can use instead of hardware that is not simulated."""
+    """What a program can use instead of hardware that is not simulated, by the names that its library has for it."""
 
     library: str
     sensors: str
@@ -181,7 +181,10 @@ def refused_as(kind: type[Exception], message: str, hint: str) -> Exception:
 
 
 class _Part(type):
-    """Metaclass of names in a module for hardware: programs can derive classes; other uses raise NotSimulated."""
+    """Metaclass of the objects that stand for names in a module for hardware.
+
+    Programs can derive classes from these objects; all other uses raise NotSimulated.
+    """
 
     full_name: str
     hardware: Hardware
@@ -219,11 +222,11 @@ def refused_part(path: str, name: str, hardware: Hardware) -> Any:
 
 
 def _kept_part(place: Any, path: str, name: str, hardware: Hardware) -> Any:
-    """Return a `refused_part`, after storing it as an attribute of `place`, a module or another such object.
+    """Return a `refused_part` for a name, and store it as an attribute, so that it is built only once.
 
     Args:
-        place: The module or object.
-        path: Its full name.
+        place: The module in which the program uses the name, or another refused part.
+        path: The full name of the module or part.
         name: The name in it.
         hardware: The hardware that it is for.
 

@@ -109,11 +109,13 @@ class ColorSensor(Sensor):
         return self._read_as("COL-AMBIENT", int)
 
     def _read_hsv(self, surface: bool, convert: Callable[[tuple[int, int, int]], Result]) -> Result:
-        """Measure hue, saturation and value, and return what `convert` returns for them; in a task, an object to await.
+        """Measure hue, saturation and value, and return the result of `convert` for them.
+
+        While a task runs, return an object to await instead.
 
         Args:
             surface: Whether to measure with the sensor's light; without it, only the ambient light is measured, as a
-            grey.
+                grey.
             convert: Takes a tuple of hue in degrees, and saturation and value in percent.
         """
         if surface:
