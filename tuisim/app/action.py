@@ -148,7 +148,11 @@ class ActionHost(DOMNode):
     """The actions by id."""
 
     def take_keys(self, actions: Mapping[str, Action[Any, Any]]) -> None:
-        """Use another table of the same actions, in which only keys differ: bind the new keys in place of the old."""
+        """Replace the keys of the actions by the keys in `actions`.
+
+        Args:
+            actions: The table of the same actions with their new keys; nothing else may differ.
+        """
         changed = [
             action for name, action in actions.items() if action.key != self.ACTIONS[name].key
         ]

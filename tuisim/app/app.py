@@ -228,7 +228,10 @@ class LabApp(PanelMessages):
         super().complain(error)
 
     def _tell_config(self) -> None:
-        """Show the errors in `config.toml`, and which settings of the run come from it or were decided by the app."""
+        """Show the errors in `config.toml` and where settings of the run come from.
+
+        Settings can come from that file, or the app has decided them because of the program.
+        """
         for error in self._config_problems[:MAX_PROBLEMS]:
             self.complain(error)
         if self.settings.from_config:

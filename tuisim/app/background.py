@@ -82,7 +82,7 @@ def begin(
 async def _run_and_wait(work: Callable[[], None]) -> None:
     """Call a function in a thread of its own, and wait until it returns.
 
-    A thread of asyncio would keep the process of a closed app alive until the function returns.
+    The threads of asyncio are not used: they would keep the process of a closed app alive until the function returns.
     """
     loop = asyncio.get_running_loop()
     done: asyncio.Future[None] = loop.create_future()
@@ -125,10 +125,10 @@ def enter() -> None:
 
 
 def leave(code: int) -> int:
-    """Wait for a moment until the threads of a closed app have written their files; return the app's exit code, `code`.
+    """Give the threads of a closed app a moment to write their files, and return the exit code `code`.
 
-    If threads are still at work then, end the process here with that code, and name on stderr the files that were not
-    written.
+    If threads are still at work after this, end the process here with that code. Before that, list on stderr the files
+    that were not written.
     """
     give_up = time.monotonic() + FINISHES_WITHIN_S
     while any(thread.is_alive() for thread in _threads):

@@ -112,7 +112,8 @@ def find_first_difference(before: Recording, now: Recording, tick: int) -> int |
 def build_branch_message(branch: Branch, now: Recording) -> str:
     """Return the notice that a run is a branch.
 
-    If the branch differs from the former run, the notice gives the time from which it does.
+    If the two runs differ even before the instant of the branch, the notice also gives the time of the first
+    difference.
     """
     differs = find_first_difference(branch.of, now, branch.tick)
     words = f"This is a {branch.title}" + (", of the edited program" if branch.edited else "")

@@ -45,7 +45,7 @@ _JUMP_MM = 25.0
 def sample_series(rows: Iterable[OutputRow]) -> Series:
     """Return the samples among printed lines as times in s and values, by the name of the variable.
 
-    The time of a sample is the one that it contains itself, or else the time of the print.
+    A sample can contain its own time; otherwise, its time is that of the print.
     """
     series: Series = {}
     for sample in list_samples(rows):

@@ -64,7 +64,7 @@ class Choice(_Control):
 
     @dataclass
     class Stepped(Message):
-        """Posted when the user asks for another word: the one `by` words after the present one."""
+        """Posted when the user asks for another of the words; `by` says how many words to go on."""
 
         choice: Choice
         by: int

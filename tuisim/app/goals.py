@@ -100,7 +100,11 @@ class GoalsController:
         return (was.background, was.start) == (now.background, now.start)
 
     def change(self, file: GoalsFile | None) -> None:
-        """Replace the goals by changed goals of the same task, None for no goals, and judge the run in view again."""
+        """Replace the goals, and judge the run in view by the new ones.
+
+        Args:
+            file: The new goals; None for no goals.
+        """
         self.file = file
         self._forget()
 
@@ -178,8 +182,8 @@ def _judge_run(
 ) -> tuple[tuple[Judgement, ...], float] | None:
     """Return the judgements of a run, and the wall-clock seconds that judging took.
 
-    The result is None if a live run has ended meanwhile, but how it ended is not stored yet. The run is loaded from its
-    folder, because the app continues to read its own views of the recording.
+    The result is None if a live run has just ended, but its folder does not say yet how. The run is loaded from its
+    folder, because the app reads the recording object at the same time in another thread.
     """
     from tuisim.tasks.goals.judge import judge
 

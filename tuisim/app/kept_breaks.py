@@ -28,7 +28,7 @@ class StoredBreaks:
 
 
 def load_kept(program: str) -> StoredBreaks:
-    """Return the stored breakpoints and watches of a program, without any if none are stored or they cannot be read.
+    """Return the stored breakpoints and watches of a program; empty if none are stored, or they cannot be read.
 
     Args:
         program: Its path, or its name if it is in no file.
@@ -62,7 +62,10 @@ def keep(program: str, stored: StoredBreaks) -> None:
 
 
 def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
-    """Return the breakpoints that are on lines, by line; if a line has several, an enabled one is preferred."""
+    """Return the breakpoints that are on lines, by line number.
+
+    If a line has several breakpoints, the result has an enabled one, if there is one.
+    """
     by_line: dict[int, Breakpoint] = {}
     for point in sorted(breaks, key=lambda point: not point.disabled):
         line = point.find_line()
@@ -79,7 +82,7 @@ def choose_sign(entry: Breakpoint) -> str:
 
 
 def follow_edit(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:
-    """Return breakpoints moved along with their lines after one edit of the text, without breakpoints on deleted lines.
+    """Return the breakpoints after an edit of the text: they move with their lines, or are deleted with them.
 
     Args:
         breaks: The breakpoints before the edit.

@@ -238,7 +238,10 @@ class LessonController:
             self._app.say(f"Skipped: {step.title}. Start over to do it again")
 
     def restart_lesson(self) -> None:
-        """Delete the progress of the lesson, and begin with its program; a copy of the student's program is stored."""
+        """Delete the progress of the lesson, and open the program with which the lesson begins.
+
+        A copy of the student's program is stored.
+        """
         session = self.session
         if session is None:
             return

@@ -283,9 +283,11 @@ class Loader:
         self.tell(decided)
 
     def _read_world(self, path: Path) -> tuple[str | None, GoalsFile | None]:
-        """Read a world file and store its settings; return the path of its program and its goals.
+        """Read a world file, and store its settings.
 
-        Each is None if the world file does not name it.
+        Returns:
+            The path of the program that the file names, and the goals in it. Each of the two is None if the file has
+            none.
         """
         from tuisim.tasks.goals.files import load_task
 
@@ -614,7 +616,9 @@ def program_of(run: StoredRun) -> Program:
 
 
 def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | None]:
-    """Return a stored run, its mat, and None; if the mat is missing, a blank mat and the error in place of None.
+    """Return a stored run, its mat, and the error if the mat is missing.
+
+    Without an error, the third value is None; with one, the mat is a blank one.
 
     Args:
         word: The run, or its number or id.

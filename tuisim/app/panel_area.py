@@ -177,7 +177,11 @@ class PanelArea(Container):
         self._chosen[panel] = show
 
     def can_take_focus(self, panel: str) -> bool:
-        """Return whether a panel can have the focus, is beside other panels, and was not just opened by its key."""
+        """Return whether the key of a panel should move the focus to it.
+
+        The panel must be able to have the focus and be beside other panels. Its key must not have opened it just
+        before.
+        """
         beside = self.is_shown(panel) and not self.alone and not self.is_single
         return beside and panel != self.front and self._can_focus(panel)
 
@@ -192,7 +196,8 @@ class PanelArea(Container):
     def show_next_panel(self, by: int) -> str:
         """Return the id of the panel that is `by` panels after the focused one; empty if no panel can have the focus.
 
-        In an area with room for only one panel, count from the shown panel, and show the result.
+        In an area with room for only one panel, start from the shown panel instead, and show the panel that is
+        returned.
         """
         if self.is_single:
             usual = choose_panels(self.preset, self._asked, self.size.width, self.size.height)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class ReasonTour:
-    """The reasons why one run went wrong, and the index of the reason that the user sees now."""
+    """The reasons why one run went wrong, and the reason in view, from which the user goes on to the next one."""
 
     def __init__(self) -> None:
         self.reasons: tuple[Reason, ...] = ()
@@ -30,11 +30,11 @@ class ReasonTour:
         """Index of the reason in view; None before the first, and after the last."""
 
     def is_about(self, recording: Recording | None, has_ended: bool) -> bool:
-        """Return whether this tour is about a run: its reasons are known, or are still being searched for.
+        """Return whether this tour has the reasons of a run, or waits for them.
 
         Args:
             recording: The run.
-            has_ended: Whether the run has ended; reasons that were found before its end are then not its reasons.
+            has_ended: Whether the run has ended. If so, reasons that were found before its end do not count.
         """
         is_same = recording is not None and self._of is recording
         return is_same and self._has_ended is has_ended

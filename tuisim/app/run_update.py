@@ -50,7 +50,10 @@ class RunUpdate:
 def describe_remarks(
     event: protocol.BusyLoop | protocol.Plugged, recording: Recording
 ) -> Iterator[str]:
-    """Yield the lines that the app adds to the output about an event of the run."""
+    """Yield the lines that the app adds to the output after an event of the run.
+
+    The program, for example, is in a loop without a wait, or a part was plugged in.
+    """
     if isinstance(event, protocol.BusyLoop):
         yield describe_busy_loop(event)
     elif words := describe_newest(recording.plugged, recording.spec):

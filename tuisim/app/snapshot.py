@@ -183,7 +183,11 @@ class Snapshot:
         return f", {self.wheels}" if is_end and turns else ""
 
     def has_stopped_since(self, before: Snapshot | None) -> bool:
-        """Return whether the run is paused or over, and had another state in the snapshot `before`; False for None."""
+        """Return whether the run has paused or ended since an earlier snapshot.
+
+        Args:
+            before: The earlier snapshot; if it is None, the result is False.
+        """
         return before is not None and self.state in AT_REST and before.state is not self.state
 
     @property
@@ -314,7 +318,7 @@ def end_words(ended: Ended, stood: str) -> tuple[str, str]:
 
 
 def describe_busy_loop(busy_loop: BusyLoop) -> str:
-    """Return the line for the output about a loop without a wait, with ids of actions in braces."""
+    """Return what the output says about a program that is in a loop without a wait; ids of actions are in braces."""
     since = f"{busy_loop.since_ns / 1e9:.2f} s"
     return f"— line {busy_loop.line}: a loop without a wait since {since}. {{stop}} stops it"
 

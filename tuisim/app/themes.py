@@ -86,7 +86,7 @@ class ThemeColors(LineFilter):
 
     Args:
         theme: The theme.
-        traces: Colours of the lines of charts, which also are the app's own.
+        traces: The colours of the lines in charts, which are replaced as well.
     """
 
     def __init__(self, theme: Theme, traces: Sequence[Rgb] = ()) -> None:

@@ -316,7 +316,7 @@ def _find_condition(search: _Search, condition: ValueCondition, mat: Field | Non
     """Return the nearest tick, in the direction of a search, at which a condition is met.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: there is no such tick.
     """
     try:
         match condition.source:
@@ -331,7 +331,14 @@ def _find_condition(search: _Search, condition: ValueCondition, mat: Field | Non
 
 
 def describe_commands(text: str, timeline: Timeline) -> str:
-    """Return in words the program's commands at the instant in view, if the user has searched for commands; or ""."""
+    """Return in words the commands that the program gives at the instant in view.
+
+    The text is empty if there are none, or if the words in `text` are no search for commands.
+
+    Args:
+        text: The words with which the user went to the instant, such as a search for commands.
+        timeline: The run, and the instant in view.
+    """
     words = parse_command_search(re.sub(r"\b(?:back|first)\b", "", text))
     if words is None or timeline.recording is None:
         return ""
@@ -435,7 +442,7 @@ def _find_change(search: _Search, condition: ValueCondition, mat: Field | None) 
     If the condition is about a printed sample, return the tick of the nearest sample for which it is true.
 
     Raises:
-        ConfigError: there is none, or no such name.
+        ConfigError: there is no such tick, or the run has no values of the name in the condition.
     """
     recording = search.recording
     if find_column_name(condition.name, list_columns(recording.spec)) is None:

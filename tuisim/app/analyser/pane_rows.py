@@ -39,9 +39,9 @@ def build_rows(
 
 
 def fit_columns(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
-    """Return the indices of those columns, from the first on, that fit into a width; at least the first one.
+    """Return the indices of the first columns that fit into a width; at least one.
 
-    The last of them may fit only in part: if it has wide texts, these are cut.
+    If the last of them has wide texts, it may fit only in part; its texts are then cut.
 
     Args:
         columns: The indices of the columns to show, in order.
@@ -69,7 +69,7 @@ def build_head(
 
     Args:
         heads: The headings of all columns.
-        used: The indices of the columns.
+        used: The indices of the columns to show.
         rows: The rows of the pane.
         widths: The widths of all columns.
         gap: Blanks between two columns.

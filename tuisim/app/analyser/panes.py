@@ -87,7 +87,7 @@ Item = TypeVar("Item")
 
 
 class _LazyRows(Sequence[Cells], Generic[Item]):
-    """Rows of cells that are made when they are read: a long log has a hundred thousand bands or events."""
+    """Rows of cells, each of which is made only when it is read; a long log can have a hundred thousand bands."""
 
     def __init__(self, items: Sequence[Item], row: Callable[[Item], Cells]) -> None:
         self._items = items

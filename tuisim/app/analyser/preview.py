@@ -128,7 +128,10 @@ class PreviewDialog(Dialog[ReadChoices]):
             field.query_one("#label", Static).update(word)
 
     def _is_idle(self, name: str) -> bool:
-        """Return whether a choice has no effect on this file, such as the unit of times that are no numbers."""
+        """Return whether a choice has no effect on this file.
+
+        The unit of times, for example, has none if the file has dates instead of numbers.
+        """
         if name == "time":
             return False
         return not self._preview.has_number_time if name == "unit" else not self._preview.lines

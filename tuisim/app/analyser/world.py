@@ -129,9 +129,10 @@ def has_poses(opened: OpenedLog) -> bool:
 
 
 def load_world(opened: OpenedLog, run: int) -> RunWorld | None:
-    """Return the world of a run of a log; None if the log has no poses for it. A missing mat becomes a blank one.
+    """Return the world of one run of a log; None if the log has no poses of that run.
 
-    This blocks, for long when a mat is prepared for the first time.
+    If the mat of the run is missing, the world has a blank mat. This blocks, for long when a mat is prepared for the
+    first time.
 
     Args:
         opened: The log.

@@ -84,7 +84,10 @@ def _shorten_label(key: str) -> str:
 
 
 def _find_enter_verb(hint: str) -> str:
-    """Return the verb for what Enter does, from the hint in a dialog's frame; empty if the hint does not name Enter."""
+    """Return the verb for what Enter does, such as `open` if the hint in a dialog's frame says that Enter opens a file.
+
+    The result is empty if the hint does not name Enter.
+    """
     match = _ENTER.search(hint)
     if match is None:
         return ""

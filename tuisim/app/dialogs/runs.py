@@ -171,7 +171,7 @@ class RunChooser(ListDialog):
     """The dialog of the stored runs; it returns the id of the chosen one.
 
     Args:
-        compared: The run to compare the chosen one with; None if the chosen one is to be opened.
+        compared: The run with which the user wants to compare the chosen one; None if the chosen one is to be opened.
     """
 
     DEFAULT_CSS = f"""
@@ -346,9 +346,10 @@ class RunsChooser(RunChooser):
 
     @on(Input.Submitted)
     def _open_named(self, event: Input.Submitted) -> None:
-        """Close the dialog with the marked runs or, if several numbers of runs were typed, such as `12 13`, with these.
+        """Close the dialog, and return the marked runs.
 
-        Any other text searches the list.
+        If several numbers of runs were typed, such as `12 13`, return the runs with these numbers instead. Any other
+        text searches the list.
         """
         numbers = {str(run.number): run.id for run in self._runs}
         words = event.value.split()

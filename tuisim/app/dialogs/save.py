@@ -159,7 +159,11 @@ class SaveDialog(FileDialog):
         self.TITLE_TEXT = f"Save the {what}"
 
     def resolve_target(self, path: Path) -> Path:
-        """Return the typed path unchanged, after a check that a file there can be written; see `FileDialog`."""
+        """Check that a file with the typed path can be written, and return the path unchanged.
+
+        Raises:
+            TuisimError: the file cannot be written.
+        """
         self._check(path)
         return path
 

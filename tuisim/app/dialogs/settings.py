@@ -41,9 +41,9 @@ def describe_setting(setting: Setting) -> str:
 
 
 def parse_value(setting: Setting, text: str) -> Scalar:
-    """Return the value that a typed text stands for: a number if the setting takes one, else the text.
+    """Return the value that a typed text stands for.
 
-    A text that is no number is returned as it is.
+    This is a number if the setting takes numbers and the text is one. Otherwise, the text is returned unchanged.
     """
     if not isinstance(setting.default, int | float):
         return text.strip()

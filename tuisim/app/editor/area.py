@@ -186,7 +186,7 @@ class CodeArea(TextArea):
         super().redo()
 
     def get_line(self, line_index: int) -> Text:
-        """Return a line of the text, from 0, with its syntax colours."""
+        """Return line `line_index` of the text, from 0, with its syntax colours."""
         line = self.document.get_line(line_index)
         text = Text(_UNSHOWN.sub("·", line), end="", no_wrap=True)
         for start, end, kind in self._colouring.color_line(self.document.lines, line_index):

@@ -169,7 +169,9 @@ class CandidateList(Widget):
         self.filter(word, place)
 
     def filter(self, word: str, place: Offset) -> None:
-        """Show only the names that begin with a word; close the list if no name does, or only the word itself.
+        """Show only the names that begin with a word.
+
+        Close the list if there is no such name, or if the only such name is the word itself.
 
         Args:
             word: The letters typed so far.

@@ -190,12 +190,12 @@ def find_signature(text: str, path: str, row: int, column: int) -> Signature | N
 def find_members(text: str, path: str, row: int, column: int) -> frozenset[str] | None:
     """Return the names of all attributes of the object before a dot.
 
-    The result is None if the object is not of a library, or may have attributes that Jedi does not know.
+    The result is None if the class of the object is not from a library, or may have attributes that Jedi does not know.
 
     Args:
         text, path: As for `find_candidates`.
-        row: From 0.
-        column: From 0, of the dot after a name.
+        row: Row of the dot, from 0.
+        column: Column of the dot, from 0; a name is before it.
     """
     with _asking:
         script, first = _build_script(text, path)
@@ -299,7 +299,13 @@ def _find_module(completion: Completion) -> str:
 
 
 def _find_class(script: Script, line: int, column: int) -> str:
-    """Return the name of the class of the object that ends at a position; empty if Jedi finds no instance there."""
+    """Return the name of the class of an object; empty if Jedi finds no instance at the position.
+
+    Args:
+        script: Jedi's object for the program.
+        line: Line of the position, from 1.
+        column: The column after the name of the object, from 0.
+    """
     kinds: list[Any] = script.infer(line, column)
     return str(kinds[0].full_name) if kinds and kinds[0].type == "instance" else ""
 

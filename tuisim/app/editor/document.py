@@ -92,8 +92,8 @@ class Document:
         """Show the open program at the start of the app.
 
         Args:
-            asks: Whether to offer the unsaved text of a program without a file, if there is such a text and no program
-                is open.
+            asks: Whether to offer unsaved text from an earlier session. It is offered only if no program is open, and
+                if the text belongs to a program without a file.
         """
         self.show_program()
         self.open_at_mistake()

@@ -57,7 +57,11 @@ class AnswerList(OptionList):
         self.scroll_home(animate=False)
 
     def fit(self, size: Size) -> None:
-        """Draw the answers for a list of another size, in columns and rows, with as many lines of each as fit."""
+        """Draw the answers again, because the list has another size; each answer gets as many lines as fit.
+
+        Args:
+            size: Columns and rows of the list.
+        """
         columns = max(size.width - _EDGES, _MIN_COLUMNS)
         index = self.highlighted
         for lines, gap in _LINES:

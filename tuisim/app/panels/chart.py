@@ -109,7 +109,10 @@ class Chart(LinesPanel, can_focus=True):
         self._schedule_drawing()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Draw the data up to now, with a cursor at the shown time if that is past; at most a few times a second."""
+        """Draw the data up to now, at most a few times a second.
+
+        If a past instant is in view, the cursor is at the time of this instant.
+        """
         grows = snapshot.state in (RunPhase.RUNNING, RunPhase.PAUSED, RunPhase.WAITING)
         state = replace(self._state, grows=grows)
         if not self._dragging:

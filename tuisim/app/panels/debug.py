@@ -65,7 +65,11 @@ class Debug(LinesPanel, can_focus=True):
         self._label_border()
 
     def show_printed(self, line: str) -> None:
-        """Show a line that the program has printed in the border; empty for none."""
+        """Show in the border the line that the program has printed last.
+
+        Args:
+            line: The line; empty for none.
+        """
         self._printed = replace_controls(line)
         self._label_border()
 

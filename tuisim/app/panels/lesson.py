@@ -58,7 +58,7 @@ class LessonPanel(LinesPanel, can_focus=True):
         self._show_subtitle()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Draw the lesson if that was not possible before for lack of room; `show_lesson` sets the lesson."""
+        """Draw the lesson if the panel had no room for it before; `show_lesson` sets the lesson that is shown."""
         if not self._picture.lines:
             self._redraw()
 

@@ -74,7 +74,7 @@ class BarTimes:
 
 @lru_cache(maxsize=1)
 def _round_end_s(now_s: int) -> float:
-    """Return the time in s at the right end of the bar for a run that has reached the second `now_s`: a round time."""
+    """Return the time in s at the right end of the bar, a round time, for a run that has reached second `now_s`."""
     return time_limits(now_s)[1]
 
 

@@ -44,7 +44,9 @@ def _count_columns(panel: str, width: int) -> int:
 
 
 def name_mat(mat: str, layout: str, width: int) -> str:
-    """Return the words in the title of the world: the mat and the name of the panels' preset, as far as there is room.
+    """Return the words in the title of the world: the names of the mat and of the panels' preset.
+
+    If there is no room for both, only the preset is named; if there is none for the preset either, only the mat.
 
     Args:
         mat: The title of the mat.

@@ -260,7 +260,11 @@ class WorldView(PixelView):
         self.repaint_scene()
 
     def set_mat(self, pixels: Pixels) -> None:
-        """Set the image of the mat, as `World.set_mat` does, and draw it."""
+        """Set the image of the mat, and draw it.
+
+        Args:
+            pixels: The image, with the shape that `World.set_mat` expects.
+        """
         self._mat = pixels
         self._painter = None
         self.repaint_scene()
@@ -541,7 +545,10 @@ class WorldView(PixelView):
         self.post_message(World.ZoomAsked(steps))
 
     def _turn(self, event: events.MouseEvent, angle_deg: float) -> None:
-        """Turn the robot by an angle if the mouse is over it or drags it; scrolling elsewhere does not turn it."""
+        """Turn the robot by an angle, because the user has scrolled with the mouse over it or while dragging it.
+
+        If the mouse is elsewhere, do nothing.
+        """
         if self._snapshot is None or self._port is None:
             return
         pose = self._held or self._snapshot.instant.pose

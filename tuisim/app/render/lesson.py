@@ -216,7 +216,10 @@ def _escape(away: Away) -> str:
 
 
 def _describe_done(step: LessonStep, story: str, width: int, away: Away) -> Iterator[Line]:
-    """Yield lines about the step that was just done: its story, why it was right, and how to see it again."""
+    """Yield lines about the step that the student has just done.
+
+    They say what happened in the run that has passed the step, why this was right, and which key shows the step again.
+    """
     yield from _wrap_text(f"✓ {step.title}", width, _GOOD)
     yield from _wrap_text(story, width, _PALE)
     yield from _wrap_text(step.why, width, _PLAIN)

@@ -97,9 +97,9 @@ def build_legend(now: Snapshot, width: int, view: Viewport | None = None) -> str
 
 
 def draw_signs(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
-    """Return the signs that show the robots in a picture without colours.
+    """Return the signs that show the robots in a picture without colours, by the row and column of their cells.
 
-    Each is a cell's number, as `sign_cell` returns it, by the row and column of the cell.
+    Each sign is a number that `sign_cell` returns.
     """
     outline = build_outline(scene.robot)
     reach_mm = outline.front_mm * choose_scale(outline, port)
@@ -122,9 +122,9 @@ _AHEAD_CELLS = 2.0
 def draw_pointer(
     view: Viewport, pose: Pose, reach_mm: float, pivot: str
 ) -> dict[tuple[int, int], int]:
-    """Return the signs that show a robot's position and heading.
+    """Return the signs that show a robot's position and heading, by the row and column of their cells.
 
-    Each is a cell's number, as `sign_cell` returns it, by the row and column of the cell.
+    Each sign is a number that `sign_cell` returns.
 
     Args:
         view: The visible part of the field.

@@ -158,10 +158,10 @@ def read_first_line(program: Program | None) -> Mapping[str, Any]:
 
 
 def _resolve_choices(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
-    """Load the robot, the obstacles and the profile that the choices name.
+    """Load the robot, the obstacles and the profile that the choices give by name.
 
     Returns:
-        The choices with the loaded objects in place of their names, and these names by setting.
+        The choices with the loaded objects in place of the names, and these names by setting.
     """
     resolved = dict(choices)
     words = {}
@@ -176,7 +176,11 @@ def _resolve_choices(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[s
 
 
 def change_values(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
-    """Return a plan with other values of some settings, by path; not for settings that name a file.
+    """Return a plan with other values of some settings. This is not for settings that name a file.
+
+    Args:
+        plan: The current plan.
+        values: The new values by the paths of their settings.
 
     Raises:
         ConfigError: the mat is missing, or a value is invalid.
@@ -223,12 +227,10 @@ def apply_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
 
 
 def follow_program(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
-    """Return a plan with the settings that a program's text decides, and these settings.
-
-    Settings that the user has chosen stay.
+    """Return a plan in which the text of a program has decided the settings that the user has not chosen.
 
     Returns:
-        The plan, and the settings that the text has decided; none unless the robot or the profile have changed.
+        The plan, and the settings that the text has decided. The latter are empty if robot and profile stay the same.
 
     Raises:
         ConfigError: the mat is missing.
@@ -259,7 +261,7 @@ def follow_program(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decid
 
 
 def free_settings(plan: NextRun, keys: Iterable[str]) -> NextRun:
-    """Return a plan in which nobody has chosen some settings, so that programs decide about them."""
+    """Return a plan in which some settings count as not chosen by the user, so that programs decide about them."""
     free = {key: plan.settings[key] for key in keys if key in PROGRAM_PATHS}
     return replace(plan, from_program={**plan.from_program, **free})
 
@@ -357,7 +359,7 @@ def change_obstacles(plan: NextRun, obstacles: tuple[Obstacle, ...]) -> NextRun:
 
 
 def _put(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
-    """Return a plan with other values of settings, by path.
+    """Return a plan with other values of some settings, given by the paths of the settings.
 
     Call this only for settings on which no other value of the specification depends.
     """
