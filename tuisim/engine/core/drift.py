@@ -305,7 +305,7 @@ def build_slipping_wheels(spec: RunSpec) -> SlippingWheels | None:
 
 
 def build_gyro(spec: RunSpec, drive: Drive) -> WrongGyro | None:
-    """Return the gyro of a run with its errors; None if it has none, and so senses each turn correctly."""
+    """Return the gyro of a run with its errors; None if the run's gyro has no errors."""
     is_right = find_drift(spec).is_none and not spec.profile.gyro_max_dps
     return None if is_right else WrongGyro(spec, drive)
 

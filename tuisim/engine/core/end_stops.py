@@ -59,7 +59,7 @@ class Fence(EndStops):
 
     Args:
         robot: The robot.
-        spec: The motor as the robot has it.
+        spec: The description of the motor in the robot.
         motor: The motor.
     """
 

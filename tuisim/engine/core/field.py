@@ -38,7 +38,10 @@ def count_disc_pixels(diameter: int) -> int:
 
 @lru_cache(maxsize=16)
 def list_disc_spans(diameter: int) -> tuple[tuple[int, int, int], ...]:
-    """Return for each row of a disc its number in the disc's box, its first column, and the column after its last."""
+    """Return the pixels of a disc in a square, as three numbers for each row that has any.
+
+    The numbers are the row's number in the square, the first column of the disc, and the column after its last one.
+    """
     rows = enumerate(build_disc_mask(diameter))
     return tuple(
         (row, inside.index(True), diameter - inside[::-1].index(True))

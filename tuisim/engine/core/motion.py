@@ -467,7 +467,11 @@ class Motion:
         right.bar(right_deg if blocked else 0.0)
 
     def _is_blocked(self, left_mm: float, right_mm: float) -> bool:
-        """Return whether an obstacle allows no noticeable part of a motion of the wheels."""
+        """Return whether an obstacle blocks a motion of the wheels from its start, except for a very small part.
+
+        Args:
+            left_mm, right_mm: How far the left and the right wheel would roll.
+        """
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
             return False
         turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)

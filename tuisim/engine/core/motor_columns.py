@@ -113,7 +113,10 @@ class MotorRecorder:
             buffer[offset : begin + self._size * ticks] = buffer[begin:offset] * (ticks - 1)
 
     def read_values(self, tick: int | None) -> tuple[MotorValues, ...]:
-        """Return the drivers' values that were recorded at a tick; for None or without a sink, their present ones."""
+        """Return the values of all motors' drivers that were recorded at a tick.
+
+        If `tick` is None, or nothing is recorded, return the drivers' present values.
+        """
         buffer = self._buffer
         begin = 0 if tick is None else self._size * tick + 64
         if buffer is None or tick is None:

@@ -65,7 +65,7 @@ def _list_errors(level: int) -> tuple[int, ...]:
 class Clamping(NamedTuple):
     """The mean and the variance of the light noise of a pixel, after its noisy value is clamped to 0 … 255.
 
-    Both are given for each value that the pixel can have without noise; one object is for one noise level.
+    Both depend on the value, 0 to 255, that the pixel has without noise. Each noise level has an object of this class.
     """
 
     shift: tuple[float, ...]

@@ -39,12 +39,12 @@ class Library(StrEnum):
 
     @property
     def joins_threads(self) -> bool:
-        """Whether a program's end waits for its threads, as in Python; MicroPython ends with the main thread."""
+        """Whether a program waits for its threads at its end, as in Python; in MicroPython, they end with it."""
         return self is not Library.PYBRICKS
 
     @property
     def drops_annotations(self) -> bool:
-        """Whether annotations are not evaluated: MicroPython's compiler drops them."""
+        """Whether the compiler drops annotations without evaluating them, as that of MicroPython does."""
         return self is Library.PYBRICKS
 
 

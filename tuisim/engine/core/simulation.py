@@ -245,7 +245,7 @@ class Simulation(Motion):
         Args:
             motor: The motor.
             kind: Its kind.
-            before, after: Its number before and now: 0 and 1 are the wheels'.
+            before, after: Its number before and after the change; the motors with the numbers 0 and 1 drive the wheels.
         """
         free = after > 1
         if free != (before > 1) and isinstance(motor, SimulatedMotor | ServoMotor):

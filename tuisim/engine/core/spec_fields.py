@@ -109,10 +109,10 @@ _Spec = TypeVar("_Spec", bound="Spec")
 
 
 class Spec:
-    """Frozen data whose values are checked when an object is created.
+    """Base class of frozen data whose values are checked when an object is created.
 
-    All specs share the methods here. An ordinary data class would compile its own for each class, at each start of
-    tuisim.
+    All specs inherit their methods from this class. An ordinary data class would compile methods of its own for each
+    class, at each start of tuisim.
     """
 
     __slots__ = ("_hash",)

@@ -129,7 +129,7 @@ def font_size(name: str) -> tuple[int, int] | None:
             `Lat15-VGA16`: characters are never wider than high.
 
     Returns:
-        None if the name is not a font, or the size does not fit the screen.
+        Width and height; None if the name is not a font, or the size does not fit the screen.
     """
     match = _FONT.fullmatch(name)
     if match is None:

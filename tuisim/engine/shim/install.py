@@ -102,7 +102,7 @@ def install(
     Args:
         session: Clock and simulation.
         files: Remembers the device files that the program opens.
-        more_finishers: Functions for other modules, by name.
+        more_finishers: Functions to call after the import of other modules, by the name of the module.
         replace: Replaces a function of a module.
         is_own: Returns whether a file belongs to the program.
     """

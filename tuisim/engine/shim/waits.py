@@ -33,7 +33,7 @@ _MARKED: dict[CodeType, Wait] = {}
 
 
 def waits_for(what: Wait) -> Callable[[Function], Function]:
-    """Return a decorator that marks a function as one in whose calls a program waits; the function stays unchanged."""
+    """Return a decorator that marks a function as one that waits, and returns this same function."""
 
     def mark(function: Function) -> Function:
         _MARKED[function.__code__] = what

@@ -151,13 +151,19 @@ def build_base(sim: Simulation, _time_ns: int, values: Values) -> None:
 
 
 def move_base(base: DriveBase, time_ns: int, values: Values) -> None:
-    """Make a drive base drive and turn; `values` are the distance in mm, the degrees clockwise, and an `Ending`."""
+    """Make a drive base drive a distance and turn by an angle at the same time.
+
+    `values` are the distance in mm, the angle in degrees, clockwise, and an `Ending`.
+    """
     distance_mm, turn_deg, _ = values
     base.move(time_ns // 1000, distance_mm, turn_deg, _find_ending(values, 2))
 
 
 def drive_base(base: DriveBase, time_ns: int, values: Values) -> None:
-    """Make a drive base drive until the next command; `values` are mm/s and degrees per second, clockwise."""
+    """Make a drive base drive until the next command.
+
+    `values` are the speed in mm/s and the rate of turn in degrees per second, clockwise.
+    """
     base.drive(time_ns // 1000, *map(int, values))
 
 

@@ -237,7 +237,10 @@ class MotorDriver:
         return self._roll is not None
 
     def _advance_roll(self, time_ns: int) -> bool:
-        """Advance the roll to the last step that is due; if it has ended before that, remove it and return False."""
+        """Advance the roll to the last step that is due, and return whether it goes on.
+
+        If it has ended before that, remove it. Without a roll, return False.
+        """
         roll = self._roll
         if roll is None:
             return False

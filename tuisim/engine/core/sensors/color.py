@@ -124,7 +124,7 @@ def find_color_code(red: int, green: int, blue: int) -> int:
 
 
 def find_brick_color_code(red: int, green: int, blue: int) -> int:
-    """Return the colour code of a reading as on the brick: also 0 for nothing and 7 for brown."""
+    """Return the colour code that a brick's sensor gives: as `find_color_code`, but 0 for nothing and 7 for brown."""
     hue, saturation, value = hsv(red, green, blue)
     if not value:
         return 0

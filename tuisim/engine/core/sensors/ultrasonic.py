@@ -80,13 +80,15 @@ def find_first_hit_mm(
     step: tuple[float, float],
     most: float,
 ) -> float:
-    """Return the distance in mm at which a ray meets one of the edges; `most` if it meets none before.
+    """Return the distance in mm at which a ray meets one of some parallel edges; `most` if it meets none before.
+
+    Positions have two coordinates: one across the edges, which is constant for each edge, and one along them.
 
     Args:
-        edges: Parallel edges, sorted by their coordinate across.
-        places: These coordinates, in the same order.
-        start: Where the ray begins: its coordinate across the edges, and that along them.
-        step: How much each of these two coordinates changes per mm along the ray.
+        edges: The edges, sorted by their coordinate across.
+        places: The coordinate across of each edge, in the same order.
+        start: Where the ray begins: across and along.
+        step: How much each of the two coordinates changes per mm of the ray.
         most: Length of the ray in mm.
     """
     across, along = start
@@ -174,7 +176,10 @@ def measure_distance_mm(
 def _find_echoing_surfaces(
     spec: UltrasonicSpec, instant: Instant, world: WorldSpec
 ) -> Surfaces | None:
-    """Return the surfaces that send back the sensor's pulse at an instant; None if no pulse can get lost."""
+    """Return the surfaces that send back the sensor's pulse at an instant.
+
+    Return None, which stands for all surfaces, if no pulse of the run can get lost.
+    """
     drift = instant.drift
     if not drift.echo_loss_pc:
         return None

@@ -209,7 +209,7 @@ class Controller:
     def run_in_proportion(
         self, now_us: int, measured: Measure, other: Controller, part: int, whole: int
     ) -> None:
-        """Begin a motion that follows that of another controller, with its distances multiplied by `part` / `whole`.
+        """Begin a motion with the times of another controller's motion, and its distances times `part` / `whole`.
 
         Args:
             now_us: The present time.
@@ -374,7 +374,7 @@ class Controller:
         )
 
     def has_ended(self, now_us: int) -> bool:
-        """Return whether the controller's motion was for a given time, and this time is over."""
+        """Return whether the controller has run a motion for a given time, and this time is over."""
         return self.timed and (end_us := self.end_us) is not None and now_us >= end_us
 
     def done(self, now_us: int, milli: int, rate: int) -> bool:

@@ -171,7 +171,10 @@ _KINDS = {
 
 
 def categorize(event: InputEvent) -> SynEvent | InputEvent:
-    """Return an event as an object of the class for its type; the event itself if its type has no class."""
+    """Return an event as an object of the class for its type, such as a `KeyEvent`.
+
+    If there is no class for its type, return the event itself.
+    """
     kind = _KINDS.get(event.type)
     return event if kind is None else kind(event)
 

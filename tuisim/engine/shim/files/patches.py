@@ -385,7 +385,10 @@ class FilePatches:
         self._replace(os, "scandir", scandir)
 
     def finish_glob(self, module: Any) -> None:
-        """Patch `glob` after its import: in later versions of Python, its classes keep the original `os.scandir`."""
+        """Patch `glob` after its import, so that it also finds device files.
+
+        In later versions of Python, its classes keep the original `os.scandir`.
+        """
         for held in list(vars(module).values()):
             if isinstance(held, type) and "scandir" in vars(held):
                 held.scandir = staticmethod(os.scandir)  # type: ignore[attr-defined]

@@ -6,7 +6,7 @@ from ev3dev2.sensor import lego
 
 
 class ColorSensor(lego.ColorSensor):  # type: ignore[misc]
-    """LEGO EV3 color sensor."""
+    """The LEGO EV3 colour sensor, with the readings that courses add to the library."""
 
     @property
     def reflected_light_intensity_pc(self) -> float:

@@ -189,7 +189,7 @@ class BluetoothMailboxServer(MailboxHandlerMixIn):
         """Block until `count` clients are connected.
 
         Raises:
-            NotSimulated: the program has no client: another brick would have to connect.
+            NotSimulated: the program creates no client; a client on another brick is not simulated.
         """
         session = self.brick.session
         until_ns = session.now + CLIENT_WITHIN_MS * MS
@@ -228,7 +228,7 @@ class BluetoothMailboxClient(MailboxHandlerMixIn):
         """Connect to the server of a brick, by its name or address.
 
         Raises:
-            NotSimulated: the program has no server: it would be on another brick.
+            NotSimulated: the program has not created a server; a server on another brick is not simulated.
         """
         server = BluetoothMailboxServer.newest
         if server is None:
