@@ -133,7 +133,7 @@ def fill_keys(app: App[Any], text: str) -> str:
 
 
 def action_link(app: App[Any], action: str, word: str) -> str:
-    """Return markup with the key of an action and a word; a click on either runs the action."""
+    """Return markup with the key of an action, given by its id, and a word; a click on either runs the action."""
     key = escape_markup(fill_keys(app, f"{{{action}}}"))
     return f"[@click=app.act('{action}')]{key} {word}[/]"
 
@@ -475,7 +475,7 @@ def _build_column(groups: list[_Group]) -> Group:
 
 
 def group_keys(actions: Iterable[Action[Any, Any]]) -> dict[str, list[KeyWord]]:
-    """Return the keys of actions, in lists by the name of the actions' group."""
+    """Return the keys of actions as one list for each group, by the name of the group."""
     groups: dict[str, list[KeyWord]] = {}
     for action in actions:
         groups.setdefault(action.group, []).append((action.key_label, action.title))

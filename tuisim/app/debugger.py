@@ -272,9 +272,9 @@ class DebugController:
         self._inspect_again()
 
     def _set_tick_time(self, paused: Paused) -> Paused:
-        """Return a pause with the time of its tick instead of the program's own time, which is somewhat later.
+        """Return a pause with the time of its tick, which every panel shows.
 
-        Every panel shows the time of the tick.
+        The program's own time at the pause is somewhat later.
         """
         hz = self._run_controller.timeline.tick_hz
         return replace(paused, time_ns=compute_due_ns(paused.tick, hz))
@@ -376,9 +376,13 @@ class DebugController:
         return self._panel_area.is_shown("debug") or (is_own and self._panel_area.is_shown("code"))
 
     def choose_line(self, tick: int, line: int) -> None:
-        """Choose the line to show at a tick, such as the line that printed a sample; 0 for none.
+        """Choose the line to show at a tick, such as the line that printed a sample.
 
         The line stays highlighted until another tick, or another line of the same tick, comes into view.
+
+        Args:
+            tick: The tick.
+            line: The line in the text of the run, from 1; 0 for no line.
         """
         self._run_controller.chosen_line = (tick, line) if line else None
         self.position = self._wanted = None
@@ -462,7 +466,8 @@ class DebugController:
     def _is_past(self, at: Position) -> bool:
         """Return whether a position is before the newest position of the run.
 
-        A re-run of the program may compute positions that the run has not reached.
+        This may be false: to find past variables, the program runs again, and may go further than the paused run has
+        gone.
         """
         now = self._paused
         if now is None or now.ordinal == UNKNOWN_ORDINAL:
@@ -602,5 +607,5 @@ class DebugController:
         self.show()
 
     def close(self) -> None:
-        """Stop the process that runs programs again for past variables."""
+        """Stop the process in which programs run again, so that their past variables can be shown."""
         self.replay.close()

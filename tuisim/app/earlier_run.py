@@ -16,7 +16,10 @@ from tuisim.engine.runs.run_folder import StoredRun
 
 
 def is_comparable(earlier: Recording, later: Recording) -> bool:
-    """Return whether the robot of an earlier run can be drawn beside a later run: both drove on the same mat."""
+    """Return whether two runs drove on the same mat.
+
+    If they did, the robot of the earlier run can be drawn beside that of the later run.
+    """
     return earlier.newest > 0 and earlier.spec.world.background == later.spec.world.background
 
 

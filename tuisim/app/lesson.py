@@ -309,9 +309,11 @@ class LessonController:
         )
 
     def _follow(self, change: Change) -> None:
-        """Do what a change of the session requires: begin the next step, or save the session and update the panel.
+        """Do what the session of the lesson requires after an event.
 
-        The change can also require to try the program in other worlds, which is done in the background.
+        Args:
+            change: What it requires. `GO_ON` begins the next step. `SHOW` saves the session and updates the panel.
+                `TRY` also runs the program in other worlds, in the background.
         """
         session = self.session
         if session is None or change is Change.NONE:

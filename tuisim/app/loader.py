@@ -521,7 +521,7 @@ class Loader:
         source: ProgramSource | None = None,
         gone: Iterable[str] = (),
     ) -> None:
-        """Apply the changed settings of a file; the user's own changes of other settings stay.
+        """Apply the changed settings of a file; what the user has changed in other settings stays.
 
         Args:
             differences: The new values of the changed settings.

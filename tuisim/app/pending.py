@@ -51,9 +51,14 @@ class Pending:
     def apply_pending(
         self, record: TickRecord, instant: Instant, pen_down: bool
     ) -> tuple[Instant, bool]:
-        """Return the instant of the newest record, and whether the pen is down, with the pending actions applied.
+        """Return the newest instant and whether the pen is down, as they are after the pending actions.
 
         The gyro keeps its angle, as it does when the robot is lifted.
+
+        Args:
+            record: The newest record of the run.
+            instant: The instant in that record.
+            pen_down: Whether the pen is down in that record.
         """
         if self._after != _build_key(record):
             return instant, pen_down

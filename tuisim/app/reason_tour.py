@@ -52,7 +52,12 @@ class ReasonTour:
         return has_gone_wrong or can_differ
 
     def begin(self, recording: Recording, has_ended: bool) -> None:
-        """Begin the tour of a run whose reasons are not known yet, and drop the reasons of any other run."""
+        """Begin the tour of a run whose reasons are not known yet, and drop the reasons of any other run.
+
+        Args:
+            recording: The run.
+            has_ended: Whether the run has ended.
+        """
         if self._of is not recording:
             self.reasons = ()
             self.earlier = None

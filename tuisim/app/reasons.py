@@ -108,7 +108,7 @@ def _read(
 ) -> tuple[Reason, ...]:
     """Return the reasons why a run went wrong.
 
-    The run is loaded from its folder: the app continues to read its own views of the recording.
+    The run is loaded from its folder, because the app reads the recording object at the same time in another thread.
     """
     from tuisim.tasks.goals.judge import judge
 

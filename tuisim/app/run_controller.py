@@ -98,10 +98,7 @@ class RunController:
 
     @property
     def spec(self) -> RunSpec:
-        """The specification of the live run, or of the run of a past instant in view.
-
-        Otherwise, it is that of the next run.
-        """
+        """The specification of the run if it is live or its past is in view; else that of the next run."""
         recording = self.timeline.recording
         return recording.spec if recording and (self.in_run or self.in_past) else self.next_run.spec
 
@@ -252,10 +249,13 @@ class RunController:
         return pause.find_present(record, self.spec.robot) if pause and is_there else None
 
     def _find_pressed(self, record: TickRecord | None) -> frozenset[str]:
-        """Return the buttons that the user holds down.
+        """Return the buttons that are pressed at the instant in view.
 
-        If the user holds none, or the past is in view, return those that were pressed at a record. The set is empty if
-        no instant of a run is in view.
+        These are the buttons that the user holds down now. If there are none, or the past is in view, they are those in
+        a record. The set is empty if no instant of a run is in view.
+
+        Args:
+            record: The record of the instant in view; None if there is none.
         """
         recording = self.timeline.recording
         if record is None or recording is None or not self._is_of_run:
@@ -386,9 +386,10 @@ class RunController:
         self.earlier = earlier if earlier and later and is_comparable(earlier, later) else None
 
     def set_companion(self, companion: Recording | None) -> None:
-        """Draw a run beside the run in view and beside every later run.
+        """Draw one run beside each run, instead of the run before it.
 
-        None draws the previous run beside every later run again.
+        Args:
+            companion: The run to draw, such as that of a model answer; None draws the run before each run again.
         """
         self.companion = companion
         self.shows_earlier = True

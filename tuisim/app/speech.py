@@ -104,7 +104,7 @@ class Voice:
                         self._plays, file.read(int(MAX_SOUND_S * RATE_HZ * 8))
                     )
             except OSError:
-                # The program has played it: the file may be deleted by now.
+                # The program may have deleted the file since it played the sound.
                 return
 
     def stop(self) -> None:

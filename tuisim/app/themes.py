@@ -107,7 +107,10 @@ class ThemeColors(LineFilter):
         return self._replaced.get(own, own)
 
     def choose_text_rgb(self, own: Rgb) -> Rgb:
-        """Return the theme's colour of text or lines for one of the app's own colours, legible on the background."""
+        """Return the theme's colour for text or lines that have one of the app's own colours.
+
+        The result is legible on the theme's background. Any other colour is returned unchanged.
+        """
         new = self.rgb(own)
         return (
             self._make_legible(new, self._background.rgb, is_line=own == _LINE)
@@ -138,7 +141,7 @@ class ThemeColors(LineFilter):
     def _apply_theme(self, style: Style) -> Style:
         fore = convert_color(style.color)
         back = convert_color(style.bgcolor)
-        # A white background is not replaced: it shows what a sensor sees, and none of the app's own is white.
+        # A white background is not replaced: it shows what a sensor sees, and the app itself has no white background.
         new_fore, new_back = (
             fore and self.rgb(fore),
             back and (back if back == _WHITE else self.rgb(back)),

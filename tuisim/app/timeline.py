@@ -481,7 +481,7 @@ def _find_printed(search: _Search, condition: ValueCondition) -> int:
 def find_begins(condition: ValueCondition, true: Array) -> Array:
     """Return the ticks at which a condition becomes true, in order.
 
-    A condition such as `left_color changes` is true only at single instants; then return all ticks at which it is true.
+    Some conditions, such as `left_color changes`, are true only at single instants; then return all these instants.
 
     Args:
         condition: The condition.

@@ -37,7 +37,7 @@ def go_to_tick(context: ActionContext, tick: int | None) -> None:
     if recording is None or (tick is not None and not _is_laid_out(context, recording)):
         return
     context.app.notices.release()
-    # An answer that comes only now must not move the view again.
+    # If the search for reasons ends only now, its result must not move the view again.
     context.reasons.is_searching = False
     if tick is not None:
         context.runs.pause()

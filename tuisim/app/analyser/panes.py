@@ -373,7 +373,7 @@ def _build_continuation(
 
 
 def _count_rows(name: str, model: AnalysisModel, width: int) -> int:
-    """Return how many lines a pane needs to be shown completely; for a pane with wrapped texts, an upper limit."""
+    """Return how many lines a pane needs to be shown completely; if its texts are wrapped, it may need fewer."""
     if name == "table":
         return 1 + len(model.rows)
     rows = PANES[name].rows(model)

@@ -35,7 +35,11 @@ class _List(FieldDialog[Result]):
         self.query_one(OptionList if self._entries else Input).focus()
 
     def list_entries(self, index: int | None = None) -> None:
-        """Fill the list with the present entries, and select the entry at `index`; for None, select none."""
+        """Fill the list with the present entries.
+
+        Args:
+            index: Index of the entry to select; None selects none.
+        """
 
     def _list(self, options: list[Option], index: int | None) -> None:
         listed = self.query_one(OptionList)
@@ -101,7 +105,11 @@ class _TextList(_List[None], Generic[Entry]):
         return self.format_entry(entry)
 
     def list_entries(self, index: int | None = None) -> None:
-        """Fill the list with the present entries, and select the entry at `index`; for None, select none."""
+        """Fill the list with the present entries.
+
+        Args:
+            index: Index of the entry to select; None selects none.
+        """
         self._list([Option(self.label(entry)) for entry in self._entries], index)
 
     @property
@@ -258,7 +266,11 @@ class SavedPoses(_List[Pose]):
         yield Static(id="message", markup=False)
 
     def list_entries(self, index: int | None = None) -> None:
-        """Read the saved poses, fill the list with them, and select the pose at `index`; for None, select none."""
+        """Read the saved poses, and fill the list with them.
+
+        Args:
+            index: Index of the pose to select; None selects none.
+        """
         try:
             self._entries = load_poses()
         except TuisimError as error:

@@ -123,7 +123,15 @@ def build_header(columns: int) -> str:
 
 
 def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
-    """Return a run as a line of the list below `build_header`; in a wide terminal, with its tags or its failure."""
+    """Return a run as a line of the list of runs, in the columns of `build_header`.
+
+    In a wide terminal, the line also has the run's tags or, without tags, its failure.
+
+    Args:
+        run: The run.
+        columns: Width of the terminal in characters.
+        marked: Whether the user has marked the run.
+    """
     student = run.find_tag(STUDENT_TAG)
     texts = {
         "run": f"{run.number}{'●' if marked else ' '}",
@@ -371,8 +379,8 @@ class Differences(Dialog[bool]):
         samples: Whether the user may also go to the first sample that differs, if no tick differs.
     """
 
-    # The binding has no word of its own: the footer takes the word for Enter from the hint, which has none if there is
-    # no difference to go to.
+    # The binding has no word, since the footer takes the word for Enter from the hint in the frame. The hint names
+    # Enter only if there is a difference to go to.
     BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", show=False)]
 
     def __init__(self, first: str, second: str, diff: RunDiff, *, samples: bool = False) -> None:

@@ -176,8 +176,8 @@ def choose_panels(
     if is_low(preset, width, height):
         return panels, []
     if preset == Preset.STANDARD and not is_tall(width, height):
-        # The strip below a wide world gets no more panels, which would be too narrow; a board has no room for a side
-        # column.
+        # The strip below a wide world gets no more panels, which would be too narrow. The arrangement of `build_board`
+        # also has no room for a side column.
         is_board = size == TerminalSize.MEDIUM and "chart" in panels
         fill = [] if is_board else select_panels(fill, PanelPlace.SIDE)
     return panels, fill

@@ -230,8 +230,9 @@ def place(node: Node, box: PanelBox, layout: PanelLayout) -> None:
 def free_rows(boxes: Mapping[str, PanelBox], rows: int) -> dict[str, PanelBox]:
     """Return boxes of panels that leave the last rows of their area free.
 
-    The panels that a horizontal line crosses become lower, and those below the line move up. The line is where the
-    panels have most rows to spare; if there is none at which each keeps its minimum height, return the boxes unchanged.
+    A horizontal line is drawn through the area where the panels on it have most rows to spare. These panels become
+    lower, and the panels below the line move up. If no line lets each panel keep its minimum height, the boxes are
+    returned unchanged.
 
     Args:
         boxes: The boxes of panels that fill the area.

@@ -64,7 +64,10 @@ class Instrumentation(LinesPanel, can_focus=True):
 
 
 def build_subtitle(now: Snapshot, height: int) -> str:
-    """Return time and state for the frame of a panel that is too low for lines about them; empty for a higher panel."""
+    """Return the time and the state of the run for the frame of a panel that has no room for lines about them.
+
+    The text is empty for a panel that is high enough.
+    """
     return (
         f"{now.time_s:.2f} s {_describe_state(now)[0]}{now.turning}"
         if _is_small(now, height)

@@ -326,7 +326,7 @@ class Log(Widget, can_focus=True):
             thumb = range(start, start + size)
         rows = [(self._find_line(top + y), y in thumb) for y in range(height)]
         if (line := rows[0][0])[1] is Stream.STDERR and _CARETS.fullmatch(line[0]):
-            # The line that these carets point at is above the view.
+            # The first visible row has only carets, which mark an error in the line above: leave them out.
             rows[0] = ("", Stream.STDERR), rows[0][1]
         if not self._all and self._empty_words:
             words = split_row(

@@ -50,7 +50,7 @@ def split_rows(program: str, width: int) -> Iterator[str]:
 
 
 def _find_breaks(program: str) -> Mapping[int, _Breaks]:
-    """Return the columns at which each line may be broken, by line number from 1.
+    """Return for each line of a program the columns at which it may be broken, by line number from 1.
 
     A line may be broken after a blank or an opening bracket, and before a dot.
     """

@@ -234,7 +234,7 @@ def _build_question(question: QuestionCheck, width: int) -> Iterator[Line]:
 
 
 def _build_result(view: LessonView, step: LessonStep, width: int, away: Away) -> Iterator[Line]:
-    """Yield lines about the result of the last run: the goals of a step that it has met and missed."""
+    """Yield lines about the result of the last run: which goals of a step the run has met, and which it has missed."""
     if not isinstance(step.check, RunCheck) or not view.judgements:
         return
     if view.elsewhere and not step.check.anywhere:
@@ -281,7 +281,11 @@ def _describe_task(view: LessonView, step: LessonStep, away: Away) -> str:
 
 
 def _end(view: LessonView, width: int, away: Away) -> Iterator[Line]:
-    """Yield the last page of a lesson: what follows, its use on a real robot, and the model answer if all is done."""
+    """Yield the last page of a lesson.
+
+    It says which lesson is next, and what the lesson is good for on a real robot. If all steps are done, it also shows
+    the model answer.
+    """
     assert view.lesson is not None
     skipped = sum(state is StepState.SKIPPED for state in view.states)
     still_open = sum(state is StepState.OPEN for state in view.states)

@@ -313,7 +313,13 @@ def _build_color_sensor_fields(
 def _build_single_fields(
     plan: NextRun, field: str, kind: type[SensorSpec]
 ) -> tuple[FormField, ...]:
-    """Return the fields of the ultrasonic sensor or the gyro; the first field adds or removes the sensor."""
+    """Return the fields of the ultrasonic sensor or the gyro; the first field adds or removes the sensor.
+
+    Args:
+        plan: The plan, which has the robot.
+        field: Name of the sensor's field in `RobotSpec`.
+        kind: The class of the sensor.
+    """
     mounted: SensorSpec | None = getattr(plan.robot_choice.spec, field)
     fresh: SensorSpec = mounted or getattr(plan.robot.spec, field) or kind()
 

@@ -94,7 +94,7 @@ def _list_programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
         try:
             program = read_run_file(store.folder(run.id)).get("program")
         except LogError:
-            # The run was removed, or is damaged; the list of runs reports that.
+            # The run was removed or is damaged: leave it out here, since the list of runs reports that.
             continue
         path = program.get("path") if isinstance(program, dict) else None
         if (

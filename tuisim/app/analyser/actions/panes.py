@@ -224,14 +224,14 @@ def move_pages(screen: LogScreen, step: int) -> None:
 
 
 def go_to_end(screen: LogScreen, last: bool) -> None:
-    """Go to the first row of the pane; if `last`, go to its last row."""
+    """Go to the first row of the pane or, if `last` is True, to the last row."""
     rows(screen, screen.model.log.rows if last else -screen.model.log.rows)
 
 
 def columns(screen: LogScreen, step: int) -> None:
     """Move the cursor right by the time of `step` columns of the chart, but at least to the next sample.
 
-    A negative number moves it left.
+    If `step` is negative, move the cursor left.
     """
     model = screen.model
     before = model.row
