@@ -164,7 +164,7 @@ def read_bytes(
     hint: str = "",
     neighbours: Callable[[Path], str] = lambda _: "",
 ) -> bytes:
-    """Return the bytes of a regular file, one more than `most_bytes` if it is larger.
+    """Return the bytes of a regular file; of a file larger than `most_bytes`, only the first `most_bytes` + 1.
 
     Args:
         missing, folder: The message if there is no such file, or if it is a folder.
@@ -667,7 +667,7 @@ def _updated_text(old: str, new: str, kept: Collection[str], whole: bool) -> str
         old: The text of the existing file.
         new: The text with the new values.
         kept: Keys of `old` that stay although `new` lacks them.
-        whole: Whether each table of `old` is replaced by that of `new` as a whole, not key by key.
+        whole: Whether tables of `old` are replaced as a whole; otherwise only those of their keys that differ.
 
     Raises:
         ConfigError: the text cannot be updated.

@@ -76,7 +76,10 @@ class FieldFiles:
         } >= set(diameters)
 
     def identities(self) -> tuple[tuple[int, ...], ...]:
-        """Return numbers for each file, which change when it is written to or replaced; missing files are left out."""
+        """Return a tuple of numbers for each file, which change when the file is written to or replaced.
+
+        Missing files are left out.
+        """
         identities = []
         for path in (self.pixels, *(path for _, path in self.sums)):
             with suppress(OSError):
@@ -225,7 +228,10 @@ def _identity(found: os.stat_result) -> tuple[int, ...]:
 
 
 def _noted(path: Path) -> tuple[int, tuple[int, ...]] | None:
-    """Return the checksum in the note of a file, and the numbers of `_identity`; None if there is no valid note."""
+    """Return what the note of a file contains: its checksum, and the numbers of `_identity`.
+
+    Return None if there is no valid note.
+    """
     try:
         checksum, *identity = map(int, read_regular(_note_of(path), _MOST_NOTE_BYTES).split())
     except (OSError, ValueError):

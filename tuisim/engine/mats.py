@@ -351,7 +351,8 @@ def _in_folder(folder: Path, known: Mapping[str, Background]) -> dict[str, Backg
 def _of_path(path: str, known: Mapping[str, Background]) -> Background | None:
     """Return the mat whose image has this path; None if there is none.
 
-    It is one of the user's mats, or a mat of the catalogue whose image the user has replaced by another one.
+    It is one of the user's mats. If the path is that of an image of tuisim which the user has replaced, it is the mat
+    of the catalogue.
 
     Args:
         path: The path.

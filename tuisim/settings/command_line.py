@@ -421,10 +421,10 @@ class Group(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Return the name of the subcommand in `args[0]`, the subcommand, and the words after it.
 
-        While the shell completes a word, name and subcommand are None if there is no such subcommand.
+        If there is no such subcommand while the shell completes a word, the first two are None.
 
         Raises:
-            ConfigError: there is no such subcommand, and the command is to be executed.
+            ConfigError: there is no such subcommand, and the shell does not complete a word.
         """
         if args[0] in self.listing or ctx.resilient_parsing:
             return super().resolve_command(ctx, args)

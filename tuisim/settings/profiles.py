@@ -47,7 +47,7 @@ def parse_profile(
     Args:
         data: The table.
         name: The name of the profile, unless the table gives one.
-        location: The place of the table, for errors.
+        location: The location of the table, for errors.
         changes_to: The profile that provides keys missing in the table, unless the table names its base; None for the
             default profile.
 

@@ -78,7 +78,7 @@ class RobotChoice:
         Args:
             data: The table.
             name: The name of the robot, unless the table gives one.
-            location: The place of the table, for errors.
+            location: The location of the table, for errors.
             changes_to: The robot that provides keys missing in the table, unless the table names its base.
 
         Raises:

@@ -76,7 +76,7 @@ class RunInfo:
     """Tags, separated by spaces."""
 
     def find_tag(self, prefix: str) -> str:
-        """Return the rest of the run's first tag that begins with a prefix; empty if no tag begins with it."""
+        """Return the run's first tag that begins with a prefix, without the prefix; empty if there is none."""
         return next(
             (tag.removeprefix(prefix) for tag in self.tags.split() if tag.startswith(prefix)), ""
         )
@@ -345,7 +345,10 @@ def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
 
 
 def _make_storable(value: object) -> object:
-    """Return a value without lone surrogates, which stand for invalid bytes of a file name, and are not valid UTF-8."""
+    """Return a value in a form that SQLite can store.
+
+    In a text, lone surrogates, which stand for invalid bytes of a file name, are replaced by `?`.
+    """
     return value.encode("utf-8", "replace").decode() if isinstance(value, str) else value
 
 

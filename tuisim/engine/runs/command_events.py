@@ -157,7 +157,7 @@ class CommandIndex:
         return bool(len(rows))
 
     def read_scale_changes(self) -> list[ScaleChange]:
-        """Read all further commands, but use only those that change a scale; return `scale_changes` with all changes.
+        """Read all further commands for changes of motors' scales; return all changes so far, also those known before.
 
         A scale is the number of degrees that the program counts while a motor turns by one degree.
         """
@@ -207,7 +207,7 @@ class CommandIndex:
             self._add(*event)
 
     def _note_changes(self, rows: Array, times: Array) -> None:
-        """Store those commands that change what the program reads immediately, not only with the next tick.
+        """Store those commands whose effect the program can read immediately, before the next tick.
 
         Args:
             rows: Rows of recorded commands.
@@ -346,15 +346,15 @@ class CommandIndex:
         return [number for number, code in enumerate(self._codes) if code in matching]
 
     def tick(self, number: int) -> int:
-        """Return the tick at which the event with an index began."""
+        """Return the tick at which an event began; `number` is the event's index."""
         return self._find_tick(self._firsts[number])
 
     def time_s(self, number: int) -> float:
-        """Return the simulated time in seconds at which the event with an index began."""
+        """Return the simulated time in seconds at which an event began; `number` is the event's index."""
         return self._firsts[number] / NS_PER_S
 
     def event(self, number: int) -> CommandEvent:
-        """Return the event with an index, with its command in words."""
+        """Return an event, with its command in words; `number` is the event's index."""
         code = self._codes[number]
         rows = read_command_rows(self._run.folder, self._starts[number], 1)
         # There is no such row if the program has changed the record meanwhile.

@@ -371,7 +371,9 @@ def _diff_setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str,
 def _flatten(plain: Any, name: str = "") -> dict[str, Any]:
     """Return nested data as one flat table, with names such as `world.noise.light`.
 
-    Each name in the result begins with `name`, unless that is empty.
+    Args:
+        plain: The data.
+        name: The name of the data in the table, with which each name in the result begins; empty for none.
     """
     if isinstance(plain, dict) and plain:
         pairs = [(f"{name}.{key}" if name else str(key), value) for key, value in plain.items()]

@@ -50,7 +50,7 @@ class DeadReckoning:
     heading_deg: FloatArray
 
     def compute_error_mm(self, x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
-        """Return how far each position is from the robot's true position, in mm, shape (n,).
+        """Return how far each position by dead reckoning is from the robot's true position, in mm, shape (n,).
 
         Args:
             x_mm, y_mm: The true positions, each of shape (n,).
@@ -273,9 +273,9 @@ def compute_column_values(
 
 
 def list_scale_changes(run: CommandedRun) -> list[ScaleChange]:
-    """Return each change of how many degrees the program of a run counts while a motor turns by one degree.
+    """Return each change of a motor's scale in a run, as a tuple of a tick, the motor's port, and the new scale.
 
-    A change is a tuple of a tick, the motor's port, and the new number.
+    A scale is the number of degrees that the program counts while the motor turns by one degree.
     """
     if isinstance(run, Recording):
         return run.commands.scale_changes
@@ -285,15 +285,15 @@ def list_scale_changes(run: CommandedRun) -> list[ScaleChange]:
 def compute_scales(
     ticks: Array, robot: RobotSpec, changes: Iterable[ScaleChange]
 ) -> dict[str, FloatArray]:
-    """Return at some ticks how many degrees the program counts while a motor turns by one degree.
+    """Return the scale of each motor at some ticks: how many degrees the program counts while it turns by one degree.
 
-    The keys are the prefixes of the motors' columns, such as `left`; the values have shape (n,). Motors without a
-    change are missing: the number is 1.
+    The keys are the prefixes of the motors' columns, such as `left`; the values have shape (n,). Motors whose scale
+    never changed are missing: their scale is 1.
 
     Args:
         ticks: Numbers of ticks, shape (n,).
         robot: The robot.
-        changes: The changes of these numbers, from `list_scale_changes`.
+        changes: The changes of the scales, from `list_scale_changes`.
     """
     import numpy as np
 
@@ -357,7 +357,11 @@ def find_lacking_columns(
 
 
 def evaluate_condition(condition: ValueCondition, values: Array) -> Array:
-    """Return a boolean array: whether a condition is true at each tick; `values` are those of its column.
+    """Return whether a condition is true at each tick, as an array of booleans.
+
+    Args:
+        condition: The condition on the values of a column.
+        values: The values of this column.
 
     Raises:
         ValueError: the condition compares with something that is not a number.

@@ -278,7 +278,7 @@ class RunHandle:
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
         now_s = time.monotonic()
-        # A view with `holds` set reads new data only in this check, so the check must not wait.
+        # A view with `holds` set reads new data only in this check, so it is checked each time.
         is_due = now_s >= self._look_at_s or self.telemetry.holds or self.output.holds
         if is_due or self._events.falsified or (exited and self._is_followed):
             self._look_for_falsified()

@@ -16,7 +16,7 @@ def create_raw_file(fd: int) -> int:
         fd: The descriptor that the file will replace: 1 or 2.
 
     Raises:
-        OSError, AttributeError: this system has no such files, or no descriptors left.
+        OSError, AttributeError: this system cannot create files in memory, or no descriptors are left.
     """
     created = os.memfd_create(f"output {fd}", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
     try:

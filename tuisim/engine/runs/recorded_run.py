@@ -314,7 +314,7 @@ class RowIndex:
         return [self.row(number) for number in self._texts[first:end]], first
 
     def list_face_numbers(self, tick: int) -> list[int]:
-        """Return the indices of the rows that determine what the brick shows at the end of a tick, in order."""
+        """Return the indices of the output rows that say what the brick shows at the end of a tick, in order."""
         count = self.until(tick)
         return sorted(
             numbers[index - 1]

@@ -187,7 +187,10 @@ def restore_program(program: Program, folder: Path) -> Program:
 def find_noise(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -> NoiseSpec:
     """Return the noise settings at the tick of a record: those of the spec, as changed by the user's actions.
 
-    `actions` are in the order of their ticks.
+    Args:
+        spec: The run, as it began.
+        actions: The user's actions, in the order of their ticks.
+        record: The record.
     """
     # The record counts the actions modulo 65536; their ticks resolve the ambiguity.
     due = bisect_right(actions, record.tick, key=lambda action: action.tick)

@@ -162,7 +162,7 @@ class _View(ABC):
 
     @property
     def damage(self) -> str:
-        """Why the file, or the rest of it, is not a valid recording; empty if it is valid."""
+        """Why the file is not a valid recording, or not up to its end; empty if it is valid."""
         return self._damage if self.holds else self.read_new()
 
     @property
@@ -217,7 +217,7 @@ class _View(ABC):
     def _get_known(self, count: int) -> memoryview | None:
         """Return the copy of the recording if it has more than `count` records, else None.
 
-        The first `count` records in a copy that is returned cannot change any more.
+        In a copy that is returned, the first `count` records are final.
         """
         return memoryview(self._copy).toreadonly() if count < self._there else None
 
@@ -350,7 +350,10 @@ def _are_few_sound(part: memoryview, begin: int, end: int) -> bool:
 
 
 def _are_all_sound(part: memoryview, begin: int, end: int) -> bool:
-    """Return the same as `_are_few_sound`; for many records, this is a hundred times faster."""
+    """Return whether records have the ticks from `begin` to before `end`, in this order, and plausible numbers.
+
+    For many records, this is a hundred times faster than `_are_few_sound`.
+    """
     import numpy as np
 
     records = np.frombuffer(part, np.dtype(list(TICK_FIELDS)))

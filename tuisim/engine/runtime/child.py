@@ -478,7 +478,7 @@ class Child:
         self, end: protocol.End, exit_code: int, summary: str, error: str, error_line: int
     ) -> NoReturn:
         if wallclock.getpid() != self._pid:
-            # This is a copy that the program has forked below Python: only the original records and reports.
+            # C code of the program has forked this copy of the process: only the original records and reports.
             wallclock.exit_process(0)
         self._telemetry.close()
         if self._motors is not None:

@@ -215,7 +215,8 @@ class RunControl:
     def resume(self, at_full_speed: bool = False) -> None:
         """Resume the run until the debugger pauses it again.
 
-        `at_full_speed` says whether it is not paced until then.
+        Args:
+            at_full_speed: Whether the run goes as fast as possible until then, regardless of its set speed.
         """
         self._paused = False
         self._steps = 0

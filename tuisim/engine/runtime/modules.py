@@ -97,7 +97,8 @@ class OwnModules(PathFinder):
     ) -> ModuleSpec | None:
         """Return the spec of a module; None if there is no such module."""
         if known := self._known.get(fullname):
-            # A module that was imported several times may have had another text each time: each text is used once.
+            # A module that was imported several times may have had another text each time. The texts are used in order,
+            # and the last one for all later imports.
             return self._spec_of(known.pop(0) if len(known) > 1 else known[0])
         if path is None and self._brick_folder:
             path = [place_folder(str(folder), self._brick_folder) for folder in sys.path]

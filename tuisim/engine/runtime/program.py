@@ -188,7 +188,10 @@ def _add(outcome: ProgramOutcome, words: str) -> ProgramOutcome:
 
 
 def _add_caught(outcome: ProgramOutcome) -> ProgramOutcome:
-    """Return an outcome whose summary names the first NotSimulated error, if the program caught it."""
+    """Return an outcome whose summary also names the first NotSimulated error, which the program has caught.
+
+    Return the outcome itself if there was no such error, or if the run neither finished nor reached its time limit.
+    """
     if not NotSimulated.first or outcome.end not in (End.FINISHED, End.TIME_LIMIT):
         return outcome
     return _add(outcome, f"caught NotSimulated: {NotSimulated.first}")

@@ -41,7 +41,7 @@ class RawFile:
         created: A descriptor of a file that the host has created for it; None creates one.
 
     Raises:
-        OSError, AttributeError: this system has no such files, or no descriptors left.
+        OSError, AttributeError: this system cannot create files in memory, or no descriptors are left.
     """
 
     def __init__(
@@ -95,9 +95,10 @@ class RawOutput:
         self._write = os.write
 
     def open(self, created: Sequence[int] = ()) -> None:
-        """Replace descriptors 1 and 2 by files in memory, if this system has these.
+        """Replace descriptors 1 and 2 by files in memory, if this system can create such files.
 
-        `created` has descriptors of files that the host has created for this.
+        Args:
+            created: The descriptors of files that the host has created for this; empty if there are none.
         """
         with suppress(OSError, AttributeError):
             for (fd, take), file in zip_longest(self._takers.items(), created):

@@ -53,7 +53,7 @@ _PROCESS_CALLS = (
 
 
 def limit_memory(threads: int = 0) -> None:
-    """Limit the address space of the process to `MEMORY_LIMIT_BYTES` and the stacks of `threads` threads."""
+    """Limit the address space of the process to `MEMORY_LIMIT_BYTES`, plus the stacks of `threads` threads."""
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
     stack = wallclock.stack_size() or STACK_BYTES
     limit = MEMORY_LIMIT_BYTES + (threads and threads + STACKS_KEPT) * stack

@@ -201,8 +201,8 @@ class Session:
             self.output.drain()
             sim = self.sim
             sim.line = line = self.program_line(3)
-            # Most readings make exactly one tick due, and whole tick lengths can be added up.
-            # The result is the same as `sim.compute_due_ns(sim.tick + 2)`.
+            # Most readings make exactly one tick due. The tick after it is due at `compute_due_ns(sim.tick + 2)`.
+            # This time is computed here, because that is faster than a call.
             following = (
                 self._due + self._tick_ns
                 if self._tick_ns

@@ -205,7 +205,7 @@ def _format_stack(heading: str, frame: types.FrameType) -> str:
 
 
 def _write(text: str, file: Any) -> None:
-    """Write text to a file object or to a descriptor, as the real function does."""
+    """Write text to a file object or to a descriptor, as the functions of `faulthandler` do."""
     if isinstance(file, int):
         os.write(file, text.encode("utf-8", "backslashreplace"))
     else:

@@ -327,7 +327,8 @@ def _list_python_folders() -> list[str]:
         *packages,
         str(package),
     ]
-    # A prefix of / would make everything readable; the parts that Python needs are in the folders of the system.
+    # A prefix of / is left out, because it would make everything readable. Python's own files are then in the folders
+    # of the system, which are readable anyway.
     return [folder for folder in dict.fromkeys(map(os.path.realpath, folders)) if folder != os.sep]
 
 

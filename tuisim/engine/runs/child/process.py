@@ -34,8 +34,8 @@ _CLOCK_HZ = os.sysconf("SC_CLK_TCK")
 class FairClock:
     """A clock that measures how long a process runs, without the time in which it has to wait for a processor.
 
-    The clock never shows less than the time in which the process has used processors: of many threads, some always
-    wait.
+    In a process with many threads, some thread always waits. So the clock shows at least the time in which the process
+    has used processors.
 
     Args:
         pid: The process, which has just been started.

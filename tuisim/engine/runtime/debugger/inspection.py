@@ -73,7 +73,7 @@ def _is_library(file: str) -> bool:
 def _find_end_ns(
     session: Session, task: ScheduledThread, frames: list[types.FrameType]
 ) -> int | None:
-    """Return the simulated time in ns at which a thread's wait ends; None without an end time or a wait."""
+    """Return the simulated time in ns at which a thread's wait ends; None if it does not wait, or has no time limit."""
     if task.order:
         return None if task.wake_ns == FOREVER else task.wake_ns
     for frame in frames:
@@ -405,7 +405,7 @@ class Inspector:
         }
 
     def _read_columns(self, watches: tuple[str, ...], present: Present) -> dict[str, float]:
-        """Return the present values of those columns of the recording that watched expressions name."""
+        """Return the present values of the recording's columns whose names occur in watched expressions, by name."""
         sim = self._session.sim
         instant = present.apply(sim.build_instant())
         field = self._session.field

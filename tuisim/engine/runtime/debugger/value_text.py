@@ -54,7 +54,9 @@ class Renderer:
     def render(self, value: object, depth: int = 0) -> str:
         """Return a value as text of at most `MAX_CHARACTERS` characters; never raises.
 
-        `depth` is the number of containers that are being converted and contain the value.
+        Args:
+            value: The value.
+            depth: How deeply the value is nested in lists and other containers that are being converted.
         """
         exact: Any = type(value)
         if exact in (bool, types.NoneType, float, complex, types.EllipsisType):

@@ -124,7 +124,7 @@ class FileReads:
         self._folder = folder
 
     def end(self) -> None:
-        """Record how many more files were read than are listed."""
+        """Record how many files the program has read besides those that are listed."""
         if self._folder is not None and self._left_out:
             # If the number cannot be written, the list of files is still valid.
             with suppress(OSError):

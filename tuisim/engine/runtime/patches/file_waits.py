@@ -156,6 +156,9 @@ class FileWaits:
         """Return the class of the objects with which a selector polls.
 
         Such an object never waits, because the selector itself waits in simulated time.
+
+        Args:
+            name: The name of the real class in the module `select`, such as `poll`.
         """
         real: Any = self._classes[name]
         return staticmethod(lambda: _AtOnce(self, real())) if name in ("poll", "epoll") else real
