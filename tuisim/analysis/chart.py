@@ -39,7 +39,7 @@ def build_chart(model: AnalysisModel, view: View, columns: int, rows: int) -> Ch
     Points that a picture of `columns` by `rows` pixels, or parts of characters, could not show apart are left out.
 
     Raises:
-        LogError: a variable to draw against another one does not exist.
+        LogError: the user wants to see a variable against another one, and one of these does not exist.
     """
     x_limits = model.find_x_limits()
     if view.against:

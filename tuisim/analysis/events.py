@@ -118,7 +118,7 @@ _WIDTH = re.compile(rf"(?P<comparison>.+?)(?:\+-|±)\s*(?P<width>{NUMBER})\s*")
 
 @dataclass(frozen=True, slots=True)
 class Threshold(ValueCondition):
-    """A condition on a variable: it falls below a value, rises above it, does one or the other (EQUAL), or changes."""
+    """A condition on a variable, such as `Colour < 50`: that it falls below a value, rises above it, or changes."""
 
     hysteresis: float = 0.0
     """The signal must pass the value by this margin on both sides."""
@@ -213,7 +213,7 @@ def parse_threshold(text: str) -> Threshold | None:
 
 
 def parse_event(text: str) -> EventChoice | None:
-    """Return the threshold, or the search for commands, that a text means; None if it means neither."""
+    """Return the threshold that a text such as `Colour < 50` means, or the search for commands; None for others."""
     threshold = parse_threshold(text)
     if threshold is None and (words := parse_command_search(text)) is not None:
         return CommandChoice(words)

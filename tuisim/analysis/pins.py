@@ -81,7 +81,7 @@ class Dot:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture on a page; if it has no source, `text` says why there is no picture."""
+    """A picture on an HTML page; if `source` is empty, there is no picture, and `text` says why."""
 
     text: str
     source: str = ""

@@ -107,7 +107,7 @@ class LogRequest:
             keep(_NAME, list(map(asdict, newest)))
 
     def mark(self, log: Log) -> Log:
-        """Return a log with a note about the stored choices with which it was read; without any, the same log."""
+        """Return a log with a note on how it was read, if it was read by stored choices; otherwise the log itself."""
         if not self.is_remembered or self.choices == NO_CHOICES:
             return log
         options = " ".join(self.choices.format_options())
@@ -137,7 +137,7 @@ class LogRequest:
 
     @classmethod
     def restore(cls, file: str, choices: ReadChoices = NO_CHOICES) -> LogRequest:
-        """Return the request to open a file; without choices, it has those that were made for the file before."""
+        """Return the request to open a file; without `choices`, it has the choices stored for the file, if any."""
         remembered = find_choices(file) if choices == NO_CHOICES else None
         return cls(file, choices=remembered or choices, is_remembered=remembered is not None)
 
@@ -166,7 +166,7 @@ class OpenedLog:
         return (find_notes_file(file),) if file.is_file() else ()
 
     def stamp(self) -> object:
-        """Return an object that equals the one from an earlier call if the log's source has not grown in between."""
+        """Return an object by which callers notice that the log has grown: it then differs from an earlier result."""
         if self.runs:
             return tuple(
                 (run.telemetry.count if self.request.telemetry else run.output.length)

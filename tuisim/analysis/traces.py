@@ -57,11 +57,11 @@ class LogTrace(Trace):
         return self.series.time_s if self._places is None else self._places
 
     def is_derived_otherwise(self, log: Log) -> bool:
-        """Return whether another version of the log has a derived variable with this name and other samples."""
+        """Return whether another version of the log has a derived variable of this name with other samples."""
         return self.name in log.derived and log.derived[self.name] is not self.series
 
     def is_legible(self, others: Sequence[LogTrace]) -> bool:
-        """Return whether neither this trace nor the others would look flat if all were drawn to one scale."""
+        """Return whether this trace and the others can be drawn to one scale without one of them looking flat."""
         own = self._find_extremes()
         left = [other._find_extremes() for other in others if not other.scale]
         low, high = (

@@ -97,7 +97,8 @@ class ClusterWatch:
         """Block until the cluster has a worker, and all workers have been checked.
 
         Raises:
-            HostError: as for `look`.
+            HostError: the cluster has no scheduler or gets no worker for `PATIENCE_S` seconds; or a worker has no
+                tuisim, or another version.
         """
         while True:
             self.look()
@@ -201,7 +202,8 @@ def run_on_cluster(
     A result does not depend on the worker. Tasks of a worker that has died are executed on another one.
 
     Args:
-        tasks: The tasks; as for `run_many`, further tasks are taken as workers become free.
+        tasks: The tasks; the next ones are taken as workers become free. If the iterator has stopped, its `next` is
+            called again after each result, as it may then have further tasks.
         scheduler: Address of a scheduler, such as `tcp://host:8786`; empty starts a cluster on this machine.
         workers: Number of worker processes of a cluster on this machine.
 

@@ -132,7 +132,7 @@ class PartialTable:
 
 
 def has_batch(path: Path, identity: Mapping[str, Any]) -> bool:
-    """Return whether a file is the table of the batch with an identity."""
+    """Return whether a file is the table of the batch with this identity, from `Plan.build_identity`."""
     from tuisim.logs.reader import open_log
 
     try:
@@ -146,7 +146,7 @@ def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -
 
     Args:
         path: The file of the table.
-        identity: What identifies the batch.
+        identity: What identifies the batch, from `Plan.build_identity`.
         columns: The columns to read, in addition to the columns of sample variables.
     """
     from tuisim.logs.frames import read_log

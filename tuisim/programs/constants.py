@@ -25,7 +25,7 @@ def set_constants(source: ProgramSource, values: Mapping[str, object]) -> Progra
         values: The new values, by the name of the constant.
 
     Raises:
-        ConfigError: the program is not Python, lacks such a constant or assigns it several values; or another constant
+        ConfigError: the program is not Python; it lacks such a constant, or assigns it several values; another constant
             has already been computed from it; or a value cannot be written in a program.
     """
     if not values:

@@ -235,7 +235,7 @@ class ProgramFacts:
 
     @cached_property
     def idle_definition(self) -> tuple[int, str] | None:
-        """The last function or class of a program that only has definitions, and why it does nothing.
+        """If the program only has definitions: the line of the last function or class, and why it does nothing.
 
         The value is None for any other program.
         """

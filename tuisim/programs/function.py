@@ -225,7 +225,7 @@ class _Reader:
         self._blocks.append(_Block(name, "", 0, [f"{name} = SimpleNamespace({values})"]))
 
     def _claim_own(self, name: str, own: str, user: str) -> bool:
-        """Register the name in the definition of a function or class; return whether the definition is still missing.
+        """Register the name by which a function or class is defined; return whether its definition must still be added.
 
         Args:
             name: The name by which the code uses the function or class; if it differs from `own`, it becomes an alias.

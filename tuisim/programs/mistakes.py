@@ -45,7 +45,7 @@ def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 
 def find_idle_definition(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the last function or class of a program that only has definitions, and why it does nothing.
+    """If a program only has definitions, return the line of the last function or class, and why it does nothing.
 
     The result is None for any other program.
     """

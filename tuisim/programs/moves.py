@@ -118,9 +118,10 @@ _VARIABLE = re.compile(rf"\.({'|'.join(STARTS)})\(.*\b[a-z]\w*\b(?!=)")
 
 
 def find_steering(tree: ast.Module, line: int) -> int:
-    """Return the line that steers a robot over and over around a line of a program; 0 if nothing does.
+    """Return the line of the code around a line of a program that steers the robot over and over; 0 without such code.
 
-    It is a call that follows a line, or the first move of a function or of a loop whose moves are not always the same.
+    It is a call such as `follow_line()`, or the first move of a function or of a loop whose moves are not always the
+    same.
 
     Args:
         tree: The program.
@@ -150,7 +151,7 @@ def find_steering(tree: ast.Module, line: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class PartedMove:
-    """Two calls, one after the other, that move two motors by the same amount, of which the first call waits."""
+    """Two successive calls that move two motors by the same amount, where the first call waits for its end."""
 
     first_line: int
     """The line of the first call."""
@@ -175,7 +176,7 @@ _PAIRS = re.compile("Move[A-Z]|DriveBase|tank_|steering_")
 
 
 def list_parted_moves(tree: ast.Module) -> Iterator[PartedMove]:
-    """Yield each pair of equal moves of two motors in a loop in which the first call blocks by default.
+    """Yield each two successive calls in a loop that move two motors equally, if the first call waits for its end.
 
     Programs that also move both wheels by one call, and loops with no other statements, are left out: they probably
     move one wheel alone on purpose.

@@ -482,9 +482,9 @@ def _has_brick_rules(source: ProgramSource, facts: SourceFacts) -> bool:
 
 
 def _describe_course_rules(source: ProgramSource) -> str:
-    """Return a text on the scale on which a program reads light, if the rules of the course are a surprise; else empty.
+    """Return a text which says that a program reads light on the scale of the course; empty if that is no surprise.
 
-    They are if the program imports the library itself, as for a real brick, but has a magic line of the course.
+    It is a surprise if the program imports the library itself, as for a real brick, but has a magic line of the course.
     """
     if not source.has_magic or _BRICK_LIGHT not in source.program.text:
         return ""
@@ -496,7 +496,7 @@ def _describe_course_rules(source: ProgramSource) -> str:
 def _describe_decision(
     source: ProgramSource, facts: SourceFacts, layer: Mapping[str, Any], free: Collection[str]
 ) -> tuple[str, str, str]:
-    """Return three texts: what the source of a program decided, a brief form of this, and how to change it.
+    """Return three texts: what the source of a program decided, the same in short, and how to change it.
 
     The texts are empty if the source decided nothing.
 

@@ -204,7 +204,10 @@ class QuestionReader:
         )
 
     def _find_flow(self, steps: Iterable[ast.stmt]) -> list[ast.stmt]:
-        """Return the given steps, and all steps that depend on their values or run only because of them."""
+        """Return the given steps, with all steps that depend on the values that these read.
+
+        A step also depends on a value if it runs only because of a condition with this value.
+        """
         flow = dict.fromkeys(steps)
         queue = [*flow]
         followed = set[str]()

@@ -92,7 +92,7 @@ class Remarks:
 
 @dataclass(frozen=True, slots=True)
 class NamedAim:
-    """Lines that move the robot, and whose words say where to."""
+    """Lines of a program that move the robot, and of which a name or a comment says in which direction."""
 
     first_line: int
     last_line: int
@@ -103,7 +103,7 @@ class NamedAim:
 
 
 def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
-    """Yield the moves of both wheels in opposite directions that should drive the robot straight on."""
+    """Yield moves that turn the wheels in opposite directions although the program says that they drive straight."""
     forwards = {
         part
         for node in ast.walk(tree)
@@ -122,14 +122,14 @@ def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
 
 
 def _find_side(text: str) -> str:
-    """Return the side to which a robot turns by a name or a comment; empty for none."""
+    """Return the side to which the robot turns according to a name or a comment: `left`, `right`, or empty for none."""
     sides = [side for side, words in _SIDES.items() if words.search(text)]
     is_turn = len(sides) == 1 and _TURNS.search(text) and not _NO_SIDES.search(text)
     return sides[0] if is_turn else ""
 
 
 def list_named_turns(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
-    """Yield the functions and moves of a program whose name or comment says to which side they turn the robot.
+    """Yield the functions and moves of a program whose name or comment says to which side the robot turns.
 
     Functions that are also called with negative numbers are left out.
     """

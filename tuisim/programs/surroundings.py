@@ -95,9 +95,9 @@ class Surroundings:
             raise ConfigError(message, "import it again", file=self.file)
 
     def get_owner(self, name: str) -> int:
-        """Return an id of the scope that has the variable of a name.
+        """Return a number that identifies the scope in which a variable is, given by its name.
 
-        Variables with the same name in other scopes have other ids.
+        Variables with the same name in different scopes have different numbers.
         """
         return id(self._cells.get(name, self._globals))
 
@@ -141,7 +141,7 @@ class Surroundings:
         return f"from {module} import {original} as {name}" if is_library(module) else ""
 
     def find_origin(self, name: str) -> tuple[str, Surroundings]:
-        """Return the name of a value in the module that defines it, and the surroundings in that module."""
+        """Return the name of a value in the module that defines it, and the names around it in that module."""
         module, original = self._find_module(name)
         if not module:
             return name, self
@@ -163,7 +163,8 @@ class Surroundings:
     def list_attributes(self, name: str, text: str) -> set[str]:
         """Return the attributes of a user's own module that a text reads, such as `speed` in `settings.speed`.
 
-        The result is empty for other modules, and if the text uses the module in another way, such as as an argument.
+        The result is empty for other modules, and if the text uses the module in another way, for example as an
+        argument.
 
         Args:
             name: The name of the module in these surroundings.

@@ -295,9 +295,9 @@ def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
 def _is_meant(
     name: str, call_line: int, outside: list[ast.AST], functions: list[_Function]
 ) -> bool:
-    """Return whether a program uses a global name where it needs the value that a function should have assigned.
+    """Return whether a program uses a global name to which a function should have assigned a value.
 
-    It does if it uses the name after the call, in a loop, or in another function.
+    The program must use the name after the call of the function, in a loop, or in another function.
 
     Args:
         name: The name.
@@ -313,7 +313,10 @@ def _is_meant(
 
 
 def _walk_used(node: ast.AST, *, has_result: bool) -> Iterator[ast.AST]:
-    """Yield the nodes in a function, except for those in `print` and, without `has_result`, those that it returns."""
+    """Yield the nodes in a function that may show that a value is used.
+
+    Nodes in a `print` are left out; nodes in a `return`, too, if `has_result` is False.
+    """
     for part in ast.iter_child_nodes(node):
         is_returned = isinstance(part, ast.Return) and not has_result
         if not is_returned and not _is_call(part, "print"):

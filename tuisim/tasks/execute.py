@@ -159,12 +159,10 @@ def _is_kept(task: Task, run: StoredRun, ended: Ended, judgements: Sequence[Judg
 
 
 def _keep(temporary: TemporaryRun, ended: Ended) -> str:
-    """Store a finished run and return its id.
-
-    Return "" if the recording was damaged by the program after it was judged.
+    """Store a finished run and return its id; return "" if the program damaged the recording after the run was judged.
 
     Raises:
-        LogError: the run cannot be stored for a reason of this machine, such as a full disk.
+        LogError: this machine cannot store the run, for example because the disk is full.
     """
     try:
         temporary.write_end(ended)

@@ -246,7 +246,7 @@ class _Builder:
         return {"gear_ratio": ratio}
 
     def add_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
-        """Return a robot's values with the touch sensors that, as the program shows, motors press at their end stops.
+        """Return a robot's values in which motors press touch sensors at their end stops, where the program shows this.
 
         Args:
             changes: The values by field name of `RobotSpec`, among them `extra_motors` and `touch_sensors`.

@@ -378,7 +378,7 @@ class _Reader:
             yield self._mount(placed, call) if kind.is_motor else placed
 
     def _mount(self, motor: Mention, call: Call) -> Mention:
-        """Return a motor with the direction and the gear ratio that the call which creates it gives."""
+        """Return a motor, completed with the direction and the gear ratio from the call that creates it."""
         is_turned = library.INVERSED in (
             self.evaluation.find_argument(call, library.DIRECTION, 1) or ()
         )

@@ -54,7 +54,7 @@ def find_stopped_motors(loop: ast.While) -> Iterator[tuple[ast.expr, bool]]:
 
 
 def _find_speed_owner(node: ast.expr) -> ast.expr | None:
-    """Return the motor of which an expression is the speed or absolute speed; None for other expressions."""
+    """Return the motor in an expression for its speed, such as `abs(motor.speed())`; None for other expressions."""
     match node:
         case ast.Call(func=ast.Name(id="abs"), args=[inner]):
             return _find_speed_owner(inner)

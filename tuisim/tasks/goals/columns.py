@@ -75,9 +75,10 @@ def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: Evid
 
 
 def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return a finding on when a comparison of a condition was first false; `Finding()` if the condition was kept.
+    """Return a finding on the first moment at which a comparison of a condition was false.
 
-    A condition that only needs a share of the time is judged at the end of the span.
+    The result is `Finding()` if the condition is met so far. If the comparisons must be true only for a share of the
+    time, they are judged at the end of the span.
     """
     import numpy as np
 
@@ -146,7 +147,7 @@ def _measure_gaps_mm(records: Array, evidence: Evidence) -> Array:
 
 
 def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return a finding on a comparison that became true too often in a span, or too seldom up to the span's end.
+    """Return a finding if a comparison became true too often in a span, or too seldom up to the span's end.
 
     The result is `Finding()` if the number of times is right so far.
     """

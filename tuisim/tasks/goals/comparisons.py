@@ -128,7 +128,7 @@ class CountCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class StructureCondition(Condition):
-    """A condition of a goal: the program's text has a structure, such as a loop or few lines."""
+    """A condition of a goal about counts in the program's text, such as `loops >= 1` or `lines <= 30`."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.FIXED
     SHORT: ClassVar[str] = "comparisons"

@@ -142,7 +142,7 @@ def _find_calls(
 
 
 def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return a finding at the start if the program's text has each of a condition's calls.
+    """Return a finding at the start of the run if the program's text has all calls that a condition needs.
 
     Otherwise the finding has no moment, and says which calls are missing.
     """
@@ -156,7 +156,7 @@ def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -
 
 
 def find_avoided(condition: AvoidCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Return a finding at the start if the program's text has none of a condition's calls.
+    """Return a finding at the start of the run if the program's text has none of the calls that a condition forbids.
 
     Otherwise the finding has no moment, and says on which line the program has such a call.
     """
@@ -173,7 +173,7 @@ def find_avoided(condition: AvoidCondition, evidence: Evidence, span: EvidenceSp
 def find_structure(
     condition: StructureCondition, evidence: Evidence, span: EvidenceSpan
 ) -> Finding:
-    """Return a finding at the start if the counts of a program, such as its number of loops, meet a condition.
+    """Return a finding at the start of the run if the counts in a program's text, such as its loops, meet a condition.
 
     Otherwise the finding has no moment, and says which count is wrong.
     """

@@ -94,7 +94,7 @@ def filter_ticks(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -
 
 
 def describe_place(tick: int, place: Mapping[str, Range], evidence: Evidence) -> str:
-    """Return where the robot was at a tick along the axes that `select_place` limits, for a sentence."""
+    """Return where the robot was at a tick, such as `x_mm = 120 mm`, for the axes that a condition limits."""
     position = dict(zip(("x_mm", "y_mm"), evidence.place_mm(tick), strict=True))
     return " and ".join(f"{key[0]} = {position[key]:.0f} mm" for key in place)
 

@@ -48,8 +48,8 @@ class TriedElsewhere:
 class Typed:
     """Event: a student has typed an answer.
 
-    The attributes besides the text say what the question may require, such as where the robot stood. With its default
-    value, an attribute counts as what the question requires.
+    The attributes besides the text say what the question may require, such as where the robot stood. If an attribute
+    has its default value, the requirement counts as met.
     """
 
     text: str

@@ -53,7 +53,7 @@ class Roster:
     """By the name of the submission: the cells of the row by the column's name in lower case."""
 
     def missing(self, names: Sequence[str]) -> list[str]:
-        """Return the names, among those of the submissions, that have no row in the class list."""
+        """Return those students' names in the submissions that have no row in the class list."""
         return [name for name in names if name not in self.people]
 
     def absent(self, names: Sequence[str]) -> list[str]:
@@ -169,7 +169,7 @@ def write_gradebook(
 def _choose_heads(
     kind: GradebookKind, sheet: Sheet, roster: Roster
 ) -> tuple[Sequence[str], str, str]:
-    """Return the headings of a gradebook: those that identify a student, the total's and the feedback's.
+    """Return the headings of a gradebook's columns: for what identifies a student, for the total, and for the feedback.
 
     The heading of the total is empty if the title of the task is to be used as that heading.
     """

@@ -145,7 +145,9 @@ def _name_loss(
 def _find_wrong_turn(
     records: Array, spec: RunSpec, mat: Field, watched: Mapping[str, Array]
 ) -> str:
-    """Return how a robot turned away from the line as a sensor got brighter; empty if it did not.
+    """Return a text on the side to which the robot turned away from the line, as it steered with the wrong sign.
+
+    The text is empty if the robot did not turn away whenever a sensor got brighter.
 
     Args:
         records: Telemetry up to the loss of the line.
@@ -165,7 +167,8 @@ def _find_wrong_side(
 ) -> str:
     """Return the side to which a robot turned as a sensor got brighter, if it was away from the line; else empty.
 
-    A robot that lost the line otherwise comes to the other edge as well, but not first.
+    Only the time before the line was lost counts: a robot that lost it for another reason may reach its other edge
+    later.
 
     Args:
         records: Telemetry up to the loss of the line.
@@ -242,7 +245,7 @@ def compute_reflected_percent(
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """At which ticks the line was under each of several sensors, real or imagined."""
+    """The ticks at which the line was under each of several sensors, real or imagined."""
 
     is_dark: list[Bools]
     """Whether at least its edge was under each, at each tick."""

@@ -113,7 +113,10 @@ def list_spins(data: RunData) -> Iterator[Unmet]:
 
 
 def list_wrong_sides(data: RunData) -> Iterator[Unmet]:
-    """Yield a fault for each place that turns the robot always to the other side than its name or comment says."""
+    """Yield a fault for each part of the program that turns the robot to the wrong side whenever it runs.
+
+    The name of the function, or a comment, says the other side.
+    """
     lines = data.records["line"]
     for turn in remarks.list_named_turns(data.facts.tree, data.facts.remarks):
         spans = find_spans((lines >= turn.first_line) & (lines <= turn.last_line)).tolist()
@@ -130,7 +133,7 @@ def list_wrong_sides(data: RunData) -> Iterator[Unmet]:
 
 
 def _measure_turn(way: Array) -> float:
-    """Return the angle in degrees by which the robot turned on a way; 0 if it drove backwards."""
+    """Return by how many degrees the robot turned to the left on a way; 0 if it drove backwards."""
     first, last = way[0], way[-1]
     middle = np.deg2rad(first["heading_deg"] + last["heading_deg"]) / 2
     ahead_mm = (last["x_mm"] - first["x_mm"]) * np.cos(middle)

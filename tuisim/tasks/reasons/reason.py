@@ -257,7 +257,7 @@ def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
 
 
 def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
-    """Yield a reason for each loss of the line, for light that a loop just missed, and for seeing one colour only.
+    """Yield reasons for losing the line, for light that the program missed, and for seeing only one colour.
 
     Args:
         data: The run.

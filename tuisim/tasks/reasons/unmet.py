@@ -91,7 +91,7 @@ def find_early_end(data: RunData) -> Unmet | None:
 
 
 def find_first(search: Callable[[RunData], Iterator[Unmet]], data: RunData) -> Unmet | None:
-    """Return the first fault that a search yields; None without one, or without a recording or mat."""
+    """Return the first fault that a search yields; None if it yields none, or if a recording or mat is missing."""
     try:
         return next(search(data), None) if len(data.records) else None
     except (LogError, ConfigError):
@@ -304,7 +304,7 @@ def round_value(value: float) -> str:
 
 
 def name_goal(loop: LoopEnd, limit: str) -> str:
-    """Return in words for which values a comparison is true.
+    """Return in words for which values a comparison is true, such as `less than 20 %`.
 
     Args:
         loop: The comparison.

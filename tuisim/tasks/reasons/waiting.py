@@ -35,7 +35,7 @@ class WaitWatch:
         is_running: bool,
         open_mat: Callable[[RunSpec], Field | None],
     ) -> list[str]:
-        """Return a line on what the program waits for, with action ids in braces.
+        """Return a message on what the program waits for, as a list of one line, with action ids in braces.
 
         The list is empty if the program waits for nothing, or if that was reported before.
 
