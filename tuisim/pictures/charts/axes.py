@@ -153,10 +153,11 @@ shorter than one with more ticks to be taken instead of it. The numbers are set 
 def extend_limits(ends: Limits, rows: int) -> Limits:
     """Return limits for a vertical axis on which round ticks are in the middle of rows, at equal distances.
 
-    The axis begins at the multiple of a round step that is not above the values, has 2 to 6 parts, and may end beyond
-    its last tick. The shortest of these axes is chosen; for this choice, `_SPARSE` is added to the length of an axis
-    with few parts, and the span of the values to the length of an axis with ticks in neighbouring rows. So the limits
-    seldom change while values come in.
+    The axis begins at a multiple of a round step, at or below the values. It has 2 to 6 parts, and may end beyond its
+    last
+    tick. Of all such axes, one is chosen that is short and easy to read. For this comparison, an axis counts as longer
+    if it
+    has few parts, or ticks in neighbouring rows. The limits seldom change while values come in.
 
     Args:
         ends: The lowest and the highest value.

@@ -119,7 +119,7 @@ def choose_owners(covered: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.
 
     Args:
         covered: Shape (curves, rows, columns): where each curve is, the topmost last.
-        width: After how many columns the next curve is visible.
+        width: How many columns of a row one curve is visible before the next curve follows.
 
     Returns:
         The same shape; at most one curve is True at a place.

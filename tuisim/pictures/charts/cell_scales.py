@@ -195,7 +195,7 @@ def _separate_rows(ends: Sequence[tuple[int, Run]], rows: int) -> dict[int, Run]
     Equal texts of a row appear only once.
 
     Args:
-        ends: Row and text of each.
+        ends: For each text, the row in which it should be, and the text.
         rows: Number of rows.
     """
     taken: dict[int, Run] = {}

@@ -111,12 +111,12 @@ def find_format(path: Path) -> ChartFormat:
 
 
 def check_format(path: Path, what: str, formats: Collection[str]) -> None:
-    """Check that a file can be written, and has one of some suffixes.
+    """Check that a file can be written, and that its suffix is one of `formats`.
 
     Args:
         path: The file.
-        what: What is written, such as `chart`.
-        formats: The suffixes that its files may have.
+        what: What is written, such as `chart`, for errors.
+        formats: The allowed suffixes.
 
     Raises:
         ExportError: unknown suffix, or it cannot be written.

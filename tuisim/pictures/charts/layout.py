@@ -237,7 +237,10 @@ class Frame:
 
 
 def _title_axis(chart: ChartData, lines: Sequence[Line], scales: Scales, y: float) -> Words:
-    """Return the title above a vertical axis; that of a facet tells its line."""
+    """Return the title above a vertical axis, such as its unit.
+
+    In a chart of several facets, each of which has one line, the title is the name of that line.
+    """
     if chart.facets:
         return Words(PAD, y, lines[0].label, rgb=find_color(lines[0]), strong=True)
     return Words(PAD, y, scales.left.title)

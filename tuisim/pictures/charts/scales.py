@@ -47,7 +47,10 @@ class Scale:
 
     @property
     def title(self) -> str:
-        """The title of the axis: the variable with its unit, or the unit of several; `value` if they have none."""
+        """The title of the axis: the name and unit of its variable.
+
+        If several variables share the scale, the title is their unit, or `value` if they have none.
+        """
         return add_unit(self.names[0]) if len(self.names) == 1 else self.unit or "value"
 
 
@@ -88,7 +91,12 @@ class Scales:
         return next((scale for scale in self.right if name in scale.names), self.left)
 
     def on_left(self, values: FloatArray, scale: Scale) -> FloatArray:
-        """Return values that are drawn to `scale`, converted to the left scale: to values at the same height."""
+        """Return the values of the left scale that are at the same height as these values of another scale.
+
+        Args:
+            values: The values.
+            scale: The scale to which they are drawn.
+        """
         if scale is self.left:
             return values
         share = (values - scale.limits[0]) / (scale.limits[1] - scale.limits[0])

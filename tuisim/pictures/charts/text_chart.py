@@ -334,10 +334,10 @@ def format_values(
 
     Args:
         drawn: The traces.
-        cursor_s: The time, in `unit`.
+        cursor_s: The time that the text shows, in `unit`.
         unit: The unit of the times, such as `s`.
         width: The largest length of the text.
-        end_s: The end of the tick at this time, up to which values count; None if they count up to the time itself.
+        end_s: The time whose values are shown, such as the end of the tick at `cursor_s`; None for `cursor_s` itself.
     """
     line = f"{cursor_s:.2f} {unit}"
     for number, trace in enumerate(drawn):

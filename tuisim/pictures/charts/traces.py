@@ -220,12 +220,12 @@ def reduce_points(
 def clip_line(
     xs: FloatArray, ys: FloatArray, limits: tuple[float, float]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the part of a line between two places on the x axis, with interpolated points at both ends.
+    """Return the part of a line between two positions on the x axis, with interpolated points at both ends.
 
     Args:
-        xs: Places of the points, which do not decrease, shape (n,).
+        xs: Positions of the points on the x axis, which do not decrease, shape (n,).
         ys: Values, shape (n,).
-        limits: First and last place shown.
+        limits: The first and the last position shown.
     """
     inside = (xs >= limits[0]) & (xs <= limits[1])
     if inside.all():
@@ -329,7 +329,7 @@ class Pyramid:
         )
 
     def find_nearest(self, time_s: float) -> int:
-        """Return the index of the finite point nearest to a time, counted among all points given at first.
+        """Return the index of the finite point nearest to a time, in the arrays from which the pyramid was built.
 
         There must be a finite point.
         """

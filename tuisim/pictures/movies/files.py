@@ -130,9 +130,9 @@ class Clip:
 
     @property
     def view(self) -> Viewport:
-        """A view of the whole frame, in which a point of the world has the same pixel as in the movie's world panel.
+        """A view with the size of the whole frame, in which the world lies exactly as in the frame's world panel.
 
-        The movie must have this panel.
+        So a picture in this view, such as one of a path, fits over the frame. The movie must have a world panel.
         """
         return find_frame_view(self.recorded, self.panels, self.size)
 
@@ -238,6 +238,13 @@ def save_picture(
 ) -> None:
     """Write the picture of a run at a simulated time to a file, which may exist.
 
+    Args:
+        recorded: The run.
+        panels: The panels of the picture.
+        time_s: The simulated time.
+        path: The file; its suffix selects the format.
+        size: Width and height in pixels; None for the size that fits the panels.
+
     Raises:
         ConfigError: the panels do not fit the size.
         ExportError: it cannot be written; an existing file is unchanged.
@@ -249,7 +256,11 @@ def save_picture(
 
 
 def check_file(path: Path, what: str) -> None:
-    """Check that a file can be written, and has a suffix of a `movie` or a `picture`, as `what` says.
+    """Check that a file can be written, and that a movie or a picture can have its suffix.
+
+    Args:
+        path: The file.
+        what: `movie` or `picture`.
 
     Raises:
         ExportError: unknown suffix, or it cannot be written.

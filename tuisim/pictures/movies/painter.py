@@ -83,9 +83,9 @@ def _fit_size(panels: Sequence[ClipPanel], robot: RobotSpec, area: Area) -> Size
 def find_frame_view(
     recorded: ClipRun, panels: Sequence[ClipPanel], size: Size | None = None
 ) -> Viewport:
-    """Return a view of the whole frame, in which a point of the world has the same pixel as in the world panel.
+    """Return a view with the size of the whole frame, in which the world lies exactly as in the frame's world panel.
 
-    A picture drawn in this view fits over the frame.
+    So a picture drawn in this view fits over the frame.
 
     Args:
         recorded: The run.
@@ -142,7 +142,7 @@ class FramePainter:
             self._arrays = SensorArrays(recorded)
 
     def image(self, moment: ClipMoment) -> Image:
-        """Return a frame as a Pillow image; no call may be for an earlier instant than the call before."""
+        """Return a frame as a Pillow image; frames must be drawn in order of time."""
         from PIL import Image
 
         image = Image.new("RGB", self.size, "white")
@@ -266,7 +266,7 @@ class MovingWorld:
         """Number of records whose pen traces are drawn."""
 
     def draw_moment(self, moment: ClipMoment) -> Image:
-        """Return the picture of the world at an instant; no call may be for an earlier instant than the call before."""
+        """Return the picture of the world at an instant; instants must be drawn in order of time."""
         from PIL import Image
 
         self._painter.trace.add(

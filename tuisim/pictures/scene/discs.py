@@ -36,7 +36,10 @@ _FINEST = 80
 
 @dataclass(frozen=True, slots=True)
 class DiscFace:
-    """The data of a colour sensor that pictures show: pixels of its disc, its values, and the program's thresholds."""
+    """What pictures show of a colour sensor: the disc of the mat that it sees, its values and thresholds.
+
+    A threshold is a number with which the program compares a value of the sensor.
+    """
 
     name: str
     box: bytes
@@ -59,7 +62,10 @@ class DiscFace:
 
     @property
     def unit(self) -> str:
-        """The unit of the value that the program reads: `%`; for reflected light, `of` and the value on white."""
+        """The unit of the value that the program reads, such as `%`.
+
+        For reflected light, it is the value on white instead, such as `of 255`.
+        """
         return f"of {self.reflected_max}" if self.read is LightRead.REFLECTED else "%"
 
     @property
@@ -80,9 +86,9 @@ class DiscFace:
         return tuple(share for share in dict.fromkeys(shares) if 0 <= share <= 1)
 
     def limit_words(self, width: int) -> str:
-        """Return the program's comparisons and their present results, such as `code line 15 > 90: no`.
+        """Return the program's comparisons with the sensor's value and their present results: `code line 15 > 90: no`.
 
-        The program may not make these comparisons at this moment.
+        These are all comparisons in the program, whether or not it makes them at this moment.
 
         Args:
             width: The number of letters that fit. A longer text loses the numbers of the lines, or has only the first
@@ -102,7 +108,10 @@ class DiscFace:
 
     @property
     def rings(self) -> tuple[float, ...]:
-        """The mean light in each of `RINGS`, in the channels and on the scale of the value that the program reads."""
+        """The mean light in each of the rings `RINGS` of the disc, in the unit of the value that the program reads.
+
+        It is the mean of the same colour channels as that value: of red alone, or of all three.
+        """
         pixels = np.frombuffer(self.box, np.uint8).reshape(-1, 3)
         light = pixels.mean(axis=1) if self.read.uses_all_channels(self.seen) else pixels[:, 0]
         white = self.read.find_white(self.reflected_max)

@@ -40,9 +40,12 @@ def shrink(
 ) -> Pixels:
     """Return the picture of a mat in a viewport.
 
-    Each picture pixel is the mean of the mat pixels under it. A pixel that is as wide as a cell, or half of a cell, has
-    the colour of one area instead, so that edges are sharp, or the colour of a thin line: a black line of 10 mm is
-    black where a pixel covers 30 mm, and looks the same whether it lies in one row of pixels or between two.
+    Each picture pixel is the mean of the mat pixels under it. Only a pixel that is as wide as a cell, or half of a
+    cell, is
+    drawn otherwise, so that edges are sharp and thin lines stay visible: it has the colour of the area that covers most
+    of
+    it, or of a thin line in it. So a black line of 10 mm is black even where a pixel covers 30 mm, and looks the same
+    whether it lies in one row of pixels or between two.
 
     Args:
         mat: The mat, one pixel a mm, row 0 at the top of the field.
@@ -160,7 +163,7 @@ def _reduce_rows(
 def _keep_detail(mean: _Numbers, low: _Numbers, high: _Numbers, middle: _Numbers) -> Pixels:
     """Return the colour of each pixel: that of the area that covers most of the pixel, or that of a thin line in it.
 
-    A thin line is drawn in the pixels that it covers more of than their neighbours.
+    A thin line is drawn in those pixels of which it covers more than of the pixels beside them.
 
     Args:
         mean, low, high: Mean, lowest and highest of each channel below each pixel, shape (rows, columns, 3).
@@ -191,7 +194,8 @@ def _find_lines(mean: _Numbers, ground: _Numbers, way: _Numbers) -> _Flags:
     Args:
         mean: Mean colours, shape (rows, columns, 3).
         ground: The colour beside the line, of the same shape.
-        way: The difference from `ground` to the line's colour, divided by the square of its length, of the same shape.
+        way: The vector from `ground` to the line's colour, divided by the square of its length, of the same shape. The
+            product of this and a colour's distance from `ground` is the share of the line in the colour.
     """
     is_line = np.zeros(mean.shape[:2], bool)
     # Off the mat, there is no part of a line.
@@ -221,12 +225,16 @@ def _find_lines(mean: _Numbers, ground: _Numbers, way: _Numbers) -> _Flags:
 def _is_tip(
     measure: Callable[[int, int], _Numbers], share: _Numbers, down: int, right: int
 ) -> _Flags:
-    """Return which pixels are the tip of an area, such as a disc: on one side of it is the area, on the other nothing.
+    """Return which pixels are only the tip of an area, such as of a disc, and not a part of a line.
+
+    On one side of a tip along the line, the area is wider; on the other side, there is hardly anything of it.
 
     Args:
-        measure: Returns how much of each pixel's neighbour, some pixels down and to the right, has the line's colour.
-        share: How much of each pixel has it.
-        down, right: The way across a line.
+        measure: Returns how much of each pixel's neighbour has the colour of the line; the neighbour is given by how
+            many
+            pixels it is below and to the right.
+        share: How much of each pixel has that colour.
+        down, right: The step across the line, in pixels: (1, 0) or (0, 1).
     """
     is_tip = np.zeros(share.shape, bool)
     for side in (-1, 1):

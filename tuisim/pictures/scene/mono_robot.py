@@ -16,9 +16,10 @@ _BODY = "&"
 
 
 def draw_body(view: Viewport, pose: Pose, outline: RobotOutline) -> dict[tuple[int, int], int]:
-    """Return signs for the cells of which a robot covers at least half.
+    """Return the signs that show a robot, by the row and column of their cells.
 
-    Each is a cell's number, as `sign_cell` returns it, by the row and column of the cell.
+    These are the cells of which the robot covers at least half. Each sign is the number that `sign_cell` returns for
+    it.
     """
     empty = np.zeros((view.height_px, view.width_px, 3), np.uint8)
     draw_robot(empty, view, pose, outline, CLEARED)

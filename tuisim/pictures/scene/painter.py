@@ -84,7 +84,7 @@ _GHOST_OPACITY, _EARLIER_OPACITY = 0.75, 0.6
 
 
 class Faint(StrEnum):
-    """The role of a robot that is drawn translucently."""
+    """Why a robot is drawn translucently: it is that of another run, or this robot at another time."""
 
     BESIDE = "beside"
     """The robot of another run, which is shown beside this one."""

@@ -80,9 +80,11 @@ def _spread(width_px: float) -> FloatArray:
 
 
 def _join_points(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a trace without NaN, with further points between joined ones at most `step_mm` apart.
+    """Return the points of a trace without NaN, and further points between any two of them that the pen has joined.
 
-    Points more than `_LONGEST_STEP_MM` apart are not joined.
+    The further points are at most `step_mm` apart; they follow all others. Points more than `_LONGEST_STEP_MM` apart
+    are not
+    joined.
     """
     good = np.isfinite(xs) & np.isfinite(ys)
     if len(xs) < 2:

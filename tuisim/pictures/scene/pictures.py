@@ -39,7 +39,7 @@ RIM_RGB: Rgb = (232, 234, 238)
 def find_area(records: NDArray[Any]) -> Area:
     """Return the area that a picture of a run shows: the field, extended to where the robot has been.
 
-    The area ends `_MAX_OFF_MM` beyond the field.
+    The area ends at most `_MAX_OFF_MM` beyond the field.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`.
@@ -86,7 +86,7 @@ def find_end_view(run: StoredRun) -> Viewport:
 
 
 def fit_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD) -> Viewport:
-    """Return the view of `build_world_view` in the largest scale at which its picture fits a size in pixels."""
+    """Return the view of an area that `build_world_view` returns, as large as fits into a picture of a given size."""
     reach_mm = measure_reach_mm(build_outline(robot))
     # The rim is rounded up to whole pixels on both sides.
     sides = zip(area.size_mm, (width_px, height_px), strict=True)

@@ -69,7 +69,7 @@ class RobotColors:
     """Whether only edge and marker are drawn, in a line without gaps, so that what is below is seen."""
 
     def choose_edge_mm(self, cell_mm: float) -> float:
-        """Return the width of the edge; in fine pixels, one thinner than a pixel would not be seen.
+        """Return the width of the robot's edge in mm: `edge_cells` of a cell's width, at most `edge_mm`.
 
         Args:
             cell_mm: Width of a cell.
@@ -77,7 +77,10 @@ class RobotColors:
         return min(self.edge_cells * cell_mm, self.edge_mm)
 
     def choose_parts(self, outline: RobotOutline) -> RobotOutline:
-        """Return the parts of a robot that are drawn: those of an outline are neither wheels nor sensors."""
+        """Return the outline of a robot with only those parts that are drawn in these colours.
+
+        If `is_outline` is true, wheels and colour sensors are not drawn.
+        """
         return (
             replace(outline, has_wheels=False, color_sensors_mm=()) if self.is_outline else outline
         )
@@ -158,8 +161,9 @@ def draw_robot(
         colors: Colours of its parts.
         opacity: 0 … 1.
         pressed: Whether each bumper is pressed; empty for none.
-        detail_cols: For how many pixels across a cell the details are chosen, 1 or 2; None for as many as the view has,
-            at most 2.
+        detail_cols: Draw details, such as sensors, as for a picture with this number of pixels across a cell, 1 or 2;
+            None
+            for the number in the view, at most 2.
     """
     detail_cols = detail_cols or min(view.cell.cols, 2)
     outline = colors.choose_parts(outline)
@@ -210,7 +214,12 @@ def _sample_places(first_px: int, end_px: int, samples: int) -> FloatArray:
 def _turn_places(
     east: FloatArray, north: FloatArray, heading_deg: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return how far places are to the right of a robot's axis and ahead, from how far they are east and north."""
+    """Return how far points are to the right of a robot's axis, and how far ahead.
+
+    Args:
+        east, north: How far they are east and north of the robot.
+        heading_deg: The robot's heading, counter-clockwise from east.
+    """
     cos, sin = math.cos(math.radians(heading_deg)), math.sin(math.radians(heading_deg))
     return east * sin - north * cos, east * cos + north * sin
 
@@ -268,7 +277,10 @@ def _classify_disc(
     edge_mm: float,
     colors: RobotColors,
 ) -> npt.NDArray[np.intp]:
-    """Return for each sample the number of the part of a disc that covers it, with arguments as `_classify_samples`."""
+    """Return for each sample the number of the robot's part that covers it, for a robot drawn as a disc.
+
+    The arguments are those of `_classify_samples`; `cell_mm` is the width of a cell.
+    """
     radius_mm = outline.half_width_mm
     across = np.abs(side)
     inside_mm = radius_mm - np.hypot(side, ahead)

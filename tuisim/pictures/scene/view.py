@@ -142,7 +142,7 @@ def _shift_view(view: Viewport, zoom: int, pose: Pose) -> Viewport:
 def _count_steps(at_px: float, size_px: int, share: float, cell_px: int) -> int:
     """Return by how many pixels to move a view along an axis, so that a point is not near its edges.
 
-    The result is a multiple of about a third of the size; negative is to the left or up, and 0 is for no move.
+    The result is a multiple of about a third of the size: negative to the left or up, 0 for no move.
 
     Args:
         at_px: Position of the point in the view.
