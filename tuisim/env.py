@@ -38,22 +38,25 @@ _FARTHEST = 1e6
 class LabEnv(gymnasium.Env[Vector, Vector]):
     """A Gymnasium environment: a robot that is rewarded for what it does.
 
-    The action is the speed of each wheel, shape (2,), from -1 to 1, the highest speed of its motor. The observation has
-    the values of `columns`, shape (n,), in their order; `info` has all columns by name.
+    The action is the speed of each wheel, shape (2,): from -1 to 1, where 1 is the highest speed of its motor. The
+    observation has the values of `columns`, shape (n,), in their order; `info` has all columns by name.
 
     Args:
         columns: What the robot observes, such as `left_red_pc`.
         reward: Takes the values before and after a step, and returns its reward; None for 0.
         is_over: Takes the values after a step, and returns whether the task has ended; None for never.
-        goals: A goals file. The points that a step gains or loses, if the run ended after it, are added to its reward,
-            and the task has also ended when no goal can be met any more.
+        goals: A goals file. A step is also rewarded with the points that it gains or loses, as if the run ended after
+            it.
+            The task has also ended when no goal can be met any more.
         background: A mat, in place of a world.
         world, robot, profile: As for `Lab`.
         period_s: Simulated seconds of a step.
         render_mode: `rgb_array` for pictures, such as for `gymnasium.wrappers.RecordVideo`.
 
     Raises:
-        ConfigError: as for `Lab`; there are a mat and a world; or a function takes other values.
+        ConfigError: an argument is wrong, as for `Lab`; both a mat and a world are given; or `reward` or `is_over`
+            takes
+            another number of values.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012
@@ -97,10 +100,12 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Vector, dict[str, Any]]:
-        """Return to the start; return the observation there, and all columns by name.
+        """Move the robot to its start; return what it observes there, and all columns by name.
 
         Args:
-            seed: Seed of noise and drift; None draws the next seed from the generator of the seed before.
+            seed: Seed of noise and drift. With None, a random seed is drawn; which one depends only on the last seed
+                given
+                and on the number of resets since.
             options: Not used.
         """
         super().reset(seed=seed)
@@ -119,7 +124,7 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
             The observation, the reward, whether the task has ended, False for `truncated`, and all columns by name.
 
         Raises:
-            ConfigError: the action has not two numbers, or the reward is none.
+            ConfigError: the action is not two numbers, or the function `reward` has not returned a number.
         """
         try:
             left, right = (float(share) * self.lab.max_speed_dps for share in action)
@@ -150,7 +155,7 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
 
 
 def _build_space(columns: Sequence[str]) -> Box[Any]:
-    """Return the space of the values of columns, each between its bounds."""
+    """Return the Gymnasium space of observations, in which each column has its lowest and its highest value."""
     bounds = [_BOUNDS.get(name.rpartition("_")[2], (-_FARTHEST, _FARTHEST)) for name in columns]
     low, high = zip(*bounds, strict=True)
     return Box(np.array(low, np.float32), np.array(high, np.float32))
@@ -208,9 +213,11 @@ def follow_line(**how: Any) -> LabEnv:
 
 
 def stop_on_band(**how: Any) -> LabEnv:
-    """Return the task to stop on a dark band; it ends when the left sensor reads less than 10 % and both wheels stand.
+    """Return the task to stop on a dark band.
 
-    The reward is by how many percent the reading of the left sensor has fallen in a step.
+    It ends when the left sensor reads less than 10 % and both wheels stand still. The reward of a step is by how many
+    percent
+    the reading of the left sensor has fallen in it.
 
     Args:
         how: Arguments of `LabEnv`.

@@ -24,7 +24,10 @@ MAX_PROGRAMS = 10_000
 
 
 class _BatchTable(Struct):
-    """The keys of the table `[batch]` in a batch file; other functions check those of type `Any`."""
+    """The keys of the table `[batch]` in a batch file.
+
+    The values of keys of type `Any` are checked later, by the functions that use them.
+    """
 
     program: str | list[str] | UnsetType = UNSET
     world: str | UnsetType = UNSET

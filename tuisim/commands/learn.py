@@ -257,7 +257,7 @@ def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
 
 
 def _count_ways(lesson: Lesson) -> str:
-    """Return the number of wrong answers and programs that the check of a lesson tries, such as `3 wrong ways`."""
+    """Return how many wrong answers and programs the check of a lesson tries, as a text such as `3 wrong ways`."""
     return counted(
         sum(len(step.wrong_programs) + len(step.wrong) for step in lesson.steps), "wrong way"
     )

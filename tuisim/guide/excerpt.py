@@ -126,7 +126,7 @@ def _cut_beginning(text: str, letters: int, pattern: re.Pattern[str]) -> str:
 
     Args:
         text: The text.
-        letters: The number of characters in which these words are counted.
+        letters: How many characters after the beginning of a sentence are searched for words of the question.
         pattern: Matches the words.
     """
     starts = [0, *(match.end() for match in _SENTENCE_END.finditer(text))]

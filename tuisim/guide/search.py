@@ -117,8 +117,8 @@ class _Postings:
 
     Args:
         texts: The stems of each text, with their weights.
-        power: Exponent of the text's length by which similarity is divided: 1 gives the cosine, less favours longer
-            texts.
+        power: The similarity is divided by the text's length to this power. With 1 it is the cosine; with less, longer
+            texts are more similar.
     """
 
     def __init__(self, texts: Sequence[Mapping[str, float]], power: float = 1.0) -> None:
@@ -133,7 +133,7 @@ class _Postings:
         """Return the similarity to a question of each text that shares a stem with it, by the text's row.
 
         Args:
-            question: The weights of the question's stems, with a length of 1 as a vector.
+            question: The weights of the question's stems; the sum of their squares is 1.
         """
         cosines: defaultdict[int, float] = defaultdict(float)
         for stem, weight in question.items():

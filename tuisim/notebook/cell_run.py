@@ -163,7 +163,7 @@ Result = TypeVar("Result")
 
 @dataclass(frozen=True, slots=True)
 class Listener:
-    """The functions of a notebook that are called with a program's output and may answer the program."""
+    """The functions of a notebook that are called with a program's output, and whose answers the program can get."""
 
     responder: Responder | None = None
     """Called with each line for the notebook, in collaborative mode."""
@@ -211,11 +211,15 @@ def run_cell(
     Args:
         cell: The program.
         stage: The displays of the cell.
-        begun: Called with the run as soon as its recording exists, and again at its end.
+        begun: Called with the run and the registers of its wheel motors, as soon as the run has a recording, and again
+            at
+            its end.
         view: The app, if it has been requested to start the run; None to start the run here.
 
     Raises:
-        ConfigError: the responder has returned a value that a program cannot get; the run has been stopped.
+        ConfigError: a function of the notebook that answers the program, such as `roboSim.responder`, has returned a
+            value
+            that a program cannot get; the run has been stopped.
     """
     store = RunStore()
     paced = cell.speed > 0
@@ -413,9 +417,9 @@ class _Follower:
         self._take_text("roboSim.pyresponder", call(partial(listener.responder, heard)))
 
     def _take_text(self, who: str, answer: object) -> None:
-        """Print an answer as the old simulator did.
+        """Print the answer of a notebook's function below a heading, as the old simulator nbev3devsim did.
 
-        If it begins with `JSON_PREFIX`, send the rest of it to the program.
+        If the answer begins with `JSON_PREFIX`, send the rest of it to the program.
 
         Args:
             who: The name of the function that gave the answer, for errors.

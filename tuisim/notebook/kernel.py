@@ -23,7 +23,7 @@ first.
 
 
 def find_old_simulator() -> Path | None:
-    """Return the file of the old simulator if a cell's `import nbev3devsim` imports it instead of tuisim's.
+    """Return the file of the old simulator nbev3devsim if a cell that imports this name would get it instead of tuisim.
 
     Otherwise the result is None.
     """

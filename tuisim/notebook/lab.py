@@ -238,7 +238,9 @@ class Lab:
         Args:
             words: The words of the magic, parsed.
             text: The program below the magic, None for none.
-            prelude: `none`, `imports` or `preloaded`.
+            prelude: Which names are defined for the program before its first line, as the magic says: `none`, `imports`
+                (those
+                of the library) or `preloaded` (also motors and sensors).
 
         Raises:
             ConfigError: a mat, robot or value is invalid, or there is no program to run.
@@ -269,7 +271,10 @@ class Lab:
         self._show(plan, words, listener, runs=runs)
 
     def _show(self, plan: _CellPlan, words: Arguments, listener: Listener, *, runs: bool) -> None:
-        """Run the program of a cell, or show its world: in the app if a page shows that, else in the cell."""
+        """Run the program of a cell or, if `runs` is false, only show its world.
+
+        This happens in the app if a page shows the app now, else in the cell.
+        """
         from tuisim.notebook.display import Stage
 
         stage = Stage(plan.settings, self._build_captions(words, plan))

@@ -143,7 +143,10 @@ def _show_name_error(
     trace: TracebackType,
     tb_offset: int | None = None,
 ) -> None:
-    """Show a NameError of a cell as IPython does; if a robot program has the name, with a note on its magic."""
+    """Show a NameError of a cell as IPython does.
+
+    If the name is one that robot programs have, such as `tank_drive`, a note says which magic the cell lacks.
+    """
     if error.name and error.name in re.findall(r"\w+", PRELUDE_TEXTS["preloaded"]):
         error.add_note(
             f"Put `%%sim_magic_preloaded` on top of this cell to run it on the robot, where `{error.name}` is defined."

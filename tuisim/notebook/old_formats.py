@@ -52,7 +52,9 @@ def record_text(array: LoggedArray) -> str:
 
 
 def format_sent(seen: Mapping[str, bytes]) -> str:
-    """Return the line for a responder, `IMG_DATA::` and JSON; a side without a sensor is an empty text.
+    """Return the line with the pixels of both sensors for a function of the notebook: `IMG_DATA::` and a JSON object.
+
+    A side without a sensor is an empty text in this object.
 
     Args:
         seen: RGBA bytes by the name of the sensor.

@@ -163,7 +163,10 @@ class BufferedApp(HookedApp):
 
     @property
     def has_pixels(self) -> bool:
-        """Whether pictures are drawn with pixels, or were until the user chose characters for this session."""
+        """Whether the terminal can draw pictures with pixels and the app does so.
+
+        Also true if the user has switched from pixels to characters for this session only.
+        """
         return self.picture_mode.graphics is not None or self._left_pixels is not None
 
     def handle_painted(self, size: int) -> None:
@@ -234,7 +237,7 @@ class BufferedApp(HookedApp):
             self.call_after_refresh(self.handle_situation_change)
 
     def handle_situation_change(self) -> None:
-        """Handle a change of the situation after which other keys may be available; this class does nothing."""
+        """Update what depends on the state of the app, such as which keys are available; this class does nothing."""
 
     def redraw_pictures(self) -> None:
         """Draw all pictures again, with pixels or glyphs as `picture_mode` says now."""
@@ -292,8 +295,9 @@ class BufferedApp(HookedApp):
     def is_harmless(self, error: Exception) -> bool:
         """Return whether an error only comes from the shutdown of the app, and can be ignored.
 
-        During the shutdown nothing can be mounted, widgets are removed while they are being mounted, and at its end
-        there is no screen.
+        During the shutdown, widgets cannot be mounted, some are removed while they are being mounted, and at last there
+        is no
+        screen any more.
         """
         cause = error.error if isinstance(error, WorkerFailed) else error
         return is_leaving(self) and isinstance(

@@ -255,7 +255,10 @@ def _draw_svg_area(area: GlyphArea, x: float, y: float) -> str:
 
 
 def _draw_svg_shapes(grid: CellGrid) -> Iterator[str]:
-    """Yield SVG elements for the shapes of glyphs: a path for all rectangles of a look, one for each dot and line."""
+    """Yield SVG elements for the shapes of glyphs, such as blocks and lines of boxes.
+
+    All rectangles of one colour and opacity are one path; each dot and each line is an element of its own.
+    """
     paths: dict[tuple[Rgb, float], list[str]] = {}
     for y, row in enumerate(grid):
         for x, (text, look) in enumerate(row):

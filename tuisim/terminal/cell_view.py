@@ -484,7 +484,7 @@ class LazyStrip(MadeOnDemand):
 
 
 class JoinedStrip(LazyStrip):
-    """A strip that consists of other strips, each of which keeps its class.
+    """A strip that consists of other strips, from left to right; each of these stays an object of its own class.
 
     Args:
         parts: The strips, from left to right.

@@ -174,8 +174,9 @@ class TerminalDriver(HookedLinuxDriver):
     def stop_as_job(self) -> bool:
         """Restore the terminal, and stop the process group of the app until the shell resumes it.
 
-        Textual stops with a signal that cannot be ignored, even without a shell that could resume the app. The signal
-        for job control is dropped in that case.
+        The signal is SIGTSTP, which the system drops if no shell could resume the app. Textual sends SIGSTOP, which
+        would stop
+        the app for ever in that case.
 
         Returns:
             Whether the app was stopped, and has resumed.

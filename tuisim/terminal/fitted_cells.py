@@ -40,10 +40,10 @@ def fit_cells(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> Cells:
     Args:
         picture: A whole number of cells, each with the points of the glyphs.
         glyphs: The glyphs to choose from.
-        places: Which cells.
+        places: Rows and columns of the cells.
 
     Returns:
-        Shape (n,).
+        One number for each cell, shape (n,).
     """
     cells: Cells = np.empty(len(places[0]), np.int64)
     for first in range(0, len(cells), _AT_ONCE):
@@ -97,9 +97,11 @@ def _fit_points(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
 
 
 def _draw_half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
-    """Return cells with half blocks; the colour of each half is the mean of two of its rows of points.
+    """Return cells with half blocks; each half has the colour of one row of points, the mean of the row.
 
-    A thin line is in one of the two points of a row: the colour of one point would lose the line, or the ground.
+    The mean is taken because a thin line covers only one of the two points of a row: with the colour of one point
+    alone,
+    either the line or the background would disappear.
     """
     of_rows = np.rint(points.reshape(3, glyphs.rows, glyphs.cols, -1).mean(axis=2)).astype(np.uint8)
     covered = np.repeat(glyphs.covered[0, :: glyphs.cols, None], of_rows.shape[2], axis=1)
@@ -115,9 +117,11 @@ def _find_typical(
 ) -> list[npt.NDArray[np.intp]]:
     """Return the index of the typical point in each cell, first among its covered points, then among its other points.
 
-    The typical point of a group is the point nearest to the mean of the group. The mean itself often is no colour of
-    the picture, and looks blurred. Of two points equally near, it is the darker one: with the lighter one, the
-    background would look like a notch in the edge of a band beside a robot's corner.
+    The typical point of a group is the point whose colour is nearest to the mean of the group. The mean itself often is
+    no
+    colour of the picture, and looks blurred. If two points are equally near, the darker one is taken: the lighter one
+    would
+    look like a notch in the edge of a dark band.
     """
     points: list[npt.NDArray[np.intp]] = []
     for share in (covered, 1 - covered):
@@ -130,8 +134,9 @@ def _find_typical(
 def _find_best_glyphs(lab: npt.NDArray[np.float32], glyphs: GlyphSet) -> npt.NDArray[np.intp]:
     """Return for each cell the index of the glyph that splits its points into the two most even groups.
 
-    The search is exhaustive: with the points relative to their mean, the sum of the points that a glyph covers gives
-    the variance that the split explains.
+    All glyphs are compared by the variance that their split explains. It follows from the sum of the points that the
+    glyph
+    covers, if the mean of all points has been subtracted from them.
     """
     size = lab.shape[1]
     # One product for each channel is so small that the library does not start threads for it.

@@ -178,7 +178,7 @@ def _split_layout(update: LayoutUpdate) -> Iterator[tuple[int, int, Strip]]:
 
 
 def _split_chops(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
-    """Yield row, column and strip of each part of an update that may have changed the screen."""
+    """Yield row, column and strip of each part of an update of some rows, without parts that have not changed."""
     for y, first, last in update.spans:
         for end, (x, strip) in zip(update.chop_ends[y], update.chops[y].items(), strict=False):
             if strip is None or x >= last or end <= first:

@@ -118,7 +118,7 @@ _DEPTHS = {"standard": PALETTE_16, "windows": PALETTE_16, "256": PALETTE_256}
 def find_color_depth(app: App[Any]) -> int:
     """Return the number of colours with which an app draws; full colour if the terminal does not say.
 
-    Without colours, it is still more than one for block glyphs, which are then drawn in greys.
+    If the user wants no colours, block glyphs are drawn in greys, so that the number is above 1 for them.
     """
     picture_mode = find_picture_mode(app)
     if app.no_color and picture_mode.cells not in BLOCKS:

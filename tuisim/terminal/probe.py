@@ -154,9 +154,10 @@ def is_multiplexer(terminal: str) -> bool:
 def has_all_colors(environment: Mapping[str, str]) -> bool:
     """Return whether tmux says that the terminal around it shows all colours; False without tmux.
 
-    COLORTERM does not say so, as a multiplexer inherits it from the terminal around it. GNU screen before version 5
-    reads the code of such a colour as blinking, underlined and coloured text, and cannot be asked. Inside GNU screen
-    (STY), tmux may be the program around it.
+    COLORTERM does not tell, as a multiplexer inherits this variable from the terminal around it. GNU screen cannot be
+    asked
+    at all; before version 5, it takes the code of a 24-bit colour for blinking, underlined text. So the result is also
+    False if GNU screen runs (variable STY): tmux may then be around it.
     """
     return _ALL_COLORS in _ask_tmux("client_termfeatures", environment).split(",")
 
@@ -322,8 +323,10 @@ def _has_attributes(answer: bytes) -> bool:
 def _ask_terminal() -> CellSet:
     """Return the finest set of glyphs that the terminal of standard input and output shows, by asking it.
 
-    The name is asked for only once an octant has moved the cursor: an answer that comes too late would be taken for
-    keys, so a terminal that answers nothing is asked as little as possible.
+    First an octant is printed, and the terminal is asked where its cursor is. It is asked for its name only after it
+    has
+    answered that the cursor has moved by one column. A late answer would be taken for keys, so a terminal that does not
+    answer is asked as little as possible.
     """
     fd = sys.stdin.fileno()
     before = termios.tcgetattr(fd)

@@ -66,12 +66,15 @@ class TerminalFacts:
 
     @property
     def asks_for_kitty(self) -> bool:
-        """Whether the terminal may know kitty's protocol, and has not answered yet whether it does."""
+        """Whether to ask the terminal for kitty's protocol: it may know the protocol, and has not answered yet."""
         return self.has_kitty_graphics is None and self.program in kitty.TERMINALS
 
     @property
     def without_refusal(self) -> TerminalFacts:
-        """The facts, with `has_kitty_graphics` None unless it is True or the terminal has reported an error."""
+        """The same facts, but with `has_kitty_graphics` None if it was False without an error from the terminal.
+
+        Such a False is only a guess, as the terminal has not answered about kitty's protocol.
+        """
         return (
             self
             if self.has_kitty_graphics or self.kitty_error

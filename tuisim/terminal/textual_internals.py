@@ -141,8 +141,9 @@ def _has(owner: type, name: str) -> bool:
 def read_textual_version() -> Version:
     """Return the version of the installed Textual; empty if it is no release.
 
-    The version is read from the name of the metadata: `importlib.metadata` would take a tenth of the time that Textual
-    takes.
+    The version is read from the name of the folder with the package's metadata, `textual-1.2.3.dist-info`: the function
+    of
+    `importlib.metadata` would take a tenth of the time in which Textual is imported.
     """
     numbers = [
         _METADATA.fullmatch(entry.name) for entry in os.scandir(Path(textual.__file__).parents[1])
@@ -196,7 +197,10 @@ class HookedApp(App[None]):
 
     @property
     def is_writing(self) -> bool:
-        """Whether Textual writes drawn updates to the terminal now: not in a batch, and not without a terminal."""
+        """Whether Textual sends what it draws to a terminal now.
+
+        False in a batch of updates, for an app without a terminal, and before and after the app runs.
+        """
         if not SUPPORTED:
             return False
         return self._running and not (
@@ -325,10 +329,11 @@ class HookedLinuxDriver(LinuxDriver):
 class ThoroughCompositor(Compositor):
     """Textual's compositor, changed to compare each layout with the last one for which the widgets were sent messages.
 
-    Textual compares it with the map of all widgets, and makes that map again when any code asks for the size of a
-    widget between two layouts. It then would never send `Resize` or `Show` to a widget that was mounted in between, and
-    a widget that was removed in between would stay on the screen. Whether code asks in between depends on how busy the
-    machine is.
+    Textual compares a layout with its newest map of all widgets. It makes a new map whenever code asks for the size of
+    a
+    widget between two layouts. A widget that was mounted before that is then in both, and is never sent `Resize` or
+    `Show`;
+    a widget that was removed stays on the screen. Whether code asks in between depends on how busy the machine is.
     """
 
     def __init__(self) -> None:

@@ -214,7 +214,7 @@ class Server:
         raise web.HTTPForbidden(text=_REFUSAL)
 
     async def _protect(self, request: web.Request, response: web.StreamResponse) -> None:
-        """Set the security headers of every response.
+        """Set the security headers of a response.
 
         The page may load nothing from other sites, only the sites that the gate names may show it in a frame, and its
         address, which contains the token, is not sent to other sites.

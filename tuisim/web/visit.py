@@ -121,8 +121,8 @@ class Visit:
     def to_plain(self) -> dict[str, Any]:
         """Return the visit as a JSON-compatible dict.
 
-        The dict has the id, age and idle time in s, whether a browser shows the app, its program, and whether that
-        runs.
+        The dict has the id, age and idle time in s, whether a browser shows the app, the open program, and whether this
+        program is running.
         """
         age_s = time.monotonic() - self._begun_s
         times = {"age_s": round(age_s), "idle_s": round(self._activity.idle_s)}

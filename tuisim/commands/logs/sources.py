@@ -134,12 +134,12 @@ def _read_runs(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
 def _name_columns(
     arguments: Arguments, known: Container[str], runs: Sequence[StoredRun]
 ) -> set[str]:
-    """Replace the variables in the arguments by the columns of telemetry that they mean.
+    """Replace short names among the variables in the arguments by the full names of telemetry columns.
 
     Args:
         arguments: The arguments, which are changed.
-        known: Names of samples: a variable of such a name is not replaced.
-        runs: The runs whose columns are meant.
+        known: Names of samples: a variable with such a name is not replaced.
+        runs: The runs that have the columns.
 
     Returns:
         The names of all columns that the arguments name.

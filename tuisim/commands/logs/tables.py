@@ -195,10 +195,12 @@ def _show_commands(arguments: Arguments, words: str) -> int:
 
 
 def _parse_threshold_option(arguments: Arguments) -> EventChoice:
-    """Return the threshold in the arguments, or the search for commands; the variable "" stands for every variable.
+    """Return what `--when` or `--at` searches a log for: a threshold that a variable crosses, or commands.
+
+    A threshold of `--at` has the variable "", which stands for every variable.
 
     Raises:
-        ConfigError: the arguments give no threshold or two, or a text that is none.
+        ConfigError: neither or both of the options are given, or the text of `--when` is no threshold.
     """
     if bool(arguments.when) is (arguments.at is not None):
         raise ConfigError(
