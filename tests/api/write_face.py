@@ -52,10 +52,11 @@ Keep: TypeAlias = Literal["all", "failed", "none"]
 
 WORLD_CLASS = '''
 class World(WorldDescription):
-    """A world: where a program runs. `simulate`, `experiment` and `Lab` take it.
+    """A world, in which a program runs: the argument `world` of `simulate`, `experiment` and `Lab`.
 
-    By default it is an empty mat of 2362 × 1143 mm with walls; a program for a brick has walls only with a world file,
-    or with a sensor for them. The profile decides whether they are solid, the mat where the robot starts.
+    By default it is an empty mat of 2362 × 1143 mm with walls. Around a program for a real brick there are walls only
+    with a world file, or if the program uses a sensor for walls. By default, the profile decides whether walls stop the
+    robot, and the mat decides where the robot starts.
 
     Args:
         file: A world file; the options take precedence over it.
@@ -74,10 +75,12 @@ class World(WorldDescription):
 
 ROBOT_CLASS = '''
 class Robot(RobotDescription):
-    """A robot, given by its name or a file, and the values in which it differs from that robot.
+    """A robot, given by its name or a file, with some of its values changed.
+
+    It is the argument `robot` of `simulate`, `experiment` and `Lab`.
 
     Args:
-        base: The name of a robot, or a file.
+        base: The name of a robot, or a robot file; the other arguments replace values of this robot.
 {help}
         parts: Further keys of a robot file, such as `{{"color_sensors.left.diameter_mm": 20}}`, with dots for tables.
 
@@ -108,17 +111,18 @@ def simulate(
     An exception in the program is not raised here: see `Run.state` and `Run.error`.
 
     Args:
-        program: A file, the name of an example, source text, or a function: its source is the program, and what it uses
-            of its file goes along.
+        program: A file, the name of an example, a source text, or a function. Of a function, the source text is run,
+            together with what it uses from its file.
         arguments: The program's `sys.argv[1:]`.
         answers: The return values of successive `input()` calls.
         timeout_s: Limit in simulated seconds.
-        world: A world, or its file; it takes precedence over the program's first line, and options over it.
+        world: A world, or its file. It takes precedence over the program's first line; all options below take
+            precedence over the world.
 {help}
 
     Raises:
-        ConfigError: the program, its first line, the world or an option is wrong; nothing was run. All errors of
-            `tuisim.base.errors` are a `TuisimError`.
+        ConfigError: the program, its first line, the world or an option is wrong; nothing was run. Like all errors of
+            tuisim, it is a `tuisim.base.errors.TuisimError`.
         KeyboardInterrupt: ctrl-C; the run has been stopped, and its log is stored.
     """
     return run_program(**locals())
@@ -153,34 +157,41 @@ def experiment(
     raised here: a warning counts them, and the columns `end` and `summary` describe each of them.
 
     Args:
-        program: As for `simulate`; or several.
+        program: As for `simulate`; or several of these.
         seeds: The seeds, such as `range(200)`; by default 0.
-        constants: Values of the program's constants, what it assigns to a name outside its functions:
-            `{{"GAIN": [0.2, 0.4]}}`. A robot that is read from a program has the values of its text.
-        parameters: Values by key of a world or robot file: `{{"robot.wheel_diameter_mm": [54, 56]}}`; a text is read as
-            after `--set`, such as `"latin(54, 58, 20)"`.
-        metrics: Further columns by name, as functions of a run: `{{"end_x_mm": lambda run: run.pose.x_mm}}`. An
-            exception in one ends the experiment; if the program has raised one too, the metric has no value.
-        columns: Columns of the telemetry, such as `x_mm`: the table then has one row for each tick of each run, and of
-            the values of a run only metrics and expressions.
-        expressions: Further columns by name, such as `{{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}}`.
-        goals: A goals file; if no `world` is given, its world is used, and options take precedence over it.
-        keep: Which runs to store; `load_run` opens one by its value in the column `id`, with `all` also in `run`.
+        constants: Values for the program's constants, which are the names that it assigns outside its functions:
+            `{{"GAIN": [0.2, 0.4]}}`. If tuisim finds out from a program which robot it needs, this robot has the values
+            in the text of the program.
+        parameters: Values for keys of a world or robot file: `{{"robot.wheel_diameter_mm": [54, 56]}}`. A text, such as
+            `"latin(54, 58, 20)"`, is read as after the option `--set` of `tuisim batch`.
+        metrics: Further columns by name, as functions of a run: `{{"end_x_mm": lambda run: run.pose.x_mm}}`. If a
+            metric raises an exception, the experiment ends; but if the program of the run has raised one too, the
+            metric just has no value.
+        columns: Columns of the telemetry, such as `x_mm`. The table then has one row for each tick of each run; of the
+            values of a whole run, it has only the metrics and expressions.
+        expressions: Further columns by name, computed from the columns of a run, such as
+            `{{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}}`.
+        goals: A goals file, by which each run is judged. If no `world` is given, the world of this file is used;
+            options take precedence over it.
+        keep: Which runs to store. `load_run` opens a stored run by its value in the column `id`; with `all`, also by
+            its value in the column `run`.
         jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
-        out: A file for the table, in any format of a log; an interrupted experiment that is called again goes on with
-            the rows so far.
-        until: A column of the runs and how well its mean is to be known, such as `"x_mm ± 2"` or `"error_mm +- 2"`:
-            each combination takes the seeds in their order, ten first and then several at a time, until the mean is
-            within this margin with 95 % (Student's t). Runs that raise do not count. Warns if the seeds do not suffice.
+        out: A file for the table, in any format of a log. If an interrupted experiment is called again with the same
+            file, it goes on with the rows so far.
+        until: A column of the runs and how precisely its mean is to be known, such as `"x_mm ± 2"` or
+            `"error_mm +- 2"`. Each combination takes the seeds in their order, ten first and then several at a time,
+            until the mean is within this margin with 95 % (Student's t). Runs whose program raises an exception do not
+            count. A warning says if the seeds do not suffice.
         scheduler: Address of a Dask scheduler whose workers run the programs, such as `tcp://host:8786`.
         arguments, answers, timeout_s: As for `simulate`.
-        world: A world, or its file, or several.
+        world: A world, or its file, or several of these.
 {help}
 
     Returns:
-        One row for each run: the seed varies fastest, before it `parameters`, constants, options and programs. Columns
-        as in `tuisim batch`, and one for each constant, and for each option that is given as several values. With
-        `columns`, one row for each tick: `run`, these, `seed`, metrics, expressions, `time` in s, and the columns.
+        One row for each run. From row to row the seed varies fastest, then `parameters`, constants and options, and the
+        program slowest. The columns are those of `tuisim batch`, one for each constant, and one for each option with
+        several values. With `columns`, there is one row for each tick instead: first the columns of its run up to
+        `seed`, then metrics and expressions, `time` in s, and the columns of the telemetry.
 
     Raises:
         ConfigError: a program, an option, a parameter, an expression or a goal is wrong; nothing was run.
@@ -190,6 +201,33 @@ def experiment(
     """
     return run_experiment(**locals())
 '''
+
+OPTION_HELP = {
+    "mats": "folder of images that `background` finds by name",
+    "press": "what a hand presses, as a list of texts: `enter@1.0-1.5` is a button from second 1.0 to 1.5, `in1@2` a "
+    "touch sensor at second 2, and `remote.left_up@1-3` a button of the remote",
+}
+"""The meanings of options in Python, where they differ from those in a shell."""
+
+ROBOT_HELP = {
+    "wheel_spacing_mm": "distance between the centres of the wheels",
+    "back_mm": "how far behind the axle the body ends, as a negative y in mm",
+    "weight": "`weightless` (0), `light` (3), `medium` (6), `heavy` (9), or a number. Wheels gain 5000 / weight °/s "
+    "in each second, and weightless ones reach their speed immediately. It counts only under the profiles `robolab` "
+    "and `nbev3devsim`",
+    "left_port": "port of the left motor: `outA` to `outD`, or `A` to `F` on a hub. Without wheels, it is `none`",
+    "right_port": "port of the right motor: `outA` to `outD`, or `A` to `F` on a hub. Without wheels, it is `none`",
+    "left_reversed": "whether the left motor is mounted the other way round: positive speeds turn the wheel backwards",
+    "right_reversed": "whether the right motor is mounted the other way round: positive speeds turn the wheel "
+    "backwards",
+    "gear_ratio": "how often the motor turns while the wheel turns once",
+    "mass_kg": "mass of the robot with brick and battery, in kg. It counts only under the profile `ev3`, and under "
+    "those of Pybricks while a motor runs by `dc` or coasts",
+    "battery_v": "voltage of the battery without a load, in V. It sets the highest speed, and counts where `mass_kg` "
+    "does",
+    "hub": "the hub of Pybricks that the robot has in place of the EV3 brick, such as `PrimeHub`",
+}
+"""What the values of a robot are, in full sentences, by name; a robot file has shorter words beside each value."""
 
 
 def find_type(name: str, value: Value) -> str:
@@ -241,7 +279,9 @@ def fill(template: str, names: Iterable[str], *, may_vary: bool = False) -> str:
     options = {name: OPTIONS_BY_NAME[name] for name in names}
     types = {name: find_type(name, option.value) for name, option in options.items()}
     helps = {
-        name: _end_sentence(option.help.replace("…", "to").removesuffix("."), option.value)
+        name: _end_sentence(
+            OPTION_HELP.get(name, option.help).replace("…", "to").removesuffix("."), option.value
+        )
         for name, option in options.items()
     }
     return template.format(
@@ -267,13 +307,14 @@ def list_robot_keys() -> Iterator[tuple[str, Value]]:
 
 def describe_key(key: str, value: Value) -> str:
     """Return what a value of a robot is, in a sentence."""
-    text = value.help or f"{key.rpartition('_')[0] if value.unit else key}".replace("_", " ")
-    return _end_sentence(f"{text[:1].upper()}{text[1:]}", value)
+    name = f"{key.rpartition('_')[0] if value.unit else key}".replace("_", " ")
+    return _end_sentence(ROBOT_HELP.get(key) or value.help or name, value)
 
 
 def _end_sentence(text: str, value: Value) -> str:
     """Return a sentence that says the unit of a value."""
     named = not value.unit or value.unit in text
+    text = text[:1].upper() + text[1:]
     return f"{text}." if named else f"{text}, in {value.unit}."
 
 

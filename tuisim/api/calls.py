@@ -51,8 +51,9 @@ def prepare_program(
         source: The program.
         arguments: Its `sys.argv[1:]`; empty for those in the settings.
         layers: Settings by path, the later ones take precedence.
-        constants: Other values of its constants. A robot that is read from the program is that of the values in its
-            text.
+        constants: New values of the program's constants, by name. The robot that tuisim finds in the text of the
+            program
+            has the values in this text, not these.
 
     Raises:
         ConfigError: its settings do not fit it, or it has no such constant.

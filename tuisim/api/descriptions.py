@@ -85,7 +85,7 @@ class Description:
 
 
 class WorldDescription(Description):
-    """A world: a world file, if any, and options that take precedence over it."""
+    """A world that a script describes: a world file, if any, and options that take precedence over it."""
 
     __slots__ = ()
 
@@ -99,7 +99,7 @@ class WorldDescription(Description):
 
 
 class RobotDescription(Description):
-    """A robot: one given by name or file, and the values in which it differs from that."""
+    """A robot that a script describes: a robot given by name or file, with some of its values changed."""
 
     __slots__ = ()
 
@@ -125,12 +125,13 @@ def plain(value: Any) -> Any:
 
 
 def warn_all(remarks: Iterable[str], depth: int = 5) -> None:
-    """Issue a warning for each of some sentences.
+    """Issue each of some sentences as a warning.
 
     Args:
         remarks: The sentences.
-        depth: How many calls up the stack the warning points to. By default it is the line that calls `simulate` or
-            `experiment`, if their body calls the caller of this function.
+        depth: How many calls above this function the line is to which the warning points, as `stacklevel` of
+            `warnings.warn`. By default it is the user's line that calls `simulate` or `experiment`; this is right for a
+            function that is called directly by one of these.
     """
     for remark in remarks:
         warn(remark, stacklevel=depth)

@@ -34,24 +34,30 @@ Preload: TypeAlias = Literal["none", "imports", "preloaded"]
 
 
 class Robot(RobotDescription):
-    """A robot, given by its name or a file, and the values in which it differs from that robot.
+    """A robot, given by its name or a file, with some of its values changed.
+
+    It is the argument `robot` of `simulate`, `experiment` and `Lab`.
 
     Args:
-        base: The name of a robot, or a file.
+        base: The name of a robot, or a robot file; the other arguments replace values of this robot.
         wheel_diameter_mm: Wheel diameter, in mm.
-        wheel_spacing_mm: Between the centres of the wheels, in mm.
+        wheel_spacing_mm: Distance between the centres of the wheels, in mm.
         wheel_width_mm: Wheel width, in mm.
-        back_mm: How far the body reaches behind the axle, as a negative y, in mm.
-        weight: Weightless (0), light (3), medium (6), heavy (9), or a number: wheels gain 5000 / weight °/s²; only
-            under robolab and nbev3devsim.
-        left_port: OutA … outD; of a hub A … F.
-        right_port: OutA … outD; of a hub A … F.
-        left_reversed: Mounted the other way round: positive speeds turn the wheel backwards.
-        right_reversed: Mounted the other way round: positive speeds turn the wheel backwards.
-        gear_ratio: Motor turns per wheel turn.
-        mass_kg: With brick and battery; only under ev3, and of Pybricks where a motor runs by dc or coasts, in kg.
-        battery_v: Without a load: it sets the highest speed, only where mass_kg counts, in V.
-        hub: The hub of Pybricks in place of the EV3, such as PrimeHub.
+        back_mm: How far behind the axle the body ends, as a negative y in mm.
+        weight: `weightless` (0), `light` (3), `medium` (6), `heavy` (9), or a number. Wheels gain 5000 / weight °/s in
+            each second, and weightless ones reach their speed immediately. It counts only under the profiles `robolab`
+            and `nbev3devsim`.
+        left_port: Port of the left motor: `outA` to `outD`, or `A` to `F` on a hub. Without wheels, it is `none`.
+        right_port: Port of the right motor: `outA` to `outD`, or `A` to `F` on a hub. Without wheels, it is `none`.
+        left_reversed: Whether the left motor is mounted the other way round: positive speeds turn the wheel backwards.
+        right_reversed: Whether the right motor is mounted the other way round: positive speeds turn the wheel
+            backwards.
+        gear_ratio: How often the motor turns while the wheel turns once.
+        mass_kg: Mass of the robot with brick and battery, in kg. It counts only under the profile `ev3`, and under
+            those of Pybricks while a motor runs by `dc` or coasts.
+        battery_v: Voltage of the battery without a load, in V. It sets the highest speed, and counts where `mass_kg`
+            does.
+        hub: The hub of Pybricks that the robot has in place of the EV3 brick, such as `PrimeHub`.
         parts: Further keys of a robot file, such as `{"color_sensors.left.diameter_mm": 20}`, with dots for tables.
 
     Raises:
@@ -89,15 +95,16 @@ class Robot(RobotDescription):
 
 
 class World(WorldDescription):
-    """A world: where a program runs. `simulate`, `experiment` and `Lab` take it.
+    """A world, in which a program runs: the argument `world` of `simulate`, `experiment` and `Lab`.
 
-    By default it is an empty mat of 2362 × 1143 mm with walls; a program for a brick has walls only with a world file,
-    or with a sensor for them. The profile decides whether they are solid, the mat where the robot starts.
+    By default it is an empty mat of 2362 × 1143 mm with walls. Around a program for a real brick there are walls only
+    with a world file, or if the program uses a sensor for walls. By default, the profile decides whether walls stop the
+    robot, and the mat decides where the robot starts.
 
     Args:
         file: A world file; the options take precedence over it.
         background: A mat from `tuisim backgrounds`, or an image file.
-        mats: Folder of images that `-b` finds by name.
+        mats: Folder of images that `background` finds by name.
         obstacles: A set from `tuisim obstacles`, or a file of boxes: lower left corner and size.
         walls: Walls on the edges of the field.
         solid: Obstacles and walls stop the robot.
@@ -179,14 +186,15 @@ def simulate(
     An exception in the program is not raised here: see `Run.state` and `Run.error`.
 
     Args:
-        program: A file, the name of an example, source text, or a function: its source is the program, and what it uses
-            of its file goes along.
+        program: A file, the name of an example, a source text, or a function. Of a function, the source text is run,
+            together with what it uses from its file.
         arguments: The program's `sys.argv[1:]`.
         answers: The return values of successive `input()` calls.
         timeout_s: Limit in simulated seconds.
-        world: A world, or its file; it takes precedence over the program's first line, and options over it.
+        world: A world, or its file. It takes precedence over the program's first line; all options below take
+            precedence over the world.
         background: A mat from `tuisim backgrounds`, or an image file.
-        mats: Folder of images that `-b` finds by name.
+        mats: Folder of images that `background` finds by name.
         robot: A robot from `tuisim robots`, or a file.
         obstacles: A set from `tuisim obstacles`, or a file of boxes: lower left corner and size.
         walls: Walls on the edges of the field.
@@ -204,13 +212,13 @@ def simulate(
         pendown: Start with the pen down.
         profile: A profile from `tuisim profiles`, or a file.
         seed: Seed for noise, drift, `random`, and an EV3's clock.
-        press: Press by hand a button, a touch sensor or the remote: enter@1.0-1.5, in1@2, remote.left_up@1-3; may be
-            repeated.
+        press: What a hand presses, as a list of texts: `enter@1.0-1.5` is a button from second 1.0 to 1.5, `in1@2` a
+            touch sensor at second 2, and `remote.left_up@1-3` a button of the remote.
         preload: Names predefined for the program.
 
     Raises:
-        ConfigError: the program, its first line, the world or an option is wrong; nothing was run. All errors of
-            `tuisim.base.errors` are a `TuisimError`.
+        ConfigError: the program, its first line, the world or an option is wrong; nothing was run. Like all errors of
+            tuisim, it is a `tuisim.base.errors.TuisimError`.
         KeyboardInterrupt: ctrl-C; the run has been stopped, and its log is stored.
     """
     return run_program(**locals())
@@ -263,30 +271,36 @@ def experiment(
     raised here: a warning counts them, and the columns `end` and `summary` describe each of them.
 
     Args:
-        program: As for `simulate`; or several.
+        program: As for `simulate`; or several of these.
         seeds: The seeds, such as `range(200)`; by default 0.
-        constants: Values of the program's constants, what it assigns to a name outside its functions:
-            `{"GAIN": [0.2, 0.4]}`. A robot that is read from a program has the values of its text.
-        parameters: Values by key of a world or robot file: `{"robot.wheel_diameter_mm": [54, 56]}`; a text is read as
-            after `--set`, such as `"latin(54, 58, 20)"`.
-        metrics: Further columns by name, as functions of a run: `{"end_x_mm": lambda run: run.pose.x_mm}`. An
-            exception in one ends the experiment; if the program has raised one too, the metric has no value.
-        columns: Columns of the telemetry, such as `x_mm`: the table then has one row for each tick of each run, and of
-            the values of a run only metrics and expressions.
-        expressions: Further columns by name, such as `{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}`.
-        goals: A goals file; if no `world` is given, its world is used, and options take precedence over it.
-        keep: Which runs to store; `load_run` opens one by its value in the column `id`, with `all` also in `run`.
+        constants: Values for the program's constants, which are the names that it assigns outside its functions:
+            `{"GAIN": [0.2, 0.4]}`. If tuisim finds out from a program which robot it needs, this robot has the values
+            in the text of the program.
+        parameters: Values for keys of a world or robot file: `{"robot.wheel_diameter_mm": [54, 56]}`. A text, such as
+            `"latin(54, 58, 20)"`, is read as after the option `--set` of `tuisim batch`.
+        metrics: Further columns by name, as functions of a run: `{"end_x_mm": lambda run: run.pose.x_mm}`. If a
+            metric raises an exception, the experiment ends; but if the program of the run has raised one too, the
+            metric just has no value.
+        columns: Columns of the telemetry, such as `x_mm`. The table then has one row for each tick of each run; of the
+            values of a whole run, it has only the metrics and expressions.
+        expressions: Further columns by name, computed from the columns of a run, such as
+            `{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}`.
+        goals: A goals file, by which each run is judged. If no `world` is given, the world of this file is used;
+            options take precedence over it.
+        keep: Which runs to store. `load_run` opens a stored run by its value in the column `id`; with `all`, also by
+            its value in the column `run`.
         jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
-        out: A file for the table, in any format of a log; an interrupted experiment that is called again goes on with
-            the rows so far.
-        until: A column of the runs and how well its mean is to be known, such as `"x_mm ± 2"` or `"error_mm +- 2"`:
-            each combination takes the seeds in their order, ten first and then several at a time, until the mean is
-            within this margin with 95 % (Student's t). Runs that raise do not count. Warns if the seeds do not suffice.
+        out: A file for the table, in any format of a log. If an interrupted experiment is called again with the same
+            file, it goes on with the rows so far.
+        until: A column of the runs and how precisely its mean is to be known, such as `"x_mm ± 2"` or
+            `"error_mm +- 2"`. Each combination takes the seeds in their order, ten first and then several at a time,
+            until the mean is within this margin with 95 % (Student's t). Runs whose program raises an exception do not
+            count. A warning says if the seeds do not suffice.
         scheduler: Address of a Dask scheduler whose workers run the programs, such as `tcp://host:8786`.
         arguments, answers, timeout_s: As for `simulate`.
-        world: A world, or its file, or several.
+        world: A world, or its file, or several of these.
         background: A mat from `tuisim backgrounds`, or an image file.
-        mats: Folder of images that `-b` finds by name.
+        mats: Folder of images that `background` finds by name.
         robot: A robot from `tuisim robots`, or a file.
         obstacles: A set from `tuisim obstacles`, or a file of boxes: lower left corner and size.
         walls: Walls on the edges of the field.
@@ -303,14 +317,15 @@ def experiment(
         pen_width: Width of the trace, in mm.
         pendown: Start with the pen down.
         profile: A profile from `tuisim profiles`, or a file.
-        press: Press by hand a button, a touch sensor or the remote: enter@1.0-1.5, in1@2, remote.left_up@1-3; may be
-            repeated.
+        press: What a hand presses, as a list of texts: `enter@1.0-1.5` is a button from second 1.0 to 1.5, `in1@2` a
+            touch sensor at second 2, and `remote.left_up@1-3` a button of the remote.
         preload: Names predefined for the program.
 
     Returns:
-        One row for each run: the seed varies fastest, before it `parameters`, constants, options and programs. Columns
-        as in `tuisim batch`, and one for each constant, and for each option that is given as several values. With
-        `columns`, one row for each tick: `run`, these, `seed`, metrics, expressions, `time` in s, and the columns.
+        One row for each run. From row to row the seed varies fastest, then `parameters`, constants and options, and the
+        program slowest. The columns are those of `tuisim batch`, one for each constant, and one for each option with
+        several values. With `columns`, there is one row for each tick instead: first the columns of its run up to
+        `seed`, then metrics and expressions, `time` in s, and the columns of the telemetry.
 
     Raises:
         ConfigError: a program, an option, a parameter, an expression or a goal is wrong; nothing was run.

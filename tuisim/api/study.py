@@ -86,9 +86,17 @@ def run_experiment(
 def open_sweep(
     plan: Plan, expressions: Mapping[str, str], out: str | Path | None, measures: Measures
 ) -> Sweep:
-    """Return the sweep of a plan, with the runs that an interrupted experiment has finished.
+    """Return the sweep, which runs the plan and collects the rows of the table.
 
-    Warns if the rows of an interrupted experiment cannot be used, or if another table is replaced.
+    If the experiment was interrupted before, the sweep has the rows of the runs that it finished. Warns if these rows
+    cannot
+    be used, or if another table is replaced.
+
+    Args:
+        plan: The runs.
+        expressions: Further columns, by name.
+        out: The file for the table; None for none.
+        measures: The metrics and telemetry columns.
 
     Raises:
         ConfigError: the interrupted experiment has other runs.
@@ -126,7 +134,7 @@ def warn_unknown(until: str, margins: Sequence[float]) -> None:
 
     Args:
         until: The column and its margin.
-        margins: The margins of these means after all seeds.
+        margins: For each of these combinations, the margin of its mean after all seeds.
     """
     if not margins:
         return
@@ -148,9 +156,9 @@ class Study:
     """The programs of an experiment, with everything that varies except seeds.
 
     Args:
-        program: As of `tuisim.experiment`.
+        program: As for `tuisim.experiment`.
         constants: Values of the programs' constants, or several of each.
-        parameters, arguments, answers, timeout_s: As of `tuisim.experiment`.
+        parameters, arguments, answers, timeout_s: As for `tuisim.experiment`.
         goals: The goals file; None for none.
         options: Worlds, and values by the names of options, or several of each.
 

@@ -47,8 +47,9 @@ def read_log(
     """Return the table in a file.
 
     A file that `out=` or `tuisim log export` has written is returned as it was, to the last bit, if no other argument
-    is given; only empty texts in a CSV file become missing values. Beside a CSV or JSONL file, this needs its `.json`
-    file.
+    is given; only empty texts in a CSV file become missing values. A CSV or JSONL file needs the `.json` file beside it
+    for
+    this.
 
     Any other file, such as one of your own `to_csv`, gets an index, and so does each file if another argument is given:
     the time in seconds or, without a time, the number of the row. Dates count from the first row, times of day from
@@ -57,13 +58,13 @@ def read_log(
     Args:
         path: A CSV, Parquet, JSON, JSONL, Arrow or text file.
         time: The column with the time; empty to count the rows, None to find it.
-        unit: The unit of numbers in it: `s`, `ms`, `us`, `ns` or `min`; empty to guess it.
-        value: Columns with values: beside them, only times, names of variables and runs are kept.
-        header: The line of a text that names the columns, from 1; 0 to find it.
-        table: Which of several tables in a text, from 1.
-        encoding: Of a text, as in Python, such as `cp1252`; empty to find it.
-        separator: Of the cells of a text: `comma`, `semicolon`, `tab`, `bar` or `blank`; empty to find it.
-        decimal: `.` or `,`; empty to find it.
+        unit: The unit of the numbers in the time column: `s`, `ms`, `us`, `ns` or `min`; empty to guess it.
+        value: The columns with values. Of all other columns, only those of times, names of variables and runs are kept.
+        header: The number of the line that has the names of the columns, from 1; 0 to find it. Only for a text.
+        table: Which table to read if a text has several, from 1.
+        encoding: The encoding of a text by its name in Python, such as `cp1252`; empty to find it.
+        separator: What separates the cells of a text: `comma`, `semicolon`, `tab`, `bar` or `blank`; empty to find it.
+        decimal: The decimal sign, `.` or `,`; empty to find it.
 
     Raises:
         LogError: the file cannot be read or has no row, there is no such column, or a choice is not allowed.
