@@ -23,7 +23,7 @@ async def test_a_long_notice_stays_whole_until_it_is_released(
     async with app.run_test(notifications=True, size=(60, 20)) as pilot:
         app.notify(LONG, timeout=inf)
         await until(pilot, lambda: any(row.is_read for row in app.query(NoticeRow)))
-        assert " ".join(screen_text(app).replace("▌", "").split()) == LONG
+        await until(pilot, lambda: " ".join(screen_text(app).replace("▌", "").split()) == LONG)
         app.notices.release()
         await until(pilot, lambda: not app.query(NoticeRow))
 

@@ -36,7 +36,7 @@ def test_a_program_that_does_not_compile_has_a_fault(
         ("%%sim_magic_preloaded -b Grey_bands\nprint(colorLeft)\n", None, ""),
         ("x = 1\nif x\n    pass\n", 2, "line 2: expected ':'"),
         ("return 3\n", 1, "line 1: 'return' outside function"),
-        ("# %%sim_magic -b\n", 0, "-b"),
+        ("# %%sim_magic -b\n", 1, "-b"),
         ("assert (1, 'x is \\d')\n", None, ""),
         ("x = " + "(" * 500 + ")" * 500, 1, "nested"),
     ],

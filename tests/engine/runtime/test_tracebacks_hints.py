@@ -20,7 +20,8 @@ HINTS = {
     ),
     "a number after text": (
         "'Colour: ' + colorLeft.reflected_light_intensity",
-        'can only concatenate str (not "int") to str. `str(number)` makes text of a number',
+        'can only concatenate str (not "int") to str. `str(number)` makes text of a number, '
+        "`float(text)` a number of text",
     ),
     "a value that is called": (
         "x = 2 * (colorLeft.reflected_light_intensity() + 1)",
@@ -37,7 +38,8 @@ HINTS = {
     ),
     "a number before text": (
         "1.5 + ' cm'",
-        "unsupported operand type(s) for +: 'float' and 'str'. `str(number)` makes text of a number",
+        "unsupported operand type(s) for +: 'float' and 'str'. `str(number)` makes text of a number, "
+        "`float(text)` a number of text",
     ),
     "an object of the program": (
         "class Mine:\n    light_left = 1\nMine().light",
