@@ -193,7 +193,7 @@ def extract_settings(spec: RunSpec) -> dict[str, Any]:
 
 
 def _name_robot(robot: RobotSpec, mat: Background) -> str | RobotChoice:
-    """Return the name of the preset that equals a robot when it is placed on a mat; the robot itself if none does.
+    """Return the name of the preset that is equal to a robot on a mat; the robot itself if there is no such preset.
 
     The mat sets the positions of the preset's sensors. The position of the pen is not compared.
     """

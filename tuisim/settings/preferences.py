@@ -18,7 +18,7 @@ def find_preferences_file() -> Path:
 
 
 def get_preference(name: str) -> object:
-    """Return the preference of a name; None if there is none, or the file is damaged."""
+    """Return the stored value of the preference `name`; None if there is none, or the file is damaged."""
     return _read_all().get(name)
 
 

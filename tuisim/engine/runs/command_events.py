@@ -476,7 +476,7 @@ def _name_call(code: int) -> str:
 def _find_mains() -> Array:
     """Return for each kind of command the index of its main value, of which repeated commands show the range.
 
-    This index is at the index of the `Call` in the result.
+    The index in the result is the number of the kind of command, a `Call`.
     """
     import numpy as np
 

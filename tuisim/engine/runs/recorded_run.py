@@ -323,13 +323,13 @@ class RowIndex:
         )
 
     def row(self, number: int) -> OutputRow:
-        """Return the output row with an index, counted from 0."""
+        """Return the output row whose index, counted from 0, is `number`."""
         # An empty row replaces one that cannot be read because the program has changed its recording.
         nothing = OutputRow("", self._ticks[number], 0, 0, Stream.NOTE), 0
         return next(self._output.read_rows(self._starts[number]), nothing)[0]
 
     def rows(self, first: int, step: int = 1) -> Iterator[OutputRow]:
-        """Yield the output rows from an index on; with a step of -1 backwards."""
+        """Yield the output rows from the index `first` on; with a step of -1 backwards."""
         if step < 0:
             yield from (self.row(number) for number in range(first, -1, -1))
         elif first < len(self):

@@ -228,7 +228,7 @@ class TelemetryWriter(MappedWriter):
         self.count = 0
 
     def reserve(self, records: int) -> mmap.mmap:
-        """Return the memory map of the file, with space for `records` more records after `count`."""
+        """Return the memory map of the file, with space for `records` records after the first `count` ones."""
         need = HEADER_BYTES + (self.count + records) * TICK_RECORD.size
         if need > self._capacity:
             self._make_room(need)
@@ -338,7 +338,7 @@ def read_header(data: bytes, magic: bytes, file: str) -> tuple[int, int]:
 
 
 def is_hole(part: bytes | memoryview) -> bool:
-    """Return whether a part of a recording, far larger than a record, was never written.
+    """Return whether a part of a recording was never written; the part must be far larger than a record.
 
     A file with such parts may seem to be of any length without taking space on the disk.
     """

@@ -211,7 +211,10 @@ def replay(
 
 
 def give_command(sim: Simulation, command: SimulationCommand) -> None:
-    """Give a recorded command to a simulation. Ignore any error: in the run, the program got it."""
+    """Give a recorded command to a simulation.
+
+    An error of the command is ignored, because in the run it was raised in the program.
+    """
     time_ns, part, call, values = command
     try:
         obey(sim, time_ns, part, call, *values[: len(CALLS[call].ranges)])

@@ -121,7 +121,7 @@ class ReplayDebugger:
         self._go(recording, Position(tick), tick)
 
     def look(self, look: protocol.Inspect) -> None:
-        """Inspect the paused program again with another request."""
+        """Send another request for its state to the paused program."""
         self._request = look
         if self.run is not None and self._paused is not None:
             self.busy = True

@@ -160,7 +160,9 @@ class TemporaryRun:
         options: Mapping[str, Any] | None = None,
         live: bool = False,
     ) -> NewRun:
-        """Write the `run.json` of a run that is about to start; return the run. Arguments as in `RunStore.create_run`.
+        """Write the `run.json` of a run that is about to start; return the run.
+
+        The arguments are those of `RunStore.create_run`.
 
         Raises:
             LogError: it cannot be written.

@@ -608,7 +608,7 @@ class OutputView(_View):
                 size *= 4
 
     def read_raw_rows(self) -> Iterator[tuple[int, bytes]]:
-        """Yield the stream and the text of each row, the text as bytes of the file."""
+        """Yield the stream and the text of each row; the text as the bytes that are in the file."""
         data, end = self._look()
         if self._dropped:
             return ((row.stream, row.text.encode()) for row in self.rows())

@@ -323,7 +323,7 @@ class ProgramRunner:
         return outcome
 
     def _finish_moves(self, outcome: ProgramOutcome) -> ProgramOutcome:
-        """Let the program's moves end, as on a brick; return the outcome with the motors that would still run."""
+        """Let the program's moves end, as on a brick; return the outcome, which then names motors that still turn."""
         try:
             left = finish_moves(self._session)
         except StopProgram as stop:

@@ -207,7 +207,10 @@ class Scheduler:
         self.wait(FOREVER, queue=[])
 
     def interrupt_main(self, call: Callable[[], None]) -> None:
-        """Call a function in the main thread when it next waits; unless the function raises, the wait continues."""
+        """Call a function in the main thread when it next waits.
+
+        The wait then continues, unless the function raises an exception.
+        """
         main = self.main
         main.interrupt = call
         if main.order:

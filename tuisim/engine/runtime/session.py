@@ -291,7 +291,7 @@ class Session:
     def is_tried(self, error: type[Exception]) -> bool:
         """Return whether the program would catch an error that is raised now.
 
-        Such a program only tries which devices there are.
+        If it would, the program only tries which devices there are.
         """
         # Imported on demand: few programs look for a device that is missing.
         from tuisim.engine.runtime.handlers import is_caught
@@ -428,7 +428,7 @@ class Session:
         return False
 
     def skip_control(self, tick: int) -> None:
-        """Run all ticks until `tick` is due at full speed, without a call of the run's control before each one."""
+        """Run ticks at full speed until `tick` is due, without a call of the run's control before each of them."""
         self.flags &= ~LIVE
         self._quick_ns = min(self._limit_ns, self.sim.compute_due_ns(tick) - 1)
 

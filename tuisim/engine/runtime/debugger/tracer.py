@@ -144,7 +144,7 @@ class Tracer:
         return self._ordinal if tick == self._tick else 0
 
     def count_depth(self, frame: types.FrameType | None) -> int:
-        """Return the number of open calls of the program's own code in a thread."""
+        """Return the number of open calls of the program's own code in the thread whose innermost frame is `frame`."""
         depth = 0
         while frame is not None:
             depth += self.is_own(frame)
@@ -152,7 +152,7 @@ class Tracer:
         return depth
 
     def own_frames(self, frame: types.FrameType | None) -> list[types.FrameType]:
-        """Return the frames of the program's own files, innermost first."""
+        """Return those of a frame and its callers that belong to the program's own files, innermost first."""
         frames = []
         while frame is not None:
             if self.is_own(frame):

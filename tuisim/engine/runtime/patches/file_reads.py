@@ -62,7 +62,7 @@ class FileReads:
         self._noted = self._left_out = 0
 
     def patch(self) -> None:
-        """Replace the functions that open and rename files by functions that also record the file."""
+        """Replace the functions that open and rename files by functions that also keep this record."""
         real_open = builtins.open
         real_os_open = os.open
 
