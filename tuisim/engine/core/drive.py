@@ -282,7 +282,8 @@ class BrickDrive:
 class BrowserDrive:
     """The pose of a robot of the browser simulator, which changes with the rotation of its wheels.
 
-    The heading is computed in radians, and kept below a whole turn. `early` is as in `BrickDrive`.
+    The heading is computed in radians, and kept below a whole turn. `early` chooses the heading along which the robot
+    drives in a tick in which it turns: 0 is the heading before the turn, 1 the heading after the turn.
     """
 
     __slots__ = (

@@ -222,7 +222,8 @@ def weighted_mean(box: bytes, diameter: int, strategy: str) -> tuple[float, floa
 
     Args:
         box: The pixels, row by row, three bytes per pixel.
-        diameter, strategy: As for `disc_weights`.
+        diameter: Diameter of the disc in pixels.
+        strategy: How the pixels are weighted, one of `spec.STRATEGIES`; see `disc_weights`.
     """
     weights = disc_weights(diameter, strategy)
     total = sum(weights)

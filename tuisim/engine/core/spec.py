@@ -279,7 +279,7 @@ class ColorSensorSpec(SensorSpec):
 
 @spec
 class UltrasonicSpec(SensorSpec):
-    """An ultrasonic sensor: it measures the distance to the nearest surface that echoes one of a fan of rays."""
+    """An ultrasonic sensor: it sends a fan of rays, and measures how far the nearest surface is that echoes a ray."""
 
     name: str = _build_sensor_name("ultrasonic")
     port: str = _build_input_port("in1")

@@ -73,7 +73,8 @@ def put_all(node: _Node, values: Mapping[str, object]) -> _Node:
         values: The new values by path.
 
     Raises:
-        As for `put`.
+        ConfigError: a value is wrong, or breaks a rule.
+        LookupError: there is no such path.
     """
     inside: dict[str, dict[str, object]] = {}
     for path, value in values.items():

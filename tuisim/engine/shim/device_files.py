@@ -154,7 +154,8 @@ class SimDevice:
         """Write text to an attribute of the device.
 
         Raises:
-            OSError: ENOENT or EACCES as for `read`, EINVAL if the driver rejects the value.
+            OSError: ENOENT if the device has no such attribute, EACCES if it is read-only, EINVAL if the driver rejects
+                the value.
         """
         self.writers[name](text)
 

@@ -37,10 +37,10 @@ class FinishingFinder:
     """Module finder that calls a function on certain modules right after their import.
 
     Args:
-        finishers: Functions by module name.
+        finishers: The functions to call, by the name of the module.
         is_own: Returns whether a file belongs to the program. No function is called on such a module, whatever its
             name.
-        around: Contexts in which to import, by module name.
+        around: Contexts in which modules are imported, by the name of the module.
     """
 
     def __init__(
@@ -82,7 +82,9 @@ def finish_imports(
     """Call a function on certain modules right after their import, or now if they are imported already.
 
     Args:
-        finishers, is_own, around: As for `FinishingFinder`.
+        finishers: The functions to call, by the name of the module.
+        is_own: Returns whether a file belongs to the program. No function is called on such a module.
+        around: Contexts in which modules are imported, by the name of the module.
     """
     for name, finish in finishers.items():
         if (there := sys.modules.get(name)) is not None:

@@ -137,7 +137,10 @@ class LegoSensor:
         return chosen.measure()
 
     def measure_switched(self, mode: str) -> tuple[int, ...]:
-        """Return the numbers of the first measurement in a mode; its time has passed with the change of mode."""
+        """Return the numbers of the first measurement after a change of mode.
+
+        No time passes: the change of mode has already taken the time of this measurement.
+        """
         session = self._session
         if not session.free:
             session.note_reading(self._codes[mode])

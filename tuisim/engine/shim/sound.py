@@ -211,7 +211,7 @@ def _patch_songs(sound_class: Any, speaker: Loudspeaker) -> None:
 
 
 def _mend(sound_class: Any, mixer: Mixer) -> None:
-    """Fix two faults of the library for the programs of courses: reading the volume, and speaking any text."""
+    """Fix two methods of the library: `get_volume`, and `speak` for texts with quotes and for other values."""
     say = sound_class.speak
 
     @wraps(sound_class.get_volume)

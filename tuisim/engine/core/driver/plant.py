@@ -129,7 +129,12 @@ class Axle:
         """An obstacle keeps the axle between these angles."""
 
     def change_load(self, plant: PlantSpec, battery_v: float) -> None:
-        """Change the load that the motor moves from now on; arguments as for the class."""
+        """Change the load that the motor moves from now on.
+
+        Args:
+            plant: The motor, with its new load.
+            battery_v: The voltage of the battery without load.
+        """
         is_powered = self.circuit is self._powered
         self._powered, self._coasting = build_circuit(plant, battery_v), build_circuit(plant, None)
         self.circuit = self._powered if is_powered else self._coasting

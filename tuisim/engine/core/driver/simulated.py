@@ -48,7 +48,12 @@ PUSH_DEG = 0.05
 
 
 def load_wheel(plant: PlantSpec, robot: RobotSpec) -> PlantSpec:
-    """Return the constants of a motor with one wheel of a robot and its share of the robot's mass."""
+    """Return the constants of a motor that carries one wheel of a robot and its share of the robot's mass.
+
+    Args:
+        plant: The constants of the motor without this load.
+        robot: The robot.
+    """
     radius_m = robot.wheel_diameter_mm / 2000
     gears = robot.gear_ratio
     inertia_kg_m2 = (robot.mass_kg + WHEEL_KG) / 2 * radius_m**2
@@ -110,7 +115,7 @@ def change_load(axle: Axle, spec: RunSpec, kind: str, *, free: bool) -> None:
 
 
 class SimulatedMotor(DriverMotor):
-    """One motor of a robot, with its driver.
+    """One motor of a robot with its EV3 driver, which is advanced tick by tick.
 
     Args:
         tick_hz: Ticks per second.

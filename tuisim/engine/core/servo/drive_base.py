@@ -409,7 +409,7 @@ class DriveBase:
         return min(ends, default=None)
 
     def note_lag(self, now_us: int, passed_us: int, _milli: int, _rate: int) -> None:
-        """React to motors that lag behind their trajectory, as `Controller.note_lag` does for distance and heading.
+        """React to motors that lag behind their trajectory: call `Controller.note_lag` for distance and heading.
 
         A second call for the same time, by the other motor, does nothing.
         """

@@ -291,7 +291,7 @@ class InputDevice:
 
 
 class UInput:
-    """The class of evdev with which programs create input devices, which is not simulated.
+    """The class with which programs that use evdev create input devices; that is not simulated.
 
     Raises:
         NotSimulated: always.

@@ -162,7 +162,8 @@ class Brick:
         """Block until a wait is over, and return its result; while a task runs, return an object to await.
 
         Args:
-            waiting, stop: As for `Awaited`.
+            waiting: Yields the times until which the call waits; its result is the result of the wait.
+            stop: Ends the motion or sound that the call has begun, if the task that awaits the object is closed.
         """
         awaited: Any = Awaited(waiting, stop)
         return awaited if self.in_task else self.block(waiting)

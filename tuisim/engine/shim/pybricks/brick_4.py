@@ -56,7 +56,7 @@ class AnimatedLight:
 
 
 class Speaker(TonePlayer):
-    """The speaker of a brick or hub under version 4 of Pybricks."""
+    """The speaker of a brick or hub under version 4 of Pybricks, whose `volume` a program can set and read."""
 
     _volume = 100
 
@@ -151,7 +151,7 @@ class Buttons(hubs.Buttons):
 
 
 class Battery(hubs.Battery):
-    """The rechargeable battery of a brick under version 4 of Pybricks."""
+    """The rechargeable battery of a brick under version 4 of Pybricks, which also tells its type."""
 
     temperature = refused_part(
         "Battery", "temperature", Hardware("the temperature of the battery", "it stays as it is")

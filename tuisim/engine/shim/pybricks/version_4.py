@@ -45,7 +45,7 @@ MIN_RADIUS_MM = 10
 
 
 class Stop(NamedEnum):
-    """What a motor does after a move."""
+    """What a motor does after a move, under version 4 of Pybricks, which has more choices than version 2.0."""
 
     COAST, BRAKE, HOLD, NONE, COAST_SMART, BRAKE_SMART = range(6)
 

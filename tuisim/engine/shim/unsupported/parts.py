@@ -65,7 +65,7 @@ def refuse_contexts(module: Any) -> None:
 
 
 def keep_thread_pool(module: types.ModuleType) -> None:
-    """Patch `multiprocessing.pool` after its import, so that `ThreadPool` works although processes are refused."""
+    """Patch `multiprocessing.pool` after its import, so that `ThreadPool` works: it uses threads, not processes."""
     contexts: Any = sys.modules["multiprocessing.context"]
     pool, context = module.Pool, contexts.ThreadContext()
 
