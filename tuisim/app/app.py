@@ -664,7 +664,7 @@ class LabApp(PanelMessages):
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Return whether a key runs an action of the app now; if not, the focused widget gets the key.
 
-        The keys that scroll the lesson or the code run no action while neither of them can be scrolled.
+        The page keys, for example, run an action only while the text of the lesson or the code can be scrolled.
         """
         if action == "act" and parameters[0] in PAGES:
             return accept_page_keys(self.panel_area)

@@ -505,9 +505,9 @@ class DebugController:
     # Steps
 
     def _find_position(self) -> Position | None:
-        """Return the position in the run that is in view, with the executed line as far as it is known.
+        """Return the position in the run that is in view; None before the first tick.
 
-        The result is None before the first tick.
+        If the executed line is not known, the position is that of its tick only.
         """
         timeline = self._run_controller.timeline
         if self.position:
@@ -519,7 +519,7 @@ class DebugController:
         return Position(timeline.newest) if timeline.recording and timeline.newest >= 0 else None
 
     def step(self, how: protocol.LineStep) -> None:
-        """Step to a further line: a recorded one if the past is in view, else a line of the live program.
+        """Take a step: to another recorded line if the past is in view, else in the live program.
 
         Args:
             how: Whether to step into calls, over them, or out of the function.

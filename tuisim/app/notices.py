@@ -36,7 +36,9 @@ class Notice:
 
 
 class NoticeRow(Static):
-    """A notice on the lower borders of the panels; if it has more than one row, the panels leave room for the others.
+    """A notice that covers the lower borders of the panels.
+
+    If the text needs several rows, the panels leave room for all of them but one.
 
     Args:
         notice: The notice to show.

@@ -249,10 +249,10 @@ class RunController:
         return pause.find_present(record, self.spec.robot) if pause and is_there else None
 
     def _find_pressed(self, record: TickRecord | None) -> frozenset[str]:
-        """Return the buttons that are pressed at the instant in view.
+        """Return the buttons that are pressed at the instant in view; empty if this is no instant of a run.
 
-        These are the buttons that the user holds down now. If there are none, or the past is in view, they are those in
-        a record. The set is empty if no instant of a run is in view.
+        While the newest instant is in view, these are the buttons that the user holds down. If there are none, or the
+        past is in view, they are the buttons that were pressed at `record`.
 
         Args:
             record: The record of the instant in view; None if there is none.
@@ -263,7 +263,7 @@ class RunController:
         return (not self.in_past and self.pressed) or recording.pressed_at(record.tick)
 
     def _field(self, record: TickRecord | None) -> Field | None:
-        """Return the mat as the sensors saw it at a record; None while the mat is not prepared."""
+        """Return the mat as the sensors saw it at the tick of a record; None while the mat is not prepared."""
         mat = self.find_mat(self.spec)
         recording = self.timeline.recording
         return (

@@ -338,7 +338,12 @@ class TerminalApp(BufferedApp):
         self.push_screen(Palette(host.ACTIONS.values(), host.find_situation()), handle_choice)
 
     def _ask_guide(self, host: ActionHost, question: str) -> None:
-        """Open the guide with a page, or with the results for a question."""
+        """Open the guide.
+
+        Args:
+            host: The app or the screen that opens the guide.
+            question: The name of a page to open, or a question to search the guide for.
+        """
         from tuisim.app.guide.screen import GuideScreen
 
         host.action_act("help")

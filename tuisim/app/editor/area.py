@@ -228,7 +228,11 @@ class CodeArea(TextArea):
     # Marks
 
     def set_breaks(self, breaks: Mapping[int, str]) -> None:
-        """Show the markers of the breakpoints, given as texts by line number, from 1."""
+        """Show the markers of the breakpoints.
+
+        Args:
+            breaks: The marker of each line with a breakpoint, by line number from 1.
+        """
         if breaks != self._breaks:
             self._breaks = dict(breaks)
             self.refresh()
@@ -465,9 +469,9 @@ class CodeArea(TextArea):
             self._consume_event(event)
 
     def _begin_typing(self, event: events.Key) -> None:
-        """Start typing on enter, or on a letter after a click on the text; that letter is typed.
+        """Start typing if the key is Enter, or if it is a letter after a click on the text; the letter is then typed.
 
-        After a click, escape makes letters keys of the app again.
+        If Escape is pressed after such a click, letters are keys of the app again.
         """
         is_letter = self.awaits_letters and event.is_printable
         if event.key == "enter" or is_letter:
@@ -490,9 +494,9 @@ class CodeArea(TextArea):
     # Completion
 
     async def _complete(self) -> None:
-        """Complete the word before the cursor, list its possible completions, or indent if there is no word.
+        """Complete the word before the cursor. Keys that are pressed meanwhile wait.
 
-        Keys that are pressed meanwhile wait.
+        If there are several completions, list them; if there is none, say so. If there is no word, indent.
         """
         place = self.cursor_location
         matches: tuple[Candidate, ...] = ()
@@ -543,7 +547,10 @@ class CodeArea(TextArea):
             self.parent.post_message(self.LookedUp())
 
     def _find_word(self) -> str | None:
-        """Return the word that ends at the cursor, empty right after a dot; None if no name can be there."""
+        """Return the word that ends at the cursor; None if no name can be there.
+
+        Right after a dot, the word is empty.
+        """
         row, column = self.cursor_location
         return find_word(self.document.get_line(row), column)
 

@@ -95,7 +95,10 @@ class Signature:
 
 
 def find_word(line: str, column: int) -> str | None:
-    """Return the word that ends at a column of a line, empty right after a dot; None if no name can be there."""
+    """Return the word that ends at a column of a line; None if no name can be there, as in a comment.
+
+    Right after a dot, the word is empty.
+    """
     before = line[:column]
     if any(
         start < column <= end and kind in ("string", "comment")

@@ -371,9 +371,10 @@ _FAIR_ROWS = 22
 
 
 def build_low(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return a node for a low area: the world in the whole width, or above a panel that needs the whole width.
+    """Return a node for a low area.
 
-    The readings and the output are below the world or beside it.
+    The world has the whole width, above the readings and the output. If a panel such as the code needs the whole width,
+    it is below the world, and the readings and the output are beside the world.
     """
     roomy = [panel for panel in _ROOMY if panel in panels]
     beside = [

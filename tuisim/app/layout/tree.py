@@ -191,7 +191,7 @@ def _divide_rows(split: Split, width: int, height: int, rank: Callable[[Node], i
 
 
 def _divide_extent(split: Split, box: PanelBox, rank: Callable[[Node], int]) -> list[int]:
-    """Return the rows or columns that each part of a split gets of a box, at least the part's minimum."""
+    """Divide the rows or columns of a box between the parts of a split; each part gets at least its minimum."""
     rows = split.axis == Axis.ROWS
     needs = _list_min_rows(split) if rows else [count_min_columns(part) for part in split.parts]
     extent = box.height if rows else box.width

@@ -333,7 +333,7 @@ class Chart(LinesPanel, can_focus=True):
     def copy_text(self) -> Copied | None:
         """Return the values of all drawn traces at the pointer or, without a pointer, at the cursor.
 
-        The result is None without a pointer and a cursor, or if no trace is drawn.
+        The result is None if there is neither a pointer nor a cursor, or if no trace is drawn.
         """
         drawn = self._traces.list_drawn()
         width = sum(len(trace.name) + _VALUE_COLS for trace in drawn) + _VALUE_COLS

@@ -272,7 +272,7 @@ class Code(Vertical):
 
     @property
     def differs(self) -> bool:
-        """Whether the run in view is a run of the shown program, but its text differs from the shown text."""
+        """Whether the run in view is a run of the shown program, but has run another text than the shown one."""
         tells = self._run_lines is not None and self._tells_run and self._in_run
         return tells and self._run_lines != source_lines(self._shown)
 

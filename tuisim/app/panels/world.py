@@ -202,7 +202,7 @@ class World(Widget, can_focus=True):
 
         Args:
             points_mm: x and y of the points; None shows the whole trace again.
-            pen: The pen.
+            pen: The pen that has drawn the trace.
         """
         past = None
         if points_mm is not None:

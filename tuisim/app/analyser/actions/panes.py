@@ -113,6 +113,11 @@ def _arrange(screen: LogScreen, model: AnalysisModel, arrangement: TableView) ->
     """Show other rows of the table, after a filter or a sort, with the cursor on one of these rows.
 
     Do nothing if another log was opened in the meantime.
+
+    Args:
+        screen: The analyser.
+        model: The model of the log that was filtered or sorted.
+        arrangement: The rows to show, in their order.
     """
     if screen.model is not model:
         return
