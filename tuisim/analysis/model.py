@@ -489,7 +489,7 @@ class AnalysisModel:
         """Compute the derived variable of a definition, and add it to the log; block until this is done.
 
         Raises:
-            LogError: as for `compute_definition`.
+            LogError: the line is invalid, or names an unknown variable.
         """
         self.apply_definition(*self.compute_definition(text))
 

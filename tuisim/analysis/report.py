@@ -168,7 +168,7 @@ def _find_bands(opened: OpenedLog, names: Sequence[str], search: Search) -> Anal
 def _choose_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
     """Return the log to report on, and a sentence about the choice.
 
-    It is the given log, with an empty sentence. If that has no samples, it is the telemetry of the run.
+    This is the given log, with an empty sentence. If the log has no samples, it is the telemetry of its run.
 
     Raises:
         LogError: the log is empty and has no run.
@@ -348,7 +348,7 @@ Fact = tuple[str, ...]
 
 
 def list_run_facts(runs: Sequence[StoredRun]) -> list[Fact]:
-    """Return the facts of stored runs for a report, without facts that none of the runs has."""
+    """Return the facts of stored runs for a report; facts that no run has are left out."""
     rows = [(name, *(fact(run) for run in runs)) for name, fact in _FACTS.items()]
     return [row for row in rows if any(row[1:])]
 

@@ -28,7 +28,7 @@ _MAX_SPAN_RATIO = 5.0
 
 
 class LogTrace(Trace):
-    """A variable of one run of a log, named as in `Log.names`, with its number, which selects colour and mark."""
+    """A variable of one run of a log, in a chart: its name is in `Log.names`; its number selects colour and mark."""
 
     def __init__(self, log: Log, name: str, number: int) -> None:
         super().__init__(name, number)

@@ -71,7 +71,7 @@ def build_row(result: Result, program: str, seed: int) -> Row:
 
 
 def build_frame(rows: Iterable[Row], expressions: Mapping[str, str] | None = None) -> pd.DataFrame:
-    """Return the table of some runs, in the order of the grid.
+    """Return the table of the given runs, in the order of the grid.
 
     A variable that a run has not printed is NaN. The columns of variables come last.
 

@@ -72,7 +72,7 @@ def list_unwaited_moves(tree: ast.Module) -> Iterator[UnwaitedMove]:
 
 
 def _find_option(statement: ast.stmt) -> str:
-    """Return the argument because of which a move does not block, such as `block=False`; empty for other statements."""
+    """Return the argument by which a move does not wait for its end, such as `block=False`; empty for others."""
     match statement:
         case ast.Expr(value=ast.Call(keywords=keywords)) if find_call(statement, ANY_MOVE):
             for keyword in keywords:

@@ -92,7 +92,7 @@ class Remarks:
 
 @dataclass(frozen=True, slots=True)
 class NamedAim:
-    """Lines of a program that move the robot, and of which a name or a comment says in which direction."""
+    """Lines of a program that move the robot, with the direction that a name or a comment gives for this."""
 
     first_line: int
     last_line: int

@@ -231,7 +231,7 @@ def _is_pure(value: object) -> bool:
 
 
 def _parse(text: str) -> list[ast.stmt]:
-    """Return the statements of a text outside functions and classes, those in blocks included.
+    """Return the statements of a text outside functions and classes, with the statements in blocks such as loops.
 
     The result is empty if the text is not Python.
     """

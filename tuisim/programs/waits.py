@@ -180,7 +180,7 @@ def _is_drive(node: ast.AST) -> TypeGuard[ast.Call]:
 def _find_ends(
     loop: ast.While, tree: ast.Module, constants: Mapping[str, Word]
 ) -> Iterator[LoopEnd]:
-    """Yield the comparisons that end a loop: from its condition or, for an endless loop, from that of a `break`."""
+    """Yield the comparisons that end a loop: those in its condition or, if it is endless, those before a `break`."""
     is_endless = isinstance(loop.test, ast.Constant) and bool(loop.test.value)
     if not is_endless:
         yield from _find_end(loop, loop.test, tree, constants, is_break=False)

@@ -100,5 +100,5 @@ def find_default(function: Function, name: str) -> ast.expr | None:
 
 
 def is_negated(nodes: Sequence[ast.expr]) -> bool:
-    """Return whether at least one of some arguments begins with a minus sign."""
+    """Return whether at least one of the given arguments begins with a minus sign."""
     return any(isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) for node in nodes)

@@ -262,7 +262,7 @@ class _MechanicsReader:
     def _find_ways(
         self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope
     ) -> Iterator[bool]:
-        """Yield whether a speed is forwards, for each speed that a call gives to one of some motors.
+        """Yield whether a speed is forwards, for each speed that the program gives to one of the motors.
 
         Only calls without an end are considered, such as `motor.run(-200)`.
 

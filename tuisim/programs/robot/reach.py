@@ -10,7 +10,7 @@ from tuisim.programs.robot.scopes import Scope
 
 
 def find_reachable(modules: Mapping[str, Scope]) -> list[Scope]:
-    """Return the scopes of a program that can run: first those of the program itself, then those of its modules.
+    """Return the scopes of a program that can run: first the program's own, then those of its modules.
 
     A function can run if its name is used anywhere in code that can run; the body of a class always runs.
     """

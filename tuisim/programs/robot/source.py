@@ -151,7 +151,7 @@ class _Search:
             self._folders += [os.path.join(own, place) for place in places]
 
     def module(self, name: str) -> Module | None:
-        """Return the module of a name; None if it is in none of the folders."""
+        """Return the module with a name; None if no folder has it."""
         if not all(part.isidentifier() for part in name.split(".")):
             return None
         for folder in self._folders:

@@ -103,7 +103,7 @@ def find_thresholds(
 ) -> Mapping[str, tuple[ProgramThreshold, ...]]:
     """Return the values with which a program compares its colour sensors, in the order of its lines, by sensor name.
 
-    The values are read from the syntax tree, without those that the program computes while it runs. The result is empty
+    The values are read from the program's text: a value that only a run could compute is left out. The result is empty
     for a program that is not Python, or too deeply nested to be read.
     """
     try:

@@ -231,7 +231,7 @@ class Evidence:
         Raises:
             ValueError: the comparison needs a number and has another value.
             UnjudgedError: the comparison's regular expression takes too long.
-            LogError, ConfigError: as for `column`.
+            LogError, ConfigError: the mat no longer exists, or its image has changed.
         """
         import numpy as np
 
@@ -371,9 +371,9 @@ def find_ticks(rows: Array, hz: int) -> Array:
 
 
 def find_motion_line(records: Array, index: int) -> int:
-    """Return the program's line in the tick in which the robot last moved, up to a tick.
+    """Return the line of the program that ran when the robot last moved, up to a tick.
 
-    If the robot moved only later, the line is that of its first movement; if it never moved, the line is 0.
+    If the robot moved only later, return the line of its first movement; if it never moved, return 0.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`.

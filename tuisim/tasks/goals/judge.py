@@ -426,7 +426,7 @@ class _Judge:
 
 
 def _invert(name: str, outcome: _Outcome) -> _Outcome:
-    """Return the outcome for a goal in a condition `none`: met if that goal is missed, missed if it is met."""
+    """Return the outcome of a goal for a condition `none`: met if the goal is missed, missed if it is met."""
     match outcome.state:
         case GoalState.MET:
             return replace(

@@ -100,7 +100,7 @@ def describe_place(tick: int, place: Mapping[str, Range], evidence: Evidence) ->
 
 
 def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
-    """Return whether a level of light equals what a colour sensor measured in at least one of some ticks.
+    """Return whether a level of light equals what a colour sensor measured in at least one of the given ticks.
 
     Args:
         value: The level: percent of red, percent of all channels together, or red from 0 to 255.

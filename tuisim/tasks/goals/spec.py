@@ -365,12 +365,12 @@ class CallsCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class UseCondition(CallsCondition):
-    """A condition of a goal: the program's text has each of some calls, such as `time.sleep`."""
+    """A condition of a goal: the program's text has all calls in a list, such as `time.sleep`."""
 
 
 @dataclass(frozen=True, slots=True)
 class AvoidCondition(CallsCondition):
-    """A condition of a goal: the program's text has none of some calls, such as `time.sleep`."""
+    """A condition of a goal: the program's text has no call in a list, such as `time.sleep`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -429,7 +429,7 @@ class NoneOf(Combination):
 
 @dataclass(frozen=True, slots=True)
 class Together(Condition):
-    """Several conditions of one goal, all of which must be met; in a goals file, several keys of a goal."""
+    """The conditions of one goal with several keys in the goals file: all of them must be met."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.COMBINED
 

@@ -235,9 +235,9 @@ def explain_unready(question: QuestionCheck, event: Typed) -> str:
 
 
 def _name_view(view: str) -> str:
-    """Return the title of a panel or of the analyser with an action id, such as `Chart (key {panel-chart})`.
+    """Return the title of a panel or of the analyser, with the id of the action that shows it.
 
-    The id in braces is that of the action that shows it; the app replaces it by the action's key.
+    For example, `Chart (key {panel-chart})`: the app replaces the id in braces by the action's key.
     """
     action = "analyse" if view == "analyser" else f"panel-{view}"
     return f"{view.capitalize()} (key {{{action}}})"

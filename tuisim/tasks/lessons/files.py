@@ -450,7 +450,7 @@ def _add_answers(steps: Sequence[LessonStep], location: Location) -> tuple[Lesso
     A step without its own answer gets the answer of the next step that has one.
 
     Raises:
-        ConfigError: a step checks runs, and neither it nor a later step has a model answer.
+        ConfigError: a step checks runs, but it has no model answer, and no later step has one.
     """
     answer = ""
     completed = []

@@ -320,7 +320,10 @@ class LessonStep:
     """The wrong ways that are impossible in this step, each with the reason."""
 
     def find_missing_ways(self) -> tuple[Way, ...]:
-        """Return the kinds of wrong programs that the step neither has as an example nor excludes with a reason."""
+        """Return the kinds of wrong programs of which the lesson says nothing for this step.
+
+        For the other kinds, it has an example, or a reason why there is none.
+        """
         covered = {
             *self.excludes,
             *self.check.EXCLUDES,

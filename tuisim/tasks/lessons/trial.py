@@ -189,7 +189,7 @@ def _find_trial_faults(
 
 
 def _find_missed(goals: Sequence[str], result: Result) -> list[str]:
-    """Return which of some goals a run has missed, each with the reason, as text."""
+    """Return which of the named goals a run has missed, each with the reason, as text."""
     by_name = {each.goal.name: each for each in result.judgements}
     return [
         f"{name}: {by_name[name].reason}"

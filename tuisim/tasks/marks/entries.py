@@ -27,7 +27,7 @@ from tuisim.tasks.marks.students import Student, find_outside_option
 def build_entries(
     submissions: Sequence[Student], task: GoalsFile, options: Mapping[str, Any]
 ) -> tuple[list[RunEntry], list[Student]]:
-    """Return the students whose programs can be run, and all students, some of whom now have a problem.
+    """Return the students whose programs can be run; and all students, with the problems that were noticed.
 
     Args:
         submissions: The students.

@@ -259,9 +259,9 @@ def build_row(
 def _build_empty_row(
     student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome]
 ) -> SheetRow:
-    """Return the row of a student none of whose runs counts.
+    """Return the row of a student without a run that counts.
 
-    Its points are 0 if the hand-in is at fault, and NaN if this machine is.
+    Its points are 0 if the hand-in is at fault, and NaN (unknown) if this machine is.
     """
     failed = next(
         (

@@ -113,11 +113,12 @@ def list_parted_moves(data: RunData) -> Iterator[Unmet]:
 
 
 def _has_swerved(records: Array, *ticks: int) -> bool:
-    """Return whether one wheel alone turned the robot, and then the other one alone turned it back.
+    """Return whether a move of one wheel turned the robot, and then a move of the other wheel turned it back.
 
     Args:
         records: The telemetry.
-        ticks: The first tick of the first move and the tick after its last one, and those of the second move.
+        ticks: Four ticks: the first tick of the first move and the tick after its last one, and the same for the second
+            move.
     """
     start, end, next_start, next_end = ticks
     first, second = (

@@ -145,9 +145,9 @@ def _name_loss(
 def _find_wrong_turn(
     records: Array, spec: RunSpec, mat: Field, watched: Mapping[str, Array]
 ) -> str:
-    """Return a text on the side to which the robot turned away from the line, as it steered with the wrong sign.
+    """Return in words how a robot with the wrong sign in its steering turned away from the line; empty if it did not.
 
-    The text is empty if the robot did not turn away whenever a sensor got brighter.
+    Such a robot turns to the brighter side when a sensor gets brighter.
 
     Args:
         records: Telemetry up to the loss of the line.
@@ -210,8 +210,8 @@ def _turns_away(
     Args:
         records: Telemetry up to the loss of the line.
         eyes: The light sensors.
-        dark: For each of them, by name, whether it saw the line at each tick.
-        watched: The names of those that the program reads.
+        dark: For each light sensor, by name, whether it saw the line at each tick.
+        watched: The names of the light sensors that the program reads.
     """
     pair = sorted((eye for eye in eyes if eye.name in watched), key=lambda eye: eye.x_mm)
     if len(pair) != 2 or not pair[0].x_mm < 0 < pair[1].x_mm:

@@ -160,7 +160,7 @@ def sort_by_cause(reasons: Sequence[Reason]) -> tuple[Reason, ...]:
 
 
 def _rank(reason: Reason, reasons: Sequence[Reason]) -> ReasonKind:
-    """Return the most important kind among those of a reason and of the reasons that it may have caused."""
+    """Return a reason's rank: its kind, or that of the most important reason that it may have caused."""
     effects: list[Reason] = []
     if reason.kind in _CAUSES:
         effects = [

@@ -257,9 +257,9 @@ class RunData:
     def _measure_wheel(
         self, loop: LoopEnd, wheel: str, port: str, records: Array, ticks: Array
     ) -> Series | None:
-        """Return the values that a loop would read from a wheel's motor in some records.
+        """Return the values that a comparison would read from a wheel's motor in given records of telemetry.
 
-        The result is None if the loop reads neither the position nor the speed of the motor.
+        The result is None if it reads something else than the position or the speed of the motor.
 
         Args:
             loop: The comparison: that of a loop's end, or another one.
@@ -278,7 +278,7 @@ class RunData:
     def _measure_sensor(
         self, loop: LoopEnd, sensor: SensorSpec, read: tuple[str, float, str], records: Array
     ) -> Array | None:
-        """Return the value that a loop would read from a sensor in each of some records, shape (n,).
+        """Return the values that a comparison would read from a sensor in given records, shape (n,).
 
         The result is None if the sensor has no such measurement, or if noise or the pen's marks make the computation
         slow.

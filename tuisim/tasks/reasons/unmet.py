@@ -260,9 +260,9 @@ def _describe(data: RunData, loop: LoopEnd, stay: tuple[int, int]) -> str:
 
 
 def _name_nearest(loop: LoopEnd, series: Series, hz: int) -> str:
-    """Return as text which of the values came nearest to the limit of a loop, and when.
+    """Return as text which of the values that a loop read came nearest to its limit, and when.
 
-    If the first or the last value came nearest, the text says from which value to which they went.
+    If that is the first or the last value, the text has both, to show how the values changed.
     """
     values = series.values
     nearest = int(abs(values - loop.limit).argmin())

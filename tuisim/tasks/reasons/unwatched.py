@@ -39,9 +39,10 @@ def list_mistaken_turns(data: RunData) -> Iterator[Unmet]:
 
 
 def _measure_turns(data: RunData, turn: WheelTurn) -> Unmet | None:
-    """Return a call as a mistaken turn, with the angle by which it turned the robot the first time it ran.
+    """Return a fault if a call turned the wheels by an angle that was meant for the robot, when it first ran.
 
-    The result is None if it never ran, or if that angle seems to be intended.
+    The result is None if the call never ran or did not turn the robot on the spot, or if the robot's angle seems
+    intended.
     """
     lines = data.records["line"]
     is_on = (lines >= turn.first_line) & (lines <= turn.last_line)

@@ -180,7 +180,7 @@ def _count_window_ticks(spec: RunSpec) -> int:
 
 
 def _is_driving(records: Array) -> bool:
-    """Return whether the robot or one of its wheels moves in some records."""
+    """Return whether the robot or one of its wheels moves in given records of telemetry."""
     names = ("x_mm", "y_mm", "heading_deg", "left_position_deg", "right_position_deg")
     return any((records[name][1:] != records[name][:-1]).any() for name in names)
 
@@ -336,7 +336,7 @@ class _Search:
         )
 
     def _is_read_no_more(self, times_s: Array) -> bool:
-        """Return whether the last of some readings is so long ago that the program waits for something else."""
+        """Return whether the last of the given readings is so long ago that the program waits for something else."""
         pauses_s = times_s[1:] - times_s[:-1]
         last_s = len(self._records) / self._hz - times_s[-1]
         return bool(last_s > max(_MIN_PAUSE_S, _PAUSES * pauses_s.max(initial=0.0)))
@@ -496,7 +496,7 @@ class _Search:
         return f"{low / per_unit:.0f} {'cm' if per_unit > 1 else '%'}"
 
     def _describe_color(self, sensor: ColorSensorSpec, rows: Array) -> str | None:
-        """Return the name of the only colour under a sensor from the first of some readings to the recording's end.
+        """Return the name of the only colour under a sensor since the first of the given readings.
 
         The result is None if there were several colours, or if that is not known.
         """
