@@ -194,7 +194,8 @@ def measure_progress(before: Values, after: Values) -> float:
 def follow_line(**how: Any) -> LabEnv:
     """Return the task to drive along the edge of a line; it ends when the robot leaves the mat.
 
-    The reward is the progress in mm: all of it where the left sensor reads 50 %, none of it at 0 % or 100 %.
+    The reward is the progress in mm times a factor: 1 if the left sensor reads 50 %, as on the edge, and less for other
+    readings, down to 0 for 0 % and 100 %.
 
     Args:
         how: Arguments of `LabEnv`.

@@ -106,13 +106,13 @@ class Measures:
 def compute_cell(name: str, metric: Metric, run: Run, index: int) -> Any:
     """Return the value of a metric of a run, as a cell of the table.
 
-    The result is None if the metric raises an exception and the program has raised one, too.
-
-    Any other exception of the metric gets a note with the names of the metric and the run.
+    The result is None if the metric raises an exception and the program of the run has raised one, too. Any other
+    exception
+    of the metric gets a note with the names of the metric and the run.
 
     Args:
         name: The name of the metric.
-        metric: Its function.
+        metric: The function that computes it.
         run: The run.
         index: The run's index in the experiment.
 

@@ -271,12 +271,14 @@ class Study:
 def join_columns(
     table: pd.DataFrame, frames: Mapping[int, pd.DataFrame], names: Sequence[str]
 ) -> pd.DataFrame:
-    """Return one frame with the telemetry columns of all runs, one run below another, beside the values of each run.
+    """Return one frame with the telemetry columns of all runs, one run below another.
+
+    Beside the telemetry, each row has the values of its run.
 
     Args:
         table: One row for each run; its columns up to `seed` come before those of telemetry.
         frames: The telemetry columns by the index of their run, in the order of the result.
-        names: Other columns of the table that follow those up to `seed`.
+        names: Other columns of the table, to come directly after `seed`.
     """
     import pandas as pd
 

@@ -291,7 +291,7 @@ _LOCK = Lock()
 
 
 def load_index() -> _Index:
-    """Return the index of the guide; a second call waits for a first one that builds it in another thread."""
+    """Return the index of the guide; if another thread is building it already, wait for that."""
     with _LOCK:
         return _build_index()
 
@@ -352,7 +352,7 @@ def _rank_passages(index: _Index, question: str) -> list[int]:
 
 
 def _split_question(question: str) -> list[str]:
-    """Return the parts of a question about several things; an empty list if it is about one."""
+    """Return the parts of a question about several things; an empty list for a question about one thing."""
     parts = [
         part
         for part in _PART_BREAK.split(question)

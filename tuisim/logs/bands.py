@@ -34,7 +34,7 @@ CUT_OFF = "cut off"
 
 @dataclass(frozen=True, slots=True)
 class Band:
-    """A band: a plateau of one variable, with its level, times and width."""
+    """A plateau of one variable, such as a grey band in the readings of a sensor, with its level, times and width."""
 
     variable: str
     number: int
@@ -215,7 +215,10 @@ def compute_driven_mm(log: Log, series: Series) -> FloatArray | None:
 
 
 def describe_levels(report: BandReport) -> str:
-    """Return the levels of a variable's bands as a text of one line, each with its grey and how often it came."""
+    """Return the levels of a variable's bands as a text of one line.
+
+    Each level has its grey after it and, if several bands have this level, their number, such as `50.20 grey (3x)`.
+    """
     if not report.count:
         return f"{report.variable}: no level: its values stand still nowhere"
     levels = _group_levels(report)

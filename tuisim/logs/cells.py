@@ -173,7 +173,7 @@ class _Column:
 
 
 class TypedColumns:
-    """The types and number forms of the columns of one file, which their first cells decide.
+    """Converts the columns of one file from texts to numbers and times; the first cells of each column decide its type.
 
     Args:
         decimal: The decimal sign; empty to find it.

@@ -238,7 +238,7 @@ _NO_VALUES = ("run", "line", "row", "x_mm", "y_mm", "heading_deg")
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """The roles of a table's columns: time, variable, values and run."""
+    """Which columns of a table have the times, the names of variables, the values, and the numbers of the runs."""
 
     time: str = ROW
     """Column with the time; `ROW` if the samples are counted."""

@@ -303,7 +303,7 @@ def _join_lines(
 
 
 def sniff_separator(lines: Sequence[str]) -> str:
-    """Return the separator, one of `SEPARATORS` or `BLANKS`, with which lines are most certainly rows of a table."""
+    """Return the separator that splits lines into the cells of a table best: one of `SEPARATORS` or `BLANKS`."""
     ranks = {sign: _rank_separator(lines, sign) for sign in (*SEPARATORS, BLANKS)}
     # Without any number, the separator that all lines have equally often is the best.
     best = max(SEPARATORS, key=lambda sign: (ranks[sign].width > 1, ranks[sign]))
@@ -370,7 +370,7 @@ def _merge_kinds(kinds: str, others: str) -> str | None:
 def _find_first_row(table: Sequence[_Line], run: _Run) -> int:
     """Return the index of the table's first row, given the run of its typical rows.
 
-    Rows directly above the run belong to the table even if one of their cells is of another kind.
+    Lines directly above the run are rows of the table, too, even if one of their cells is of another kind.
     """
     start = run.start
     while start and _is_row(table[start - 1].kinds, run.kinds):

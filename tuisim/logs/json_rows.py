@@ -197,9 +197,11 @@ class DocumentReader:
         return CsvReader(self._notes, self._choices).read(Block(1, text.getvalue()))
 
     def _list_rows(self, value: Mapping[str, Any]) -> list[Any]:
-        """Return the rows in a JSON object: those of the only table in it, or those of its columns.
+        """Return the rows that a JSON object stands for.
 
-        Otherwise, return the object as one row.
+        If one value of the object is a table, these are its rows. Otherwise, lists in the object are columns, which are
+        joined
+        to rows. An object without lists is a single row.
 
         Raises:
             LogError: the object has several tables, or columns of different lengths.

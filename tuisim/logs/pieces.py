@@ -223,7 +223,7 @@ def _estimate_steps(
 
 
 def find_strays(part: FloatArray, sigma: float) -> BoolArray:
-    """Return for each sample whether it is a stray of its level, shape (m, length).
+    """Return for each sample whether it is a stray, far from the level that it belongs to, shape (m, length).
 
     Args:
         part: The samples of m levels, shape (m, length).

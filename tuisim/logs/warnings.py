@@ -45,7 +45,7 @@ class Notes:
 
         Args:
             singular: The problem, such as `cell is not a number`.
-            plural: The same in the plural.
+            plural: The same problem of several cells, such as `cells are not numbers`.
             rows: Rows of the file, from 1.
         """
         if rows:

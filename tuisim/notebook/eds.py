@@ -95,7 +95,7 @@ def image_pair(frame: pd.DataFrame, index: int = -1) -> list[Image]:
     """Return the images that were logged at the same time: usually one of the left and one of the right sensor.
 
     Args:
-        frame: As from `get_image_data_from_datalog`.
+        frame: A frame with the columns that `get_image_data_from_datalog` returns.
         index: Index of the moment, from 0; -1 is the last.
 
     Raises:
@@ -114,7 +114,7 @@ def bw_image_data(
     """Return one logged image in black and white: one row per pixel row, 1 is dark.
 
     Args:
-        frame: As from `get_image_data_from_datalog`.
+        frame: A frame with the columns that `get_image_data_from_datalog` returns.
         index: Row of the frame, from 0; -1 is the last.
         threshold: The lightest grey, 0 … 255, that becomes 1.
         crop: Left, top, right and bottom of a part, in pixels; None for the whole image.

@@ -95,7 +95,7 @@ class ArrayReader:
         """Return the RGBA bytes of each sensor by name at the tick of a row; empty if that tick is not recorded yet.
 
         Raises:
-            LogError: as for `read_arrays`.
+            LogError: the recording is damaged, or its mat is gone.
         """
 
         run = self._run

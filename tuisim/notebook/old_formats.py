@@ -174,7 +174,7 @@ def draw_bw_picture(
 
     Args:
         arrays: The arrays of all runs.
-        index: Which array, from 0; -1 is the last.
+        index: Index of the array, from 0; -1 is the last.
         threshold: The lightest grey, 0 … 255, that becomes black.
         crop: Left, top, right and bottom of a part, in pixels; None for the whole picture.
 

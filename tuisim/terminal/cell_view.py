@@ -361,7 +361,7 @@ class LinesView(RowsView):
 
 
 class LinesPanel(Widget):
-    """Base of panels whose content is lines of text, which are made again for each size."""
+    """Base of panels that show lines of text; a panel makes its lines again when its size changes."""
 
     DEFAULT_CSS = "LinesPanel > LinesView { width: 1fr; height: 1fr; }"
 

@@ -283,7 +283,7 @@ def draw_mono_cells(
     """Return some cells of a picture, drawn without colours as braille dots or ASCII signs, shape (n,).
 
     Args:
-        picture: As many points in each cell as the glyphs have.
+        picture: The picture; each of its cells has as many points as the glyphs have.
         glyphs: The glyphs of `cell_set`.
         places: Rows and columns of the cells.
         cell_set: Braille or ASCII.

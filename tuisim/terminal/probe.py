@@ -50,7 +50,7 @@ Version = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """The versions from which on a terminal program draws sextants and octants itself, without a font."""
+    """From which versions on a terminal program draws sextants and octants itself, without a font."""
 
     sextants: Version
     octants: Version | None

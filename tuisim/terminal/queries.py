@@ -146,7 +146,10 @@ _LONGEST = 500
 
 
 class TerminalAnswered(Message):
-    """Message: the terminal has answered the last of the queries that were sent together; it has all facts so far."""
+    """Message: the terminal has answered the last of the queries that were sent together.
+
+    The message has all facts that are known of the terminal so far.
+    """
 
     def __init__(self, facts: TerminalFacts) -> None:
         super().__init__()

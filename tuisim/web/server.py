@@ -409,7 +409,7 @@ async def _serve(server: Server, host: str, port: int, announce: Callable[[int],
 
 @asynccontextmanager
 async def run_server(server: Server, host: str, port: int) -> AsyncIterator[int]:
-    """In an `async with` block, which gets the port, answer requests; at its end, end the apps of all visitors.
+    """Answer requests during an `async with` block, which gets the port; at its end, end the apps of all visitors.
 
     Args:
         server: Answers the requests.
@@ -443,7 +443,10 @@ async def run_server(server: Server, host: str, port: int) -> AsyncIterator[int]
 
 
 def _is_no_wrong_request(record: logging.LogRecord) -> bool:
-    """Return whether to log a record: False for the error of a request that is not HTTP, which anybody can send."""
+    """Return whether to log a record.
+
+    The result is False if the record only says that a request is not HTTP, as anybody can send such a request.
+    """
     return not (record.exc_info and isinstance(record.exc_info[1], HttpProcessingError))
 
 

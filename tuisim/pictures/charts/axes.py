@@ -58,7 +58,7 @@ _MAX_CHARACTERS = 20
 
 
 def label(value: float, step: float) -> str:
-    """Return the label of a tick, with no more digits than the distance between two ticks needs.
+    """Return the label of a tick, with no more digits than are needed to tell it from the next tick.
 
     Args:
         value: Position of the tick.

@@ -61,7 +61,7 @@ def find_area(records: NDArray[Any]) -> Area:
 def build_world_view(
     robot: RobotSpec, mm_per_px: float = MM_PER_PX, area: Area = FIELD
 ) -> Viewport:
-    """Return a view of an area that shows the whole robot wherever in the area its axle is."""
+    """Return a view of an area that shows the whole robot wherever its axle is inside the area."""
     # The field is no multiple of three mm wide: the rest of the last column is left out.
     width_px, height_px = (max(int(side_mm / mm_per_px), 1) for side_mm in area.size_mm)
     rim_px = math.ceil(measure_reach_mm(build_outline(robot)) / mm_per_px) + FRAME_PX

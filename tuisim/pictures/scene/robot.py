@@ -241,7 +241,7 @@ def _classify_samples(
         px_mm: Width of a pixel.
         cell_cols: Pixels across a cell.
         edge_mm: Width of the robot's edge.
-        colors: Of its parts.
+        colors: The colours of the parts, which say whether wheels and marker are drawn.
     """
     across = np.abs(side)
     parts = np.zeros(side.shape, np.intp)
