@@ -188,7 +188,7 @@ def _read(name: str, value: Any) -> Any:
 
 
 def _select_started(rows: Iterable[Row]) -> dict[int, Row]:
-    """Return rows by the index of their task, without runs that could not be started, which are tried again."""
+    """Return rows by the index of their task; without runs that could not be started, so that they are tried again."""
     return {int(row[RUN]) - 1: row for row in rows if row.get("end")}
 
 

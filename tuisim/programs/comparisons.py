@@ -182,9 +182,9 @@ def find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None:
 
 
 def find_attribute(node: ast.expr) -> str:
-    """Return the attribute that an expression reads, or the method that it calls without an argument or with 0.
+    """Return the attribute that an expression reads, such as `angle`, or the method that it calls without an argument.
 
-    The result is empty for other expressions.
+    The method's only argument may also be 0. The result is empty for other expressions.
     """
     match node:
         case (

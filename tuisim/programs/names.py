@@ -119,7 +119,7 @@ def _find_uses(tree: ast.Module) -> Iterator[tuple[ast.Attribute, ast.Name]]:
 
 
 def _list_bound_names(tree: ast.Module) -> Iterator[str]:
-    """Yield the names that the program assigns or defines, in any scope, once for each place."""
+    """Yield the names that the program assigns or defines, in any scope; names with several such places repeatedly."""
     for node in ast.walk(tree):
         match node:
             case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):

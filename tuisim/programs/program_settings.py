@@ -373,7 +373,7 @@ def _find_shown(facts: SourceFacts, free: Collection[str]) -> tuple[str, ...] | 
 
 
 def _check_prelude(program: Program) -> None:
-    """Check that a program with a prelude, which uses ev3dev2, does not import Pybricks.
+    """Check that a program with a prelude does not import Pybricks, as the definitions in the prelude use ev3dev2.
 
     Raises:
         ProfileError: the program imports Pybricks.

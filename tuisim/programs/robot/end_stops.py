@@ -39,7 +39,7 @@ class StopPress:
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A position to which the program turns a motor, or an angle by which it turns the motor."""
+    """A position to which the program turns a motor, or an angle by which it turns the motor from where it stands."""
 
     deg: float
     where: Where

@@ -227,7 +227,7 @@ class _Reader:
     # Calls
 
     def _sort(self, call: Call, calls: dict[Function, list[Call]]) -> None:
-        """Record a call under the function or class of the program, or the class of the library, that it calls.
+        """Record a call under what it calls: a function or class of the program, or a class of the library.
 
         Args:
             call: The call.

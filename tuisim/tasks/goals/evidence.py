@@ -359,7 +359,7 @@ class Evidence:
 
 
 def find_ticks(rows: Array, hz: int) -> Array:
-    """Return for each reading, or other record with a time, the tick in which it was taken, shape (n,).
+    """Return for each reading, or each other record with a time, its tick, shape (n,).
 
     Args:
         rows: The readings, with their times in the field `time_ns`.

@@ -326,7 +326,7 @@ def note_fault(check: NoteCheck, event: Noted) -> str:
 
 
 def parse_event(check: Check, text: str) -> Event:
-    """Return the event for a text in a lesson's file, which is an answer, a breakpoint, an expression or a file name.
+    """Return the event of a student who enters a text, such as an answer, a breakpoint, an expression or a file name.
 
     Args:
         check: The check of the step.

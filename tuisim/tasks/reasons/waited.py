@@ -82,7 +82,7 @@ _SAME_HEADING_DEG = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Awaited:
-    """A sensor, button or connection that the program read several times without the change that it waited for."""
+    """A sensor, button or connection that the program read again and again, without the change that it waited for."""
 
     subject: Subject
     port: str

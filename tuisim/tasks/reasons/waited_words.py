@@ -284,7 +284,7 @@ def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
 
 
 def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
-    """Return as text which key of the app gives a program what it waited for, with the key's action id in braces.
+    """Return as text which key of the app gives a program what it waited for; the key's action id stands in braces.
 
     If no key does, return the option of the command line, as `name_remedy` does.
     """
