@@ -33,7 +33,10 @@ class Column:
     name: str
     """An identifier that ends in the unit, such as `left_red_pc`; see `logs.units`."""
     of: Callable[[Iterable[Sequence[float]], RunSpec], list[float]] | None = None
-    """Computes the values from the owner's measured ones, a row for each tick; None: the column is measured."""
+    """Computes the values from the owner's measured ones, a row for each tick; None: the column is measured.
+
+    Each value is computed from its own row alone: a breakpoint gives a single row.
+    """
     is_traced: bool = False
     """Whether the chart offers the column."""
     also: tuple[str, ...] = ()
