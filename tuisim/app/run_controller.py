@@ -352,10 +352,10 @@ class RunController:
         self._branch = branch
 
     def _finish_branch(self, paused: protocol.Paused | None = None) -> Branch | None:
-        """Continue the run of a branch that has paused at the instant of the branch, and return the branch.
+        """End the start of a branch: let its run, which has paused where the branch begins, go on; return the branch.
 
-        The result is None if no branch is being started. The program may end before that instant: it then pauses at its
-        end, and is resumed.
+        The result is None if no branch is being started. A program that ended before that instant has paused at its
+        end, and goes on from there.
 
         Args:
             paused: The pause; None if the run has ended, so that there is nothing to continue.

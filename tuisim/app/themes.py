@@ -107,9 +107,9 @@ class ThemeColors(LineFilter):
         return self._replaced.get(own, own)
 
     def choose_text_rgb(self, own: Rgb) -> Rgb:
-        """Return the theme's colour for text or lines that have one of the app's own colours.
+        """Return the colour in which the theme shows text or lines of the colour `own`, legible on its background.
 
-        The result is legible on the theme's background. Any other colour is returned unchanged.
+        If `own` is none of the app's own colours, it is returned unchanged.
         """
         new = self.rgb(own)
         return (

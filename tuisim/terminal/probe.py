@@ -152,12 +152,11 @@ def is_multiplexer(terminal: str) -> bool:
 
 
 def has_all_colors(environment: Mapping[str, str]) -> bool:
-    """Return whether tmux says that the terminal around it shows all colours; False without tmux.
+    """Return whether tmux says that the terminal around it shows 24-bit colours; False without tmux or in GNU screen.
 
     COLORTERM does not tell, as a multiplexer inherits this variable from the terminal around it. GNU screen cannot be
-    asked
-    at all; before version 5, it takes the code of a 24-bit colour for blinking, underlined text. So the result is also
-    False if GNU screen runs (variable STY): tmux may then be around it.
+    asked; before version 5, it takes the code of a 24-bit colour for blinking, underlined text. The variable STY says
+    that it runs, perhaps inside tmux.
     """
     return _ALL_COLORS in _ask_tmux("client_termfeatures", environment).split(",")
 

@@ -124,7 +124,7 @@ def list_missing_names() -> list[str]:
         for name in names
         if not _has(owner, name)
     ]
-    # Modules are named without the packages that they are in.
+    # Short names, as the message lists all that are missing.
     lacking = [
         f"{module.__name__.rpartition('.')[2]}.{name}"
         for module, name in _GLOBALS

@@ -244,7 +244,9 @@ class BrickDrive:
     def glide_evenly(
         self, records: Records, left: EvenGlide, right: EvenGlide
     ) -> tuple[float, float]:
-        """Move the robot by several ticks with equal rotations of the wheels, and write a tick record for each.
+        """Move the robot through several ticks, and write a tick record for each.
+
+        Each wheel turns by the same angle in every tick; left and right may differ.
 
         Returns:
             The final positions of the left and the right encoder, in degrees.

@@ -249,9 +249,10 @@ class Interrupts:
             session.check_stop()
 
     def _can_raise(self, frame: types.FrameType | None) -> bool:
-        """Return whether a handler may raise an exception in a frame.
+        """Return whether a signal handler that interrupts this frame may raise an exception in it.
 
-        It may in code of the program, in code of a library that the program called, and in a wait.
+        It may in code of the program, in code of a library that the program called, and while the program waits for
+        simulated time. It must not in tuisim's own code, or if there is no frame.
         """
         if self.main_is_parked or (frame is not None and frame.f_code in self._soft_codes):
             return True

@@ -137,7 +137,7 @@ class _Search:
         self._folders = list_first_folders(program)
 
     def extend(self, tree: ast.Module, file: str) -> None:
-        """Add the folders that a module adds to `sys.path`.
+        """Search for modules also in the folders that the code of a module adds to `sys.path`.
 
         A relative folder is relative to the program, as on the brick.
 

@@ -247,7 +247,7 @@ def combine_settings(motor: ControlSettings, counts_per_unit: float) -> ControlS
         kd=motor.kd if has_torque else divide(motor.kd, 2),
         integral_range=2 * motor.integral_range,
         integral_rate=2 * motor.integral_rate,
-        # With torques, a move is done where the proportional part uses up the torque.
+        # Firmware with torques: the error at which the proportional part alone asks for the highest torque.
         position_tolerance=2
         * (COUNTS_PER_DEG * motor.torque_unm / max(kp, 1) or motor.position_tolerance),
         speed_tolerance=2 * motor.speed_tolerance,

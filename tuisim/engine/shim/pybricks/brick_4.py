@@ -104,7 +104,7 @@ class System(Connected):
         return self._name
 
     def info(self) -> dict[str, Any]:
-        """Return a dictionary of the hub's name, reset reason, connections and start, by the firmware's keys."""
+        """Return what the firmware reports of the hub: its name, causes of reset and start, and who is connected."""
         return {
             "name": self._name,
             "reset_reason": 0,

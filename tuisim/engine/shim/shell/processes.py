@@ -222,7 +222,11 @@ class System:
         self.pids = count(NO_PID + 1)
 
     def patch_os(self, replace: Replace) -> None:
-        """Replace the functions of `os` that start and end processes."""
+        """Replace `os.system`, `os.kill`, `os.killpg` and `os.getpgid` by functions that know the simulated processes.
+
+        Args:
+            replace: Called with a module, the name of a function, and what replaces it.
+        """
         group_of = os.getpgid
 
         def getpgid(pid: int) -> int:
