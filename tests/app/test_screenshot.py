@@ -78,7 +78,7 @@ async def test_a_screenshot_taken_from_the_palette_does_not_show_the_palette(
     async with open_lab(size=(100, 30)) as (pilot, app):
         await pilot.press("ctrl+p", *"screenshot")
         await until(pilot, lambda: len(app.screen_stack) == 2)
-        await pilot.press("down", "enter")
+        await pilot.press("enter")
         await until(pilot, lambda: (tmp_path / "tuisim-1.png").exists())
     assert "Saveascreenshot" not in words_in(tmp_path / "tuisim-1.svg")
 

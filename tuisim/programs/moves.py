@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import copysign
 from typing import TypeGuard
@@ -133,7 +133,8 @@ def find_steering(tree: ast.Module, line: int) -> int:
         if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or node.lineno)
     ]
     functions = [node for node in around if isinstance(node, ast.FunctionDef)]
-    places = functions or [node for node in around if isinstance(node, ast.For | ast.While)]
+    loops = [node for node in around if isinstance(node, ast.For | ast.While)]
+    places: Sequence[ast.stmt] = functions or loops
     if not places:
         return line if any(name_call(node).startswith("follow") for node in around) else 0
     own = tuple(node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef))
