@@ -179,6 +179,11 @@ def test_a_mistyped_module_is_answered_with_the_one_that_exists(
     assert run(f"import {name}", prelude="none").errors[-1] == f"Did you mean {meant}?"
 
 
+@pytest.mark.parametrize("name", ["winreg", "ev3dev2.time", "math.cmath"])
+def test_no_module_is_proposed_that_does_not_exist_either(run: Run, name: str) -> None:
+    assert "Did you mean" not in "\n".join(run(f"import {name}", prelude="none").errors)
+
+
 @pytest.mark.parametrize(
     "name", ["'ev3dev2.sensor.pixy'", "'a b'", "3"], ids=["of the library", "no name", "no text"]
 )

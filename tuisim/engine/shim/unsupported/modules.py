@@ -385,12 +385,12 @@ def point_at_package(error: BaseException, folder: str) -> None:
     if not isinstance(error, ModuleNotFoundError) or not isinstance(error.name, str):
         return
     top = error.name.partition(".")[0]
-    folder_name, _, name = error.name.rpartition(".")
-    modules = iter_modules(getattr(sys.modules.get(folder_name), "__path__", None))
-    if close := closest(
-        name, [*sys.stdlib_module_names, *(module.name for module in modules)], 1, 0.85
-    ):
-        error.add_note(f"Did you mean {'.'.join(filter(None, (folder_name, *close)))}?")
+    package_name, _, name = error.name.rpartition(".")
+    places = getattr(sys.modules.get(package_name), "__path__", ()) if package_name else None
+    names = {module.name for module in iter_modules(places)}
+    names |= set() if package_name else sys.stdlib_module_names
+    if name not in names and (close := closest(name, names, 1, 0.85)):
+        error.add_note(f"Did you mean {'.'.join(filter(None, (package_name, *close)))}?")
         return
     if not top.isidentifier() or top in sys.modules or top in sys.stdlib_module_names:
         return
