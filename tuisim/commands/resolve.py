@@ -176,11 +176,7 @@ def _prepare_source(
 
 def _build_spec(settings: Settings) -> RunSpec:
     """Return the run specification of settings; print warnings about the robot file on stderr."""
-    robot = (
-        settings["robot"]
-        if isinstance(settings["robot"], RobotChoice)
-        else RobotChoice.load(settings["robot"], "-r")
-    )
+    robot = RobotChoice.load(settings["robot"], "-r")
     for note in robot.notes:
         echo_error(f"note: {note}")
     return build_run_spec(settings.changed({"robot": robot}) if robot.notes else settings)

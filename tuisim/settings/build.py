@@ -117,8 +117,7 @@ def build_run_spec(settings: Settings) -> RunSpec:
     """
     with errors_at("", "-b"):
         mat = find_mat(os.path.expanduser(settings["background"]), settings["mats"])
-    chosen = settings["robot"]
-    choice = chosen if isinstance(chosen, RobotChoice) else RobotChoice.load(chosen, "-r")
+    choice = RobotChoice.load(settings["robot"], "-r")
     named = settings["profile"]
     profile = named if isinstance(named, ProfileSpec) else load_profile(named, "--profile")
     world = WorldSpec(

@@ -117,7 +117,7 @@ def _split_words(value: object, location: Location) -> list[str]:
 
 
 def _change_robot(table: object, chosen: str | RobotChoice, location: Location) -> RobotChoice:
-    base = chosen if isinstance(chosen, RobotChoice) else RobotChoice.load(chosen, "-r")
+    base = RobotChoice.load(chosen, "-r")
     robot = RobotChoice.parse(table, base.spec.name, location, base.spec)
     return replace(base, spec=robot.spec, own_places=base.own_places or robot.own_places)
 

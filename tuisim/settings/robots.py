@@ -52,20 +52,22 @@ class RobotChoice:
     """Warnings about the file, to be shown to the user."""
 
     @classmethod
-    def load(cls, word: str, key: str = "") -> RobotChoice:
-        """Return the robot that a word names: one of tuisim's, or the one in a TOML or JSON file.
+    def load(cls, robot: str | RobotChoice, key: str = "") -> RobotChoice:
+        """Return the robot that a setting names: one of tuisim's, or the one in a TOML or JSON file.
 
         Args:
-            word: The name of the robot, or the path of the file.
-            key: The option that gives the word, for errors.
+            robot: The name of the robot, or the path of the file. A robot that was loaded before is returned unchanged.
+            key: The option that gives the name, for errors.
 
         Raises:
             RobotError: the name is unknown, or the file is wrong.
         """
-        if word in ROBOTS:
-            return cls(ROBOTS[word], own_places=False)
-        data, name, location = files.read_named(word, "robot", ROBOTS, RobotError, key)
-        return (parse_json_robot if word.lower().endswith(".json") else cls.parse)(
+        if isinstance(robot, RobotChoice):
+            return robot
+        if robot in ROBOTS:
+            return cls(ROBOTS[robot], own_places=False)
+        data, name, location = files.read_named(robot, "robot", ROBOTS, RobotError, key)
+        return (parse_json_robot if robot.lower().endswith(".json") else cls.parse)(
             data, name, location
         )
 

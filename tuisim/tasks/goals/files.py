@@ -522,11 +522,7 @@ def _has(data: Any, path: list[int | str]) -> bool:
 
 def build_runs(worlds: Sequence[TrialWorld]) -> list[RunSpec]:
     """Return a run specification for each world, with the world's robot and the profile that has the most columns."""
-    chosen = [world.settings.get("robot", DEFAULT_ROBOT) for world in worlds]
-    robots = [
-        chosen_robot if isinstance(chosen_robot, RobotChoice) else RobotChoice.load(chosen_robot)
-        for chosen_robot in chosen
-    ]
+    robots = [RobotChoice.load(world.settings.get("robot", DEFAULT_ROBOT)) for world in worlds]
     # A run may have another profile; this one has the most columns.
     return [RunSpec(robot.spec, WorldSpec(), PROFILES["ev3"]) for robot in robots]
 
