@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import pairwise, product
 from typing import Any
 
@@ -201,6 +201,8 @@ def _find_lines(mean: _Numbers, ground: _Numbers, way: _Numbers) -> _Flags:
     # Off the mat, there is no part of a line.
     padded = np.pad(mean, _PAD, constant_values=np.nan)
 
+    # Both directions, and the search for tips, compare with the same neighbours.
+    @cache
     def measure(down: int, right: int) -> _Numbers:
         share: _Numbers = ((_shift(padded, down, right) - ground) * way).sum(axis=2)
         return np.nan_to_num(share)
@@ -214,28 +216,22 @@ def _find_lines(mean: _Numbers, ground: _Numbers, way: _Numbers) -> _Flags:
         # A line between two rows of pixels covers both rows; at the end of an edge, all pixels on one side are covered.
         beside = np.maximum(np.minimum(last, before), np.minimum(after, next_after))
         is_line |= (
-            is_best
-            & covers
-            & (share - beside >= _MIN_SHARE / 2)
-            & ~_is_tip(measure, share, down, right)
+            is_best & covers & (share - beside >= _MIN_SHARE / 2) & ~_is_tip(measure, down, right)
         )
     return is_line
 
 
-def _is_tip(
-    measure: Callable[[int, int], _Numbers], share: _Numbers, down: int, right: int
-) -> _Flags:
+def _is_tip(measure: Callable[[int, int], _Numbers], down: int, right: int) -> _Flags:
     """Return which pixels are only the tip of an area, such as of a disc, and not a part of a line.
 
     On one side of a tip along the line, the area is wider; on the other side, there is hardly anything of it.
 
     Args:
         measure: Returns how much of each pixel's neighbour has the colour of the line; the neighbour is given by how
-            many
-            pixels it is below and to the right.
-        share: How much of each pixel has that colour.
+            many pixels it is below and to the right.
         down, right: The step across the line, in pixels: (1, 0) or (0, 1).
     """
+    share = measure(0, 0)
     is_tip = np.zeros(share.shape, bool)
     for side in (-1, 1):
         row, col = side * right, side * down
