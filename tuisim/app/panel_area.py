@@ -386,6 +386,14 @@ class PanelArea(Container):
         if keeps and keeps not in self.arrangement.boxes and not self.alone:
             self._asked[keeps] = True
             self.arrangement = self._arrange()
+        self._place_panels()
+        if self.world:
+            is_usual = self.preset == Preset.STANDARD
+            key = fill_keys(self.app, f"{{layout-{self.preset}}}")
+            self.world.name_layout("" if is_usual else f"{key} {self.preset}")
+
+    def _place_panels(self) -> None:
+        """Move the panels to their boxes, with the rows left free that a notice needs."""
         with self.app.batch_update():
             for panel, widget in self.panels.items():
                 widget.display = panel in self.arrangement.boxes
@@ -393,10 +401,6 @@ class PanelArea(Container):
                 styles = self._find_panel(panel).styles
                 styles.width, styles.height = box.width, box.height
                 styles.offset = (box.x, box.y)
-        if self.world:
-            is_usual = self.preset == Preset.STANDARD
-            key = fill_keys(self.app, f"{{layout-{self.preset}}}")
-            self.world.name_layout("" if is_usual else f"{key} {self.preset}")
         self.post_message(self.Rearranged())
 
     def leave_rows(self, rows: int) -> None:
@@ -404,7 +408,7 @@ class PanelArea(Container):
         rows = rows if self.app.screen is self.screen else 0
         if rows != self._free_rows:
             self._free_rows = rows
-            self.lay_out()
+            self._place_panels()
 
     def _find_panel(self, panel: str) -> Widget:
         if panel not in self.panels:
