@@ -40,6 +40,20 @@ async def test_the_rows_that_a_notice_needs_are_left_free_until_it_is_gone() -> 
         await until(pilot, lambda: rows == [1, 0])
 
 
+async def test_rows_are_not_taken_back_between_two_notices_that_need_as_many() -> None:
+    app = TerminalApp()
+    rows: list[int] = []
+    app.notices.leave_rows = rows.append
+    async with app.run_test(notifications=True, size=(60, 21)) as pilot:
+        app.notify(LONG, timeout=inf)
+        await until(pilot, lambda: rows == [1])
+        app.notices.release()
+        app.notify(LONG[::-1], timeout=inf)
+        await until(pilot, lambda: rows == [1, 1])
+        app.clear_notifications()
+        await until(pilot, lambda: rows == [1, 1, 0])
+
+
 async def test_an_error_stays_until_it_is_read_and_the_newest_notice_follows() -> None:
     app = TerminalApp()
     async with app.run_test(notifications=True) as pilot:

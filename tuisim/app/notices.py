@@ -186,5 +186,10 @@ class Notices:
     def _remove_row(self) -> None:
         if self._row is not None and self._row.is_attached:
             self._row.remove()
-            self.leave_rows(0)
+            # If another notice follows at once, the panels keep their places, unless it needs more or fewer rows.
+            self._app.call_after_refresh(self._free_rows)
         self._row = None
+
+    def _free_rows(self) -> None:
+        if self._row is None and not self._waiting and not is_leaving(self._app):
+            self.leave_rows(0)
