@@ -92,6 +92,17 @@ async def test_without_goals_the_panel_says_what_to_do_next() -> None:
         assert shown(app) == ["No goals: o opens a goals file such as", "square_goals.toml"]
 
 
+async def test_the_title_of_the_task_is_in_the_frame_where_it_would_take_a_row_of_the_goals(
+    task: Path,
+) -> None:
+    async with open_lab(with_goals(task), size=SIZE) as (pilot, app):
+        await until_shown(pilot, "J Goals: There and done ─")
+        assert shown(app)[0] == "0 of 5 points"
+        await pilot.resize_terminal(120, 50)
+        await until_shown(pilot, "J Goals ─")
+        assert shown(app)[:2] == ["There and done", "0 of 5 points"]
+
+
 @pytest.mark.slow
 async def test_a_run_is_judged_when_it_has_ended(task: Path) -> None:
     async with open_lab(with_goals(task, DRIVES), size=SIZE) as (pilot, app):
@@ -212,7 +223,7 @@ async def test_goals_are_opened_with_their_world_and_closed_with_the_next(task: 
 
 @pytest.mark.slow
 async def test_examples_of_goals_are_offered_and_opened_by_name(task: Path) -> None:
-    # In fewer rows, the panel lists the goals without the title of the task.
+    # In fewer rows, the frame of the panel has the beginning of the title.
     async with open_lab(size=(120, 42)) as (pilot, app):
         await pilot.press("o")
         await until(pilot, lambda: bool(app.screen.query(OptionList)))

@@ -8,9 +8,16 @@ from textual import events
 from textual.binding import Binding, BindingType
 
 from tuisim.app.panels import PANELS
-from tuisim.app.panels.titles import build_title
-from tuisim.app.render.goals import GoalsPicture, GoalsView, draw_goals, find_current_goal
+from tuisim.app.panels.titles import build_title, count_columns
+from tuisim.app.render.goals import (
+    TITLED_ROWS,
+    GoalsPicture,
+    GoalsView,
+    draw_goals,
+    find_current_goal,
+)
 from tuisim.terminal.cell_view import LinesPanel
+from tuisim.terminal.text_runs import cut
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
@@ -90,7 +97,9 @@ class Goals(LinesPanel, can_focus=True):
             self._content, states, self._index, self._first, size.width, size.height
         )
         below = f" ↓{self._picture.below}" if self._picture.below else ""
-        self.border_title = build_title(self.app, _INFO.id) + below
+        room = count_columns(_INFO.id, self.size.width) - len(below)
+        task = "" if size.height >= TITLED_ROWS else cut(self._content.title, room)
+        self.border_title = build_title(self.app, _INFO.id, task) + below
         self._text.set_lines(self._picture.lines)
 
     def _show_subtitle(self) -> None:

@@ -37,7 +37,7 @@ def build_title(app: App[Any], panel: str, name: str = "") -> str:
     return f"[bold $tuisim-yellow]{escape_markup(key)}[/] {title}"
 
 
-def _count_columns(panel: str, width: int) -> int:
+def count_columns(panel: str, width: int) -> int:
     """Return how many columns the title of a panel leaves for a name behind it, in a frame of `width` columns."""
     info = PANELS[panel]
     return width - _FRAME - len(f"{info.key} {info.title}: ")
@@ -53,7 +53,7 @@ def name_mat(mat: str, layout: str, width: int) -> str:
         layout: The name of the preset; empty for none.
         width: Columns of the panel.
     """
-    room = _count_columns("world", width)
+    room = count_columns("world", width)
     wordings = (f"{mat} · {layout}", layout) if layout else ()
     return next((words for words in wordings if cell_len(words) <= room), mat)
 
@@ -81,7 +81,7 @@ def name_setup(now: Snapshot, width: int) -> str:
     """Return robot, seed, noise and drift in words, as many as fit a title; noise and drift of 0 are left out."""
     spec = now.spec
     noise = now.instant.noise
-    room = _count_columns("instrumentation", width)
+    room = count_columns("instrumentation", width)
     seed = [f"seed {spec.seed}"] if spec.seed else []
     kinds = [f"light ±{noise.light}"] * bool(noise.light) + [f"motor ±{noise.motor}"] * bool(
         noise.motor

@@ -36,8 +36,8 @@ _PENALTY_WORDS = {
 """The words for the states of a goal that takes points off."""
 _STATE_COLUMNS = 9
 """Columns of the sign and the word, such as `✗ missed `."""
-_TITLED_ROWS = 9
-"""From this height on, the title of the task is shown, too."""
+TITLED_ROWS = 9
+"""In fewer rows, the lines begin without the title of the task, which is in the frame of the panel instead."""
 _DETAIL_ROWS = 3
 """Rows that are kept for a goal in detail, however long the list is."""
 
@@ -111,7 +111,7 @@ def draw_goals(
         if state is GoalState.MET
     )
     total = f"{reached:g} of {compute_max_points(view.goals):g} points"
-    lines = list(_wrap_text(view.title, width, _NAME)) if height >= _TITLED_ROWS else []
+    lines = list(_wrap_text(view.title, width, _NAME)) if height >= TITLED_ROWS else []
     lines.append([(total, _HEAD)])
     listed = [
         (line, at)
