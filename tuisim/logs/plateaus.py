@@ -220,7 +220,7 @@ def _join_levels(signal: Signal, cut: Pieces, *, has_strays: bool) -> PlateauArr
         parts = np.concatenate((pieces[~hidden], cut[hidden[owners]]))
         parts = parts[np.argsort(parts[:, 0])]
         pieces = _join_pieces(signal._replace(drifts=False), parts, has_strays=has_strays)
-        plateaus = measure(signal, pieces)
+        plateaus = _measure_changed(signal, pieces, plateaus)
     long_plateaus: PlateauArray = plateaus[count_samples(pieces) >= MIN_SAMPLES]
     return long_plateaus
 
@@ -267,13 +267,26 @@ def _settle(signal: Signal, plateaus: PlateauArray) -> PlateauArray:
     # After they were extended, two plateaus may be separated only by a stray, so they are joined again.
     grown = _extend_pieces(signal, read_spans(plateaus))
     spans = join_drifting(signal._replace(drifts=False), grown)
-    known = np.minimum(np.searchsorted(plateaus["start"], spans[:, 0]), len(plateaus) - 1)
-    settled = plateaus[known]
-    # Most spans have not changed: measuring only the others saves a sixth of the time of the search.
-    changed = (read_spans(settled) != spans).any(axis=1)
-    settled[changed] = measure(signal, spans[changed])
+    settled = _measure_changed(signal, spans, plateaus)
     still: PlateauArray = settled[~find_moving(signal, settled)]
     return still
+
+
+def _measure_changed(signal: Signal, pieces: Pieces, plateaus: PlateauArray) -> PlateauArray:
+    """Return pieces of a log as plateaus, as `measure` does.
+
+    Most pieces have not changed: measuring only the others saves up to a sixth of the time of the search.
+
+    Args:
+        signal: The log.
+        pieces: The pieces.
+        plateaus: Plateaus that were measured before, at least one.
+    """
+    known = np.minimum(np.searchsorted(plateaus["start"], pieces[:, 0]), len(plateaus) - 1)
+    measured = plateaus[known]
+    changed = (read_spans(measured) != pieces).any(axis=1)
+    measured[changed] = measure(signal, pieces[changed])
+    return measured
 
 
 def _find_extremes(values: FloatArray) -> tuple[float, float]:
