@@ -21,6 +21,7 @@ from tuisim.engine.core.conditions import (
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.command_events import CommandEvent, CommandIndex, parse_command_search
 from tuisim.logs.signals import sort_known
+from tuisim.logs.units import drop_run
 
 if TYPE_CHECKING:
     from tuisim.engine.runs.run_folder import StoredRun
@@ -137,7 +138,7 @@ class Threshold(ValueCondition):
         return [
             candidate
             for candidate in series
-            if self.name in (candidate.name, candidate.name.partition(" #")[0])
+            if self.name in (candidate.name, drop_run(candidate.name))
         ]
 
     def find_crossings(self, series: Series) -> list[Crossing]:
@@ -231,7 +232,7 @@ def parse_events(text: str, log: Log) -> tuple[EventChoice, ...]:
         choice = parse_event(part)
         if choice is None:
             raise LogError(f"{part.strip()!r} is not a threshold", FORM)
-        names = dict.fromkeys(name.partition(" #")[0] for name in log.names)
+        names = dict.fromkeys(drop_run(name) for name in log.names)
         if isinstance(choice, Threshold) and choice.name not in (*log.names, *names):
             raise LogError(
                 f"no variable {choice.name!r}", among(choice.name, names), file=log.title

@@ -28,6 +28,7 @@ from tuisim.logs.derived import (
 from tuisim.logs.plateaus import Search, find_plateaus
 from tuisim.logs.signals import Summary, compute_summary, sample_unsorted_signal
 from tuisim.logs.table import Rows
+from tuisim.logs.units import drop_run
 from tuisim.pictures.charts.axes import Limits
 
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ class AnalysisModel:
         layout = self.log.layout
         table = self.log.table
         if not layout.variable:
-            name = self.selected.partition(" #")[0] if layout.run else self.selected
+            name = drop_run(self.selected) if layout.run else self.selected
         else:
             name = str(table.column(layout.variable)[row].as_py())
         if (
@@ -451,7 +452,7 @@ class AnalysisModel:
         self.set_log(log)
         derived_name = RECKONED_COLUMNS[-1] if name == RECKONING else name
         self.selected = next(
-            (variable for variable in log.derived if variable.partition(" #")[0] == derived_name),
+            (variable for variable in log.derived if drop_run(variable) == derived_name),
             self.selected,
         )
 
@@ -478,7 +479,7 @@ class AnalysisModel:
                 definition.name, compute_derived(bare, definition, self.selected)
             )
         if bare is log:
-            names = dict.fromkeys(name.partition(" #")[0] for name in log.derived)
+            names = dict.fromkeys(drop_run(name) for name in log.derived)
             raise LogError(
                 f"no derived variable {definition.name!r}",
                 f"there are {', '.join(names) or 'none'}",

@@ -34,6 +34,7 @@ from tuisim.logs.derived import list_expression_words
 from tuisim.logs.log import Log
 from tuisim.logs.reader import read_beginning
 from tuisim.logs.table import FAST_ROWS, TableTask
+from tuisim.logs.units import drop_run
 from tuisim.terminal.cell_view import LinesView
 
 _POLL_S = 1.0
@@ -379,7 +380,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             do(text)
             self.update()
 
-        name = self.model.selected.partition(" #")[0] or "Colour"
+        name = drop_run(self.model.selected) or "Colour"
         own = [(form.replace("Colour", name), meaning) for form, meaning in forms]
         words = (*list_expression_words(self.model.log), RECKONING) if completes else ()
         self.app.push_screen(LinePrompt(title, apply, value, own, words))

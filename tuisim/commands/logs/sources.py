@@ -21,6 +21,7 @@ from tuisim.logs.derived import add_named_columns, read_spec
 from tuisim.logs.expressions import find_names
 from tuisim.logs.log import Log
 from tuisim.logs.reader import STDIN, build_log, build_telemetry_log, read_pieces
+from tuisim.logs.units import drop_run
 from tuisim.settings.command_line import Arguments
 
 
@@ -122,7 +123,7 @@ def _read_runs(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
         _name_columns(arguments, (), runs)
         return list(map(build_telemetry_log, runs))
     samples = build_log(runs)
-    known = {name.partition(" #")[0] for name in samples.names}
+    known = {drop_run(name) for name in samples.names}
     asked_for = _name_columns(arguments, known, runs)
     is_telemetry = bool(asked_for) and all(
         asked_for.isdisjoint(known) and asked_for.issubset(list_column_names(run.spec))
@@ -196,7 +197,7 @@ def choose_names(log: Log, arguments: Arguments) -> tuple[str, ...]:
         return with_rows
     names: list[str] = []
     for word in variables:
-        matching = [name for name in with_rows if name == word or name.partition(" #")[0] == word]
+        matching = [name for name in with_rows if name == word or drop_run(name) == word]
         if not matching:
             run = read_spec(log.metadata)
             columns = () if run is None else list_column_names(run)

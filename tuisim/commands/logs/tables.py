@@ -50,6 +50,7 @@ from tuisim.logs.export import build_table_metadata, check_target, export_frame,
 from tuisim.logs.frames import build_computed_frame, build_even_frame
 from tuisim.logs.log import Log, LogTable, Series
 from tuisim.logs.mcap_export import POSE, SUFFIX, export_mcap, load_writer
+from tuisim.logs.units import drop_run
 from tuisim.settings.command_line import Arguments
 
 if TYPE_CHECKING:
@@ -363,7 +364,7 @@ def _select_part(log: Log, arguments: Arguments) -> LogTable:
     part = log.table if len(rows) == log.rows else log.table.take(rows)
     if log.layout.variable:
         return part
-    variables = {name.partition(" #")[0] for name in names}
+    variables = {drop_run(name) for name in names}
     return part.select(
         [name for name in part.column_names if name in variables or name not in log.layout.values]
     )

@@ -22,7 +22,7 @@ def add_unit(name: str) -> str:
 
 def find_unit(name: str) -> str:
     """Return the unit that the name of a variable implies; empty if it implies none."""
-    return units.parse_unit(name.partition(" #")[0]).sign
+    return units.parse_unit(units.drop_run(name)).sign
 
 
 Variable: TypeAlias = tuple[str, FloatArray, str]

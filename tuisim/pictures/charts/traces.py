@@ -11,7 +11,7 @@ from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.magnitude import MAX_DRAWN, find_scale, limit_drawn
 from tuisim.logs.signals import Summary, compute_summary
-from tuisim.logs.units import parse_unit
+from tuisim.logs.units import drop_run, parse_unit
 
 TRACE_COLORS: tuple[Rgb, ...] = (
     (240, 228, 66),
@@ -43,7 +43,7 @@ def find_scale_name(name: str) -> str:
 
     The result is empty for light in any unit, and for variables without a known unit.
     """
-    name = name.partition(" #")[0]
+    name = drop_run(name)
     sign = parse_unit(name).sign
     if sign:
         return "" if sign == "%" else sign

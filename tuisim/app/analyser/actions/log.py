@@ -16,6 +16,7 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.logs.derived import NEEDED
 from tuisim.logs.expressions import FUNCTIONS
 from tuisim.logs.log import Log
+from tuisim.logs.units import drop_run
 
 if TYPE_CHECKING:
     from tuisim.app.analyser.screen import LogScreen
@@ -191,7 +192,7 @@ def _show_differences(
 
 def _go_to_difference(screen: LogScreen, model: AnalysisModel, time_s: float) -> None:
     """Put the cursor at a time of the first run, in s, at which the runs begin to differ."""
-    name = model.selected.partition(" #")[0]
+    name = drop_run(model.selected)
     selected = next(
         (trace.name for trace in model.traces if trace.name in (name, f"{name} #1")), model.selected
     )
