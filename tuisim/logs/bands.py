@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import counted
-from tuisim.engine.runs.arrays import FloatArray, IntArray
+from tuisim.engine.runs.arrays import FloatArray, IntArray, number_members
 from tuisim.logs.columns import list_numeric_columns
 from tuisim.logs.derived import read_spec
 from tuisim.logs.levels import Levels, Light, find_light, has_light_levels, measure_levels
@@ -288,9 +288,8 @@ def measure_widths(values: FloatArray, driven_mm: FloatArray, levels: Levels) ->
     rows = np.flatnonzero(np.isfinite(values))
     # From the last sample of each level to the first of the next, each pair of neighbours has its level and its row.
     last, first = np.searchsorted(rows, np.stack((levels.stop[:-1] - 1, levels.start[1:])))
-    sizes = first - last
-    level = np.repeat(np.arange(len(sizes)), sizes)
-    row = np.arange(sizes.sum()) - (np.cumsum(sizes) - sizes - last)[level]
+    level, number = number_members(first - last)
+    row = last[level] + number
     edges_mm = _find_edges(values[rows], driven_mm[rows], levels, level, row)
     return np.diff(edges_mm, prepend=np.nan, append=np.nan)[: len(levels.start)]
 

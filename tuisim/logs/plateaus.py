@@ -28,7 +28,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from tuisim.base.errors import LogError
-from tuisim.engine.runs.arrays import FloatArray, IntArray
+from tuisim.engine.runs.arrays import FloatArray, IntArray, number_members
 from tuisim.logs.edges import EDGE_SAMPLES, find_edges, find_hidden_edges, find_ramps
 from tuisim.logs.pieces import (
     CERTAINTY,
@@ -150,8 +150,7 @@ def _find_measurements(values: FloatArray) -> IntArray:
     counts = np.maximum(1, np.rint(lengths / period).astype(np.int64))
     if len(lengths) < _MIN_RUNS or 2 * lengths[counts == 1].sum() > len(values):
         return np.arange(len(values))
-    run = np.repeat(np.arange(len(starts)), counts)
-    number = np.arange(len(run)) - (np.cumsum(counts) - counts)[run]
+    run, number = number_members(counts)
     firsts: IntArray = starts[run] + number * lengths[run] // counts[run]
     return firsts
 

@@ -24,6 +24,16 @@ def find_spans(is_so: NDArray[np.bool_]) -> IntArray:
     return edges.reshape(-1, 2)
 
 
+def number_members(sizes: IntArray) -> tuple[IntArray, IntArray]:
+    """Return for each member of groups, in order, the index of its group, and its number in the group from 0.
+
+    Args:
+        sizes: The number of members of each group, such as 2, 0, 1 for members of the groups 0, 0 and 2.
+    """
+    groups = np.repeat(np.arange(len(sizes)), sizes)
+    return groups, np.arange(len(groups)) - (np.cumsum(sizes) - sizes)[groups]
+
+
 def compute_world_points_mm(
     records: NDArray[Any], x_mm: float, y_mm: float
 ) -> tuple[NDArray[Any], NDArray[Any]]:

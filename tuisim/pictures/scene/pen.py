@@ -14,7 +14,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.css_colors import Rgb, parse_css_rgb
 from tuisim.engine.core.spec import PenSpec, RobotSpec, RunSpec
 from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
-from tuisim.engine.runs.arrays import FloatArray, compute_world_points_mm
+from tuisim.engine.runs.arrays import FloatArray, compute_world_points_mm, number_members
 from tuisim.pictures.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels
 
@@ -95,9 +95,9 @@ def _join_points(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatA
     counts = np.ceil(lengths[starts] / step_mm).astype(np.intp)
     if not len(starts):
         return xs[good], ys[good]
-    which = np.repeat(starts, counts)
-    first = np.repeat(np.cumsum(counts) - counts, counts)
-    share = (np.arange(len(which)) - first) / np.repeat(counts, counts)
+    step, number = number_members(counts)
+    which = starts[step]
+    share = number / counts[step]
     between_x = xs[which] + share * (xs[which + 1] - xs[which])
     between_y = ys[which] + share * (ys[which + 1] - ys[which])
     return np.concatenate((xs[good], between_x)), np.concatenate((ys[good], between_y))

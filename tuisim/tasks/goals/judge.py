@@ -113,20 +113,19 @@ def _sample_strokes(records: Array, pen: PenSpec, condition: DrawCondition) -> t
     down = (records["flags"] & FLAG_PEN_DOWN) != 0
     if not down.any():
         return np.empty((0, 2)), np.empty(0, np.int64)
-    from tuisim.engine.runs.arrays import compute_world_points_mm
+    from tuisim.engine.runs.arrays import compute_world_points_mm, number_members
 
     pen_mm = np.column_stack(compute_world_points_mm(records, pen.x_mm, pen.y_mm))
     # A robot that was moved by hand draws no line.
     joined = down[1:] & down[:-1] & (np.diff(records["actions"].astype("i4")) == 0)
     way_mm = np.where(joined, np.hypot(*np.diff(pen_mm, axis=0).T), 0.0)
     count = np.ceil(way_mm / picture.compute_cell_mm(condition.within_mm)).astype(np.int64)
-    ends = np.repeat(np.arange(1, len(pen_mm)), count)
-    number = np.arange(len(ends)) - np.repeat(np.cumsum(count) - count, count)
-    part = ((number + 1) / np.repeat(np.maximum(count, 1), count))[:, None]
-    between = pen_mm[ends - 1] * (1 - part) + pen_mm[ends] * part
+    starts, number = number_members(count)
+    part = ((number + 1) / count[starts])[:, None]
+    between = pen_mm[starts] * (1 - part) + pen_mm[starts + 1] * part
     touched = np.flatnonzero(down & np.concatenate(([True], ~joined)))
     points = np.concatenate((pen_mm[touched], between))
-    ticks = np.concatenate((touched, ends))
+    ticks = np.concatenate((touched, starts + 1))
     order = np.argsort(ticks, kind="stable")
     return points[order], ticks[order]
 
