@@ -19,7 +19,13 @@ from tuisim.engine.core.servo.bases import DriveBases
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.spec import NO_PORT
 from tuisim.engine.core.state import Instant, Present
-from tuisim.engine.core.tick_record import END_FLAGS, TICK_RECORD, TickSink
+from tuisim.engine.core.tick_record import (
+    END_FLAGS,
+    FLAGS_OFFSET,
+    RUNNING_FLAGS,
+    TICK_RECORD,
+    TickSink,
+)
 
 if TYPE_CHECKING:
     from tuisim.engine.core.commands.calls import Call
@@ -264,10 +270,16 @@ class Simulation(Motion):
         return bool(motor.mode or motor.position_deg) or self._reported[number] != (0.0, 0.0)
 
     def update_record(self) -> None:
-        """Write the current tick's record again, after a user or program has changed something."""
-        # One call writes the whole record: readers already see it, and must not see half of a change.
+        """Write the current tick's record again, after a user has changed something.
+
+        Its motors are running or not as they were at the tick: since then, their drivers may have advanced.
+        """
         offset = 64 * self._sink.count
-        self._buffer[offset : offset + 64] = TICK_RECORD.pack(*self._build_record())
+        running = self._buffer[offset + FLAGS_OFFSET] & RUNNING_FLAGS
+        *values, flags, actions = self._build_record()
+        flags = int(flags) & ~RUNNING_FLAGS | running
+        # One call writes the whole record: readers already see it, and must not see half of a change.
+        self._buffer[offset : offset + 64] = TICK_RECORD.pack(*values, flags, actions)
 
 
 REPORT_DEG = 0.25

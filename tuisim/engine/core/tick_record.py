@@ -28,9 +28,12 @@ gyro_zero_deg - heading_deg. `actions` counts the user actions applied before th
 TICK_RECORD = Struct("<" + "".join(kind[1:] for _, kind in TICK_FIELDS))
 POSITION_FIELDS = Struct("<" + "".join(kind[1:] for _, kind in TICK_FIELDS[:7]))
 """The first fields of `TICK_RECORD`, up to right_position_deg: those that change while the speeds are steady."""
+FLAGS_OFFSET = TICK_RECORD.size - 4
+"""Where `flags` begins in a record, in bytes."""
 
 FLAG_LEFT_RUNNING = 1
 FLAG_RIGHT_RUNNING = 2
+RUNNING_FLAGS = FLAG_LEFT_RUNNING | FLAG_RIGHT_RUNNING
 FLAG_PEN_DOWN = 4
 FLAG_FIRST_END = 8
 """The lowest of the flags of `engine.core.end_stops`."""

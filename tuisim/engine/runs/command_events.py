@@ -19,7 +19,7 @@ from tuisim.engine.core.commands.table import SCALING_CALLS, compute_scale
 from tuisim.engine.core.plugged import plug_parts
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import RobotSpec, RunSpec
-from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
+from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, RUNNING_FLAGS
 from tuisim.engine.runs.command_records import COMMAND_RECORD, read_command_rows
 from tuisim.engine.runs.command_words import (
     CALL_WORDS,
@@ -412,7 +412,7 @@ class CommandIndex:
         after = records[1:]
         if aim in _BASE_AIMS:
             speeds = np.abs(after["left_speed_dps"]) + np.abs(after["right_speed_dps"])
-            is_running = flags & (FLAG_LEFT_RUNNING | FLAG_RIGHT_RUNNING) != 0
+            is_running = flags & RUNNING_FLAGS != 0
         else:
             side = ("left", "right")[part]
             speeds = after[f"{side}_speed_dps"].astype(float)

@@ -17,7 +17,7 @@ from tuisim.base.errors import counted
 from tuisim.engine.core.drive import compute_mm_per_degree
 from tuisim.engine.core.profile import NS_PER_S, compute_due_ns
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
-from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
+from tuisim.engine.core.tick_record import RUNNING_FLAGS
 from tuisim.engine.runs.views import TelemetryView
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def _find_stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
     from tuisim.engine.core.motors import STANDSTILL_DEG
     from tuisim.engine.runs.arrays import find_spans
 
-    runs = (records["flags"] & (FLAG_LEFT_RUNNING | FLAG_RIGHT_RUNNING)) != 0
+    runs = (records["flags"] & RUNNING_FLAGS) != 0
     # The first record is that of the start, before any motion: it is not a push.
     runs[:1] = False
     pushes = runs.copy()
