@@ -7,7 +7,7 @@ import pytest
 
 from tests.tasks.reasons.runs import run_text
 from tuisim.engine.core.commands.calls import Call
-from tuisim.tasks.reasons.run_data import RunData, describe_place
+from tuisim.tasks.reasons.run_data import RunData, describe_place, list_distinct
 
 DRIVES = """\
 # %%sim_magic_preloaded -b Grey_bands
@@ -44,3 +44,9 @@ def test_the_commands_have_their_ticks() -> None:
 def test_a_gyro_in_a_hub_has_no_port() -> None:
     assert describe_place("in1") == "on in1"
     assert describe_place("inside") == "in the hub"
+
+
+def test_a_line_number_that_no_program_has_takes_no_memory() -> None:
+    lines = np.array([3, 1, 0xFFFFFFFF, 3], np.uint32)
+    assert list_distinct(lines).tolist() == [1, 3, 0xFFFFFFFF]
+    assert list_distinct(lines[:0]).tolist() == []

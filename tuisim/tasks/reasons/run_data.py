@@ -321,13 +321,17 @@ class RunData:
 
 
 def list_distinct(values: Array) -> Array:
-    """Return the distinct values in an array of small whole numbers, ascending.
+    """Return the distinct values in an array, ascending.
 
     Unlike this, `np.unique` imports `numpy.ma`, which takes longer than a search for reasons.
     """
     import numpy as np
 
-    return np.flatnonzero(np.bincount(values))
+    ordered = np.sort(values)
+    is_first = np.ones(len(ordered), np.bool_)
+    is_first[1:] = ordered[1:] != ordered[:-1]
+    distinct: Array = ordered[is_first]
+    return distinct
 
 
 def describe_place(port: str) -> str:

@@ -13,7 +13,7 @@ from tuisim.engine.runs.records import Stream
 from tuisim.programs.facts import LoopEnd
 from tuisim.tasks.reasons.one_colour import describe_colors, name_limit, name_seen
 from tuisim.tasks.reasons.read_columns import LIGHT_COLUMNS
-from tuisim.tasks.reasons.run_data import RunData, Series
+from tuisim.tasks.reasons.run_data import RunData, Series, list_distinct
 
 _MIN_STAY_S = 3.0
 """A program that has been in a loop for less time does not wait in it in vain."""
@@ -222,7 +222,7 @@ def _find_stay(data: RunData, loop: LoopEnd) -> tuple[int, int] | None:
     lines = data.records["line"]
     is_in = (lines >= loop.first_line) & (lines <= loop.last_line)
     if loop.is_count:
-        places = {line: data.facts.find_place(line)[0] for line in np.unique(lines).tolist()}
+        places = {line: data.facts.find_place(line)[0] for line in list_distinct(lines).tolist()}
         called = [line for line, first in places.items() if first in loop.called_lines]
         is_in |= np.isin(lines, called)
     stays = find_spans(is_in).tolist()

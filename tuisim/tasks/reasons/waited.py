@@ -42,6 +42,7 @@ from tuisim.engine.runs.views import OutputView, TelemetryView
 from tuisim.programs.facts import Question, read_facts
 from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.reasons.hand_presses import HandPress, find_hits, find_presses
+from tuisim.tasks.reasons.run_data import list_distinct
 from tuisim.tasks.reasons.subjects import (
     HAND_SUBJECTS,
     HANDS,
@@ -203,7 +204,7 @@ class _Search:
         self._first = max(0, len(self._records) - 1 - _count_window_ticks(run.spec))
         """The tick at which the last seconds begin."""
         self._drives = len(self._records) > 0 and _is_driving(self._records[self._first :])
-        self._lines = np.unique(self._rows["line"][self._ticks >= self._first]).tolist()
+        self._lines = list_distinct(self._rows["line"][self._ticks >= self._first]).tolist()
         """The lines that have read something in the last seconds."""
         self._asks_text = len(self._lines) <= _MAX_LINES
         """Whether the program reads on so few lines that its text is asked about each."""
@@ -230,7 +231,7 @@ class _Search:
         import numpy as np
 
         is_meant = self._select(subject, port)
-        lines = np.unique(self._rows["line"][is_meant & (self._ticks >= self._first)])
+        lines = list_distinct(self._rows["line"][is_meant & (self._ticks >= self._first)])
         if self._blocking_line is not None:
             lines = lines[lines == self._blocking_line]
         asking = [line for line in lines.tolist() if self._is_asking(subject, line)]
@@ -275,9 +276,7 @@ class _Search:
     @cached_property
     def _blocking_line(self) -> int | None:
         """The number of the only line that ran in the last seconds, if it reads sensors or motors; None otherwise."""
-        import numpy as np
-
-        lines = np.unique(self._records["line"][self._first + 1 :])
+        lines = list_distinct(self._records["line"][self._first + 1 :])
         return int(lines[0]) if len(lines) == 1 and lines[0] in self._lines else None
 
     def _is_turning(self) -> bool:
@@ -404,7 +403,7 @@ class _Search:
 
         if subject in OUTSIDE_SUBJECTS:
             return "" if subject is not Subject.GAMEPAD or len(rows) > 1 else None
-        ticks = np.unique(self._ticks[rows])
+        ticks = list_distinct(self._ticks[rows])
         sensor = next(
             (sensor for sensor in self._run.spec.robot.sensors if sensor.port == port), None
         )
