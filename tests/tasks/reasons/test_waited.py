@@ -16,6 +16,7 @@ from tuisim.engine.core.sensors.touch import find_hand_flags
 from tuisim.engine.core.spec import InfraredSpec, Obstacle, RobotSpec, RunSpec, TouchSpec, WorldSpec
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.records import READINGS_FILE, Stream
+from tuisim.tasks.reasons.run_data import RunData
 from tuisim.tasks.reasons.subjects import Subject
 from tuisim.tasks.reasons.waited import find_awaited
 
@@ -156,7 +157,7 @@ def test_sensors_that_never_changed_are_what_a_run_waited_for(
 ) -> None:
     recorder = record(replace(SPEC, world=world))
     moves(recorder)
-    found = find_awaited(recorder.end(End.TIME_LIMIT))
+    found = find_awaited(RunData(recorder.end(End.TIME_LIMIT)))
     assert [(one.subject, one.port, one.times, one.value) for one in found] == awaited
     assert all(0.0 <= one.since_s <= recorder.simulation.tick / 100 for one in found)
 
@@ -176,7 +177,7 @@ def test_only_a_run_that_was_stopped_or_stood_still_waited(
 ) -> None:
     recorder = record(SPEC)
     poll(recorder, "in1", "TOUCH", seconds=seconds)
-    assert bool(find_awaited(recorder.end(end))) is is_told
+    assert bool(find_awaited(RunData(recorder.end(end)))) is is_told
 
 
 GUARDED = "while not ts.is_pressed:\n    print(us.distance_centimeters)\n    sleep(0.1)\n"
@@ -202,7 +203,9 @@ def test_a_program_that_logs_or_plays_sounds_is_not_said_to_wait_for_a_press(
         recorder.simulation.advance(10)
     if sounds:
         recorder.print("[tone 440 Hz 1.0 s]", stream=Stream.SPEECH)
-    touched = [one for one in find_awaited(recorder.end(End.TIME_LIMIT)) if one.subject is T]
+    touched = [
+        one for one in find_awaited(RunData(recorder.end(End.TIME_LIMIT))) if one.subject is T
+    ]
     assert bool(touched) is is_told
 
 
@@ -211,7 +214,7 @@ def test_of_several_awaited_buttons_the_one_that_ends_the_program_is_advised_las
 ) -> None:
     recorder = record(SPEC, text="while not btn.backspace and not btn.up:\n    go()\nrun()")
     poll(recorder, "buttons", "pressed", line=1)
-    assert find_awaited(recorder.end(End.TIME_LIMIT))[0].sought == ("up", "backspace")
+    assert find_awaited(RunData(recorder.end(End.TIME_LIMIT)))[0].sought == ("up", "backspace")
 
 
 def test_without_recorded_readings_nothing_is_said_about_a_wait(record: Record) -> None:
@@ -219,4 +222,4 @@ def test_without_recorded_readings_nothing_is_said_about_a_wait(record: Record) 
     poll(recorder, "in1", "TOUCH")
     run = recorder.end(End.TIME_LIMIT)
     (run.folder / READINGS_FILE).unlink()
-    assert find_awaited(run) == ()
+    assert find_awaited(RunData(run)) == ()

@@ -37,12 +37,11 @@ from tuisim.engine.runs.readings import (
     read_readings,
 )
 from tuisim.engine.runs.records import Stream
-from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.views import OutputView, TelemetryView
 from tuisim.programs.facts import Question, read_facts
 from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.reasons.hand_presses import HandPress, find_hits, find_presses
-from tuisim.tasks.reasons.run_data import list_distinct
+from tuisim.tasks.reasons.run_data import RunData, list_distinct
 from tuisim.tasks.reasons.subjects import (
     HAND_SUBJECTS,
     HANDS,
@@ -129,8 +128,9 @@ class Recorded:
     """Return the mat, prepared for the robot's sensors; None if it is not at hand."""
 
 
-def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
+def find_awaited(data: RunData) -> tuple[Awaited, ...]:
     """Return what a stored run waited for at its end or, if it is still running, waits for now."""
+    run = data.run
     recorded = Recorded(
         folder=run.folder,
         program=run.program,
@@ -138,7 +138,7 @@ def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
         telemetry=run.telemetry,
         output=run.output,
         actions=run.actions,
-        open_mat=lambda: run.open_mat(),
+        open_mat=lambda: data.mat,
     )
     return find_at_end(recorded, run.end.end) if run.end else find_in_recording(recorded)
 

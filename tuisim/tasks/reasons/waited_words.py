@@ -66,7 +66,7 @@ def find_waits(data: RunData) -> list[Wait]:
         data: The run.
     """
     run = data.run
-    all_awaited = find_awaited(run)
+    all_awaited = find_awaited(data)
     is_seen = all(awaited.subject in SEEN for awaited in all_awaited)
     unmet = find_unmet(data) if is_seen else None
     verb = "it waited" if run.end else "it waits"
