@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 
 from tuisim.programs.questions import Word
 from tuisim.programs.robot.source import OPERATORS, SIGNS, TURNED
@@ -201,18 +202,29 @@ def find_values(name: str, tree: ast.Module) -> list[tuple[int, ast.expr]]:
     If the expression is not known, as in a loop, the syntax node of the name stands for it. The result is empty if
     several functions share the variable, since their order is not known.
     """
-    values: list[tuple[int, ast.expr]] = []
-    for node in ast.walk(tree):
-        match node:
-            case ast.Global(names=names) | ast.Nonlocal(names=names) if name in names:
-                return []
-            case ast.Name(id=other, ctx=ast.Store()) if other == name:
-                values.append((node.lineno, node))
-            case ast.Assign(targets=[ast.Name(id=other)], value=value) if other == name:
-                values.append((node.lineno, value))
+    values = _map_values(tree).get(name, [])
     known = {line for line, value in values if not isinstance(value, ast.Name)}
     return [
         (line, value)
         for line, value in sorted(values, key=lambda each: each[0])
         if not (line in known and isinstance(value, ast.Name))
     ]
+
+
+@lru_cache(maxsize=1)
+def _map_values(tree: ast.Module) -> dict[str, list[tuple[int, ast.expr]]]:
+    """Return the lines that assign each variable, by name, each with the expression and with the node of the name.
+
+    Variables that several functions share are left out.
+    """
+    shared = set[str]()
+    values: dict[str, list[tuple[int, ast.expr]]] = defaultdict(list)
+    for node in ast.walk(tree):
+        match node:
+            case ast.Global(names=names) | ast.Nonlocal(names=names):
+                shared.update(names)
+            case ast.Name(id=name, ctx=ast.Store()):
+                values[name].append((node.lineno, node))
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                values[name].append((node.lineno, value))
+    return {name: places for name, places in values.items() if name not in shared}

@@ -36,7 +36,7 @@ def list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterato
         tree: The program.
         constants: Values of names in the program; see `list_constants`.
     """
-    shared = {name for node in ast.walk(tree) if _is_shared(node) for name in node.names}
+    shared = _list_shared(ast.walk(tree))
     for scope in _list_scopes(tree):
         nodes = [*walk_scope(scope)]
         for loop in nodes:
@@ -46,8 +46,10 @@ def list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterato
                         yield from _list_uses(loop, name, read, constants)
 
 
-def _is_shared(node: ast.AST) -> TypeGuard[ast.Global | ast.Nonlocal]:
-    return isinstance(node, ast.Global | ast.Nonlocal)
+def _list_shared(nodes: Iterable[ast.AST]) -> set[str]:
+    """Return the names that functions share with each other or with the program: those after `global` or `nonlocal`."""
+    shared = (node for node in nodes if isinstance(node, ast.Global | ast.Nonlocal))
+    return {name for node in shared for name in node.names}
 
 
 def _list_scopes(tree: ast.Module) -> Iterator[ast.Module | _Function]:
@@ -264,12 +266,15 @@ def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
     """
     functions = [node for node in tree.body if isinstance(node, _Function)]
     outside = [*walk_scope(tree)]
+    nodes = [*ast.walk(tree)]
+    bare = {node.value for node in nodes if isinstance(node, ast.Expr)}
+    all_calls = [node for node in nodes if isinstance(node, ast.Call)]
     for function in functions:
-        own = {part.arg for part in ast.walk(function.args) if isinstance(part, ast.arg)}
-        own |= {name for node in ast.walk(function) if _is_shared(node) for name in node.names}
-        others = {*ast.walk(tree)} - {*ast.walk(function)}
-        bare = {node.value for node in others if isinstance(node, ast.Expr)}
-        calls = [node for node in others if _is_call(node, function.name)]
+        inside = {*ast.walk(function)}
+        calls = [node for node in all_calls if _is_call(node, function.name) and node not in inside]
+        if not calls:
+            continue
+        own = _list_parameters(function) | _list_shared(inside)
         used = [*_walk_used(function, has_result=not bare.issuperset(calls))]
         lines = [node.lineno for node in outside if _is_call(node, function.name)]
         call_line = min(lines, default=0)
@@ -278,18 +283,19 @@ def list_lost_values(tree: ast.Module) -> Iterator[LostValue]:
         )
         for node in walk_scope(function):
             match node:
-                case ast.Assign(targets=[ast.Name(id=name)]) if calls and name not in own:
+                case ast.Assign(targets=[ast.Name(id=name)]) if name not in own:
                     set_line = _find_set_line(name, outside)
-                    if (
-                        set_line
-                        and _is_meant(name, call_line, outside, functions)
-                        and not _is_loaded(name, used)
-                    ):
+                    is_meant = set_line and _is_meant(name, call_line, outside, functions)
+                    if is_meant and not _is_loaded(name, used):
                         span = function.lineno, function.end_lineno or function.lineno
                         yield LostValue(
                             *(node.lineno, name, function.name, span, call_line, set_line),
                             is_certain,
                         )
+
+
+def _list_parameters(function: _Function) -> set[str]:
+    return {part.arg for part in ast.walk(function.args) if isinstance(part, ast.arg)}
 
 
 def _is_meant(
