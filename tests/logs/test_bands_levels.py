@@ -18,11 +18,9 @@ from tuisim.logs.bands import (
     build_band_report,
     describe_levels,
     describe_width,
-    read_light,
 )
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.levels import (
-    Light,
     find_light,
     find_light_scale,
     find_nearest_greys,
@@ -98,22 +96,6 @@ def test_bands_have_the_places_and_widths_that_the_robot_drove_over() -> None:
     assert [describe_width(band) for band in report.bands] == [CUT_OFF, "109", CUT_OFF]
     assert (middle.first_row, middle.last_row) == (6, 15)
     assert (report.transitions, report.total) == (1, 21)
-
-
-@pytest.mark.parametrize(
-    "metadata",
-    [
-        {},
-        {"runs": []},
-        {"runs": [{"world": {}}]},
-        {"runs": ["x"]},
-        {"runs": [{"world": {"noise": {"light": "?"}}}]},
-    ],
-)
-def test_a_log_without_known_noise_is_read_as_light_without_noise(
-    metadata: dict[str, object],
-) -> None:
-    assert read_light(metadata, 0) == Light()
 
 
 def test_levels_measured_by_a_brick_get_the_right_names_of_greys() -> None:

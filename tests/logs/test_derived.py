@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -24,7 +23,6 @@ from tuisim.logs.derived import (
     build_reckoned_series,
     compute_derived,
     parse_definition,
-    read_spec,
 )
 from tuisim.logs.log import Log
 
@@ -177,20 +175,3 @@ class TestReckoning:
     def test_dead_reckoning_has_an_error(self) -> None:
         got = compute_dead_reckoning(column(0, 0), column(0, 0), Pose(0, 0, 0), RobotSpec())
         assert_allclose(got.compute_error_mm(column(0, 3), column(0, 4)), [0, 5])
-
-
-@pytest.mark.parametrize(
-    "metadata",
-    [
-        {},
-        {"runs": []},
-        {"runs": 3},
-        {"runs": [[]]},
-        {"runs": ["x"]},
-        {"runs": [{}]},
-        {"runs": [{"robot": {}}]},
-    ],
-    ids=str,
-)
-def test_damaged_metadata_of_a_log_are_read_as_no_run(metadata: dict[str, Any]) -> None:
-    assert read_spec(metadata) is None

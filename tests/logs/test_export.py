@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -29,6 +30,7 @@ from tuisim.logs.export import (
     export_samples,
     export_telemetry,
     find_companion,
+    read_spec,
 )
 from tuisim.logs.frames import read_log
 from tuisim.logs.reader import open_log
@@ -356,3 +358,21 @@ def test_the_log_of_a_run_is_read_without_pandas(
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[30, 30] False\n"
+
+
+@pytest.mark.parametrize(
+    "metadata",
+    [
+        {},
+        {"runs": []},
+        {"runs": 3},
+        {"runs": [[]]},
+        {"runs": ["x"]},
+        {"runs": [{}]},
+        {"runs": [{"robot": {}}]},
+        {"runs": [{"world": {"noise": {"light": "?"}}}]},
+    ],
+    ids=str,
+)
+def test_damaged_metadata_of_a_log_are_read_as_no_run(metadata: dict[str, Any]) -> None:
+    assert read_spec(metadata) is None

@@ -23,7 +23,6 @@ from tuisim.engine.files import name_of
 from tuisim.engine.protocol import SetNoise, describe_state
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.bands import count_samples, describe_width
-from tuisim.logs.derived import read_spec
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Search, find_plateaus
@@ -375,7 +374,7 @@ def list_log_facts(log: Log) -> list[Fact]:
         texts = [_read_path(run, path) for run in runs]
         if any(texts):
             rows.append((name, ", ".join(dict.fromkeys(texts))))
-    spec = read_spec(log.metadata)
+    spec = log.find_spec()
     if spec is not None and (further := _list_further_settings(spec)):
         rows.append(("further settings", further))
     return rows

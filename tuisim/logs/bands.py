@@ -18,7 +18,6 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import counted
 from tuisim.engine.runs.arrays import FloatArray, IntArray, number_members
 from tuisim.logs.columns import list_numeric_columns
-from tuisim.logs.derived import read_spec
 from tuisim.logs.levels import Levels, Light, find_light, has_light_levels, measure_levels
 from tuisim.logs.plateaus import Search, find_plateaus
 
@@ -128,7 +127,8 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
         LogError: the log has no variable of that name.
     """
     series = log.series(name)
-    light = read_light(log.metadata, series.run)
+    spec = log.find_spec(max(series.run - 1, 0))
+    light = find_light(spec) if spec else Light()
     levels = measure_levels(
         series.values, light if has_light_levels(name, series.values) else None, search
     )
@@ -191,17 +191,6 @@ def describe_width(band: Band) -> str:
     if band.cut_off:
         return CUT_OFF
     return "–"
-
-
-def read_light(metadata: Mapping[str, Any], run: int) -> Light:
-    """Return the light noise of a run and the response of its colour sensor, or the defaults if the metadata lack them.
-
-    Args:
-        metadata: The metadata of the log.
-        run: Number of the run in the log, from 1; 0 if the log does not number its runs.
-    """
-    spec = read_spec(metadata, max(run - 1, 0))
-    return find_light(spec) if spec else Light()
 
 
 def compute_driven_mm(log: Log, series: Series) -> FloatArray | None:

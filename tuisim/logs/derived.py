@@ -11,10 +11,8 @@ from typing import Any
 import numpy as np
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError, LogError, among
+from tuisim.base.errors import LogError, among
 from tuisim.engine.core.conditions import NUMBER
-from tuisim.engine.core.spec import RunSpec
-from tuisim.engine.core.tree import load_run
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.command_events import ScaleChange
 from tuisim.engine.runs.frames import compute_dead_reckoning, compute_scales, find_lacking_columns
@@ -162,7 +160,7 @@ def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
 
     Each is a function that returns the values of the column. The result is empty for other logs.
     """
-    if (spec := read_spec(log.metadata)) is None:
+    if (spec := log.find_spec()) is None:
         return {}
     return find_lacking_columns(spec, list_numeric_columns(log.table.schema), log.numbers)
 
@@ -192,22 +190,6 @@ def add_named_columns(log: Log, text: str) -> Log:
                 log, metadata={**log.metadata, "units": {**units, name: parse_unit(name).words}}
             )
     return log
-
-
-def read_spec(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
-    """Return the specification of a run from the metadata of a log; None if they lack it, or are damaged.
-
-    Args:
-        metadata: The metadata.
-        run: Index of the run among the runs of the log, from 0.
-    """
-    try:
-        entry = metadata["runs"][run]
-        return load_run(
-            {key: value for key, value in entry.items() if key not in ("run", "program", SCALES)}
-        )
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError, ConfigError):
-        return None
 
 
 def _read_scale_changes(metadata: Mapping[str, Any]) -> Iterator[ScaleChange]:
@@ -253,7 +235,7 @@ def build_reckoned_series(log: Log) -> list[Series]:
             "a stored run, or its telemetry exported",
             file=log.title,
         )
-    spec = read_spec(log.metadata)
+    spec = log.find_spec()
     if spec is None:
         hint = "a stored run, or its telemetry exported to a file"
         raise LogError("has no metadata of the robot", hint, file=log.title)

@@ -12,10 +12,12 @@ import pyarrow as pa
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, among
+from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import convert_to_floats, read_numbers, wrap_int64
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import ROW, Layout, read_times
+from tuisim.logs.export import read_spec
 from tuisim.logs.time_order import keep_timed_rows
 from tuisim.logs.units import drop_run
 from tuisim.logs.warnings import Notes
@@ -124,6 +126,8 @@ class LogCache:
     times_s: FloatArray | None = None
     whole: tuple[IntArray, FloatArray] | None = None
     """Rows and times of a series to which all rows belong."""
+    specs: dict[int, RunSpec | None] = field(default_factory=dict)
+    """By index of the run; complete from the start if the log was built from stored runs."""
 
 
 def _has_rows(member: Member) -> bool:
@@ -233,6 +237,12 @@ class Log:
         return convert_to_floats(
             self.table.column(column).take(wrap_int64(np.ascontiguousarray(rows, np.int64)))
         )
+
+    def find_spec(self, run: int = 0) -> RunSpec | None:
+        """Return the specification of a run, given by its index from 0; None if the metadata lack it."""
+        if run not in self._cache.specs:
+            self._cache.specs[run] = read_spec(self.metadata, run)
+        return self._cache.specs[run]
 
     def replace_layout(self, layout: Layout) -> Log:
         """Return the same log with another layout, without the rows that then have no time."""

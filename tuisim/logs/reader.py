@@ -388,5 +388,10 @@ def _build_log_from_columns(
     if kind == "telemetry":
         notes += filter(None, map(describe_damage, runs))
     return Log(
-        title, table, guess_columns(table), tuple(notes), 0, log_metadata(kind, columns, runs)
+        title,
+        table,
+        guess_columns(table),
+        tuple(notes),
+        metadata=log_metadata(kind, columns, runs),
+        _cache=LogCache(specs={index: run.spec for index, run in enumerate(runs)}),
     )

@@ -26,7 +26,6 @@ from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.state import Instant
 from tuisim.engine.runs.recorded_run import Recording
-from tuisim.logs.derived import read_spec
 from tuisim.terminal.cell_view import LinesView
 from tuisim.terminal.text_runs import Run, find_first_row
 
@@ -125,7 +124,7 @@ def has_poses(opened: OpenedLog) -> bool:
     if opened.runs:
         return True
     named = set(_POSE) <= set(opened.log.table.column_names)
-    return named and read_spec(opened.log.metadata) is not None
+    return named and opened.log.find_spec() is not None
 
 
 def load_world(opened: OpenedLog, run: int) -> RunWorld | None:
@@ -145,7 +144,7 @@ def load_world(opened: OpenedLog, run: int) -> RunWorld | None:
         except TuisimError:
             mat = make_blank_mat(stored.spec)
         return RunWorld(stored.spec, mat, stored, opened.log)
-    spec = read_spec(opened.log.metadata, run)
+    spec = opened.log.find_spec(run)
     if spec is None or not set(_POSE) <= set(opened.log.table.column_names):
         return None
     try:

@@ -17,7 +17,7 @@ from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.choices import ReadChoices
 from tuisim.logs.columns import choose_columns, time_in_words
-from tuisim.logs.derived import add_named_columns, read_spec
+from tuisim.logs.derived import add_named_columns
 from tuisim.logs.expressions import find_names
 from tuisim.logs.log import Log
 from tuisim.logs.reader import STDIN, build_log, build_telemetry_log, read_pieces
@@ -199,7 +199,7 @@ def choose_names(log: Log, arguments: Arguments) -> tuple[str, ...]:
     for word in variables:
         matching = [name for name in with_rows if name == word or drop_run(name) == word]
         if not matching:
-            run = read_spec(log.metadata)
+            run = log.find_spec()
             columns = () if run is None else list_column_names(run)
             raise LogError(f"no variable {word!r}", among(word, with_rows, columns), file=log.title)
         names += matching
