@@ -212,6 +212,7 @@ _HINT = (
 )
 _IN_FRONT = re.compile(r"^(back|first)\s+(.+)$", re.IGNORECASE)
 """A direction in front of the other words."""
+_HAS_DIRECTION = re.compile(r"^(?:back|first)\s|\s(?:back|first)$", re.IGNORECASE)
 _LINE = re.compile(
     r"(?:(?:back|first)\s+)?line\s+([0-9]+)(?:\s+(?:back|first))*", re.IGNORECASE | re.ASCII
 )
@@ -304,6 +305,31 @@ def find(
     if condition is None:
         raise _refuse(text.strip(), recording)
     return _find_condition(search, condition, mat)
+
+
+def describe_match(text: str, tick: int, timeline: Timeline, mat: Field | None = None) -> str:
+    """Return about the instant that a search found what its place in the run does not show; empty for nothing.
+
+    That is where the first match is, if the search began later, and that the instant is the newest one.
+
+    Args:
+        text: The words of the search, as for `find`.
+        tick: The tick that `find` returned for them.
+        timeline: The run, and the instant at which the search began.
+        mat: As for `find`.
+    """
+    words = text.strip()
+    if _SECONDS.fullmatch(words) or words.lower() in ("start", "end"):
+        return ""
+    hz = timeline.tick_hz
+    texts = []
+    if tick == timeline.newest:
+        texts.append(f"{words}: the latest instant, {tick / hz:.2f} s")
+    if timeline.tick < tick and not _HAS_DIRECTION.search(words):
+        first = f"{words} first"
+        if (first_tick := find(first, timeline, mat)) < tick:
+            texts.append(f"`{first}` goes to {first_tick / hz:.2f} s")
+    return " · ".join(texts)
 
 
 def parse_line(text: str) -> int | None:

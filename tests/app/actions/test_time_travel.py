@@ -11,6 +11,7 @@ from textual.pilot import Pilot
 from textual.widgets import Input
 
 from tests.app.app_help import (
+    notices,
     open_lab,
     press_and_stand,
     ready,
@@ -304,6 +305,17 @@ async def test_the_arrow_is_on_the_line_that_go_to_names() -> None:
         app.debugger.choose_line(5, 3)
         go_to_tick(app.context, 5)
         await until(pilot, lambda: app.debugger.current_line == 4)
+
+
+async def test_go_to_a_line_of_the_newest_instant_names_the_instant_and_marks_the_line() -> None:
+    async with open_lab("import time\ntime.sleep(0.1)\nprint('A: 1')\n", speed=0.0) as (pilot, app):
+        await pilot.press("R")
+        await until_state(pilot, RunPhase.ENDED)
+        await pilot.press("D", "g", *"line 3", "enter")
+        await until(pilot, lambda: any("line 3: the latest" in text for text in notices(app)))
+        code = app.context.panels.code
+        assert code is not None
+        await until(pilot, lambda: code._area.cursor_location[0] == 2)
 
 
 async def test_a_line_that_another_follows_in_its_tick_is_not_said_to_wait_for_it() -> None:

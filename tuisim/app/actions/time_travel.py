@@ -9,7 +9,7 @@ from tuisim.app import reasons
 from tuisim.app.branch import Branch, action_words
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
-from tuisim.app.timeline import describe_commands, find, list_forms, parse_line
+from tuisim.app.timeline import describe_commands, describe_match, find, list_forms, parse_line
 from tuisim.base.errors import TuisimError, counted
 from tuisim.engine import protocol
 from tuisim.engine.core.sensors import list_column_names
@@ -161,10 +161,14 @@ def ask_instant(context: ActionContext) -> None:
     def go(text: str) -> None:
         text = text or timeline.searched
         tick = find(text, timeline, field, first_at_end=True)
-        context.debugger.choose_line(tick, parse_line(text) or 0)
+        place = describe_match(text, tick, timeline, field)
+        line = parse_line(text) or 0
+        context.debugger.choose_line(tick, line)
         go_to_tick(context, tick if tick < timeline.newest else None)
+        if code := context.panels.code:
+            code.name_line(tick, line)
         timeline.searched = text
-        if words := describe_commands(text, timeline):
+        if words := " · ".join(filter(None, (describe_commands(text, timeline), place))):
             context.app.say(words)
 
     goes_on = (
