@@ -62,6 +62,17 @@ def test_a_program_that_declares_an_encoding_of_no_text_is_refused(
         read(file)
 
 
+@pytest.mark.parametrize("encoding", ["punycode", "PUNYCODE", "idna"])
+def test_a_program_in_an_encoding_of_domain_names_is_refused_before_it_is_decoded(
+    tmp_path: Path, encoding: str
+) -> None:
+    file = tmp_path / "slow.py"
+    # Decoding this as punycode would succeed, and take hours if the file were larger.
+    file.write_bytes(f"# coding: {encoding}\n#-aaaa".encode())
+    with pytest.raises(ConfigError, match="is an encoding of domain names"):
+        read_program(file)
+
+
 @pytest.mark.parametrize(
     "name", ["größe.py", "\u2028\U0001f600.py", "x" * 600 + ".py"], ids=["letters", "odd", "long"]
 )

@@ -16,6 +16,10 @@ FAULTS = {
     "outside of a function": ("x = 1\nreturn x\n", ("'return' outside function", 2)),
     "an encoding that there is not": ("# coding: klingon\n", ("unknown encoding: klingon", 0)),
     "one that is no text": ("# coding: rot13\n", (NO_TEXT, 0)),
+    "one of domain names": (
+        "# coding: punycode\n",
+        ("'punycode' is an encoding of domain names", 0),
+    ),
     "UTF-7": ("# coding: utf-7\nprint('Ä ~')\n", None),
     "Latin-1": ("# coding: latin-1\nprint('Ä ~')\n", None),
     "an odd escape, which is only warned of": ("print('\\d')\n", None),

@@ -110,6 +110,10 @@ class Program:
         return hashlib.sha256(self.text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
+_DOMAIN_ENCODINGS = frozenset({"idna", "punycode"})
+"""Encodings in which no program is written: decoding punycode takes hours for the largest program that is read."""
+
+
 def find_code_line(lines: Sequence[str], line: int) -> int:
     """Return the number of the first line with code from `line` on, both from 1; 0 if there is none.
 
@@ -137,6 +141,23 @@ def source_lines(text: str) -> list[str]:
     return lines if lines[-1] else lines[:-1]
 
 
+def find_encoding(data: bytes) -> str:
+    """Return the encoding of a program file, as Python names it.
+
+    Raises:
+        SyntaxError, LookupError: there is no such encoding, or it is one of domain names.
+    """
+    # Imported here: the child process that runs a program does not need them.
+    import codecs
+    import io
+    import tokenize
+
+    encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
+    if codecs.lookup(encoding).name in _DOMAIN_ENCODINGS:
+        raise LookupError(f"{encoding!r} is an encoding of domain names")
+    return encoding
+
+
 def decode_source(data: bytes, shown: str) -> tuple[str, str]:
     """Return the text of a program file, and its encoding as Python names it.
 
@@ -147,12 +168,8 @@ def decode_source(data: bytes, shown: str) -> tuple[str, str]:
     Raises:
         ConfigError: it is not text, or its encoding is not a text encoding.
     """
-    # Imported here: the child process that runs a program does not need them.
-    import io
-    import tokenize
-
     try:
-        encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
+        encoding = find_encoding(data)
         return data.decode(encoding), encoding
     # The encoding may be one such as `rot13`, which is not for text, or `undefined`, which always raises.
     except (SyntaxError, LookupError, ValueError) as error:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import ast
-import io
-import tokenize
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 
-from tuisim.base.source import PYBRICKS
+from tuisim.base.source import PYBRICKS, find_encoding
 from tuisim.programs.comparisons import is_set
 
 
@@ -19,7 +17,7 @@ def find_fault(text: str) -> tuple[str, int] | None:
             warnings.simplefilter("ignore")
             data = text.encode("utf-8", "surrogateescape")
             # The text is compiled as bytes, since a line in it may name an encoding that does not exist.
-            encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
+            encoding = find_encoding(data)
             compile(text.encode(encoding, "surrogateescape"), "program", "exec", dont_inherit=True)
     except SyntaxError as error:
         return error.msg, error.lineno or 0
