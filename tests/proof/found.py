@@ -38,6 +38,8 @@ FOUND: Sequence[tuple[str, str]] = (
     ("damage", "run:369608953:text"),
     ("damage", "run:4217672325:value"),
     ("damage", "run:896353295:value"),
+    ("replays", "dragged:11"),
+    ("replays", "dragged:209"),
     ("replays", "honest:2470914290"),
 )
 """Kind, and name of the case."""

@@ -61,6 +61,17 @@ def _draw_actions(random: Random) -> tuple[UserAction, ...]:
     return tuple(map(UserAction, ticks, commands)) if random.random() < 0.5 else ()
 
 
+def _draw_drags(random: Random) -> tuple[UserAction, ...]:
+    """Draw a user who puts the robot in front of a wall, and away from it, again and again."""
+    ticks = sorted(random.sample(range(1, 200), 8))
+    return tuple(
+        UserAction(
+            tick, SetPose(random.uniform(2200.0, 2340.0), 500.0, random.choice((0.0, 180.0)))
+        )
+        for tick in ticks
+    )
+
+
 def _record(random: Random, profile: str, actions: tuple[UserAction, ...]) -> StoredRun:
     """Run an honest program, and return what is stored of it."""
     start_warm_process()
@@ -230,7 +241,7 @@ def _check(case: str, folder: Path) -> None:
         for name, profile in PROFILES.items()
         if sort != "motors" or profile.motor_law is MotorLaw.EV3DEV
     ]
-    actions = _draw_actions(random)
+    actions = _draw_drags(random) if sort == "dragged" else _draw_actions(random)
     run = _record(random, random.choice(sorted(profiles)), actions)
     if sort == "limit":
         try:
@@ -238,7 +249,7 @@ def _check(case: str, folder: Path) -> None:
         except LogError:
             return
         raise FaultError("a replay has no limit")
-    if sort == "honest":
+    if sort in ("honest", "dragged"):
         _check_honest(run, actions)
     else:
         _check_forged(sort, random, run, actions)
@@ -246,7 +257,7 @@ def _check(case: str, folder: Path) -> None:
 
 def _names(random: Random) -> Iterator[str]:
     while True:
-        for sort in (*FORGERIES, "limit"):
+        for sort in (*FORGERIES, "limit", "dragged"):
             yield f"{sort}:{random.getrandbits(32)}"
             yield f"honest:{random.getrandbits(32)}"
 

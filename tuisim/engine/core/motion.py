@@ -134,6 +134,7 @@ class Motion:
         "_driven",
         "_early",
         "_hz",
+        "_is_placed",
         "_left_dps",
         "_left_mm_per_deg",
         "_longest_mm",
@@ -224,6 +225,10 @@ class Motion:
         self._roll = self.drive.roll if gyro is None else gyro.roll
         """Moves the robot, and what its gyro senses."""
         self._strains_gyro = can_strain_gyro(spec)
+        self._is_placed = False
+        """Whether the robot was put elsewhere after the last tick. The next one frees its wheels, because their drivers
+        may have advanced already.
+        """
         self._start_clocks()
         self._buffer: Buffer = sink.reserve(ROOM_TICKS)
         self._room_end = ROOM_TICKS
@@ -305,6 +310,8 @@ class Motion:
     def _count_quiet_ticks(self, most: int) -> int:
         """Return the number of ticks, at most `most`, in which only the motors' ramps and the robot's pose change."""
         left, right = self.left, self.right
+        if self._is_placed:
+            return 0
         if self._slipping is not None or (self.noise.motor and not self._can_glide_with_noise()):
             return 0
         if self._strains_gyro and not (left.resting and right.resting):
@@ -457,6 +464,7 @@ class Motion:
 
     def _free_wheels(self) -> None:
         """Remove the block from both wheels' motors if no obstacle blocks the robot any more."""
+        self._is_placed = False
         left, right = self._driven[0], self._driven[1]
         if not (left.is_barred or right.is_barred):
             return

@@ -171,8 +171,7 @@ class Simulation(Motion):
         before_deg = self.drive.heading_deg
         drive.put(pose)
         drive.gyro_zero_deg = round_to_float32(drive.gyro_zero_deg + drive.heading_deg - before_deg)
-        if self._driven:
-            self._free_wheels()
+        self._is_placed = self.notices
 
     def reset_gyro(self, shown_deg: float = 0.0) -> None:
         """Make the gyro show the angle `shown_deg`, clockwise, at the current heading."""
