@@ -116,3 +116,10 @@ def test_a_value_that_a_function_gives_to_a_name_of_its_own_is_found(
 ) -> None:
     values = list_lost_values(read(text).tree)
     assert [lost.line for lost in values] == ([line] if line else [])
+
+
+def test_a_long_chain_of_branches_is_read_to_its_end() -> None:
+    branches = "".join(f"elif x == {number}:\n    b()\n" for number in range(1000))
+    facts = read(f"if x < 0:\n    a()\n{branches}")
+    assert [*list_stale_reads(facts.tree, facts.constants)] == []
+    assert facts.slips == ()

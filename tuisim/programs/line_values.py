@@ -110,10 +110,22 @@ def _find_values(
 
 def walk_scope(scope: ast.AST) -> Iterator[ast.AST]:
     """Yield the syntax nodes of a scope, without those of functions, classes and comprehensions in it."""
-    for node in ast.iter_child_nodes(scope):
-        if not isinstance(node, (*_OWN_NAMES, ast.FunctionDef, ast.AsyncFunctionDef)):
-            yield node
-            yield from walk_scope(node)
+    # A chain of `elif` may be deeper than functions can call themselves.
+    nodes = _list_children(scope)
+    while nodes:
+        node = nodes.pop()
+        yield node
+        nodes += _list_children(node)
+
+
+def _list_children(node: ast.AST) -> list[ast.AST]:
+    """Return the children of a syntax node, the last one first, without functions, classes and comprehensions."""
+    children = [
+        child
+        for child in ast.iter_child_nodes(node)
+        if not isinstance(child, (*_OWN_NAMES, ast.FunctionDef, ast.AsyncFunctionDef))
+    ]
+    return children[::-1]
 
 
 def _list_assignments(scope: ast.Module | _Function) -> Iterator[tuple[int, str, str | None]]:

@@ -211,13 +211,24 @@ def _find_equal_branches(tree: ast.Module) -> tuple[int, str] | None:
     lines = [
         node.lineno
         for node in ast.walk(tree)
-        if isinstance(node, ast.If) and node.orelse and _dump(node.body) == _dump(node.orelse)
+        if isinstance(node, ast.If) and node.orelse and _is_equal(node.body, node.orelse)
     ]
     return (min(lines), "if and else do the same") if lines else None
 
 
-def _dump(nodes: Sequence[ast.AST]) -> list[str]:
-    return [ast.dump(each) for each in nodes]
+def _is_equal(first: object, second: object) -> bool:
+    """Return whether two syntax nodes, or lists of nodes, have the same text; a chain of `elif` may be long."""
+    pairs = [(first, second)]
+    while pairs:
+        left, right = pairs.pop()
+        match left, right:
+            case list(), list() if len(left) == len(right):
+                pairs += zip(left, right, strict=True)
+            case ast.AST(), ast.AST() if type(left) is type(right):
+                pairs += [(getattr(left, name), getattr(right, name)) for name in left._fields]
+            case _ if left != right:
+                return False
+    return True
 
 
 def _find_idle_comparison(tree: ast.Module) -> tuple[int, str] | None:
