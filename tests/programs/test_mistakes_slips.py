@@ -201,3 +201,26 @@ def test_what_an_error_does_not_name_is_found_in_its_line(
     text: str, error: str, cause: str
 ) -> None:
     assert read_facts(Program("p.py", text)).explain_error(error, 3) == cause
+
+
+@cases(
+    "text, uncalled",
+    {
+        "alone": (
+            "def main():\n    go()\nmain\n",
+            (3, "main without () does nothing: main() calls it"),
+        ),
+        "a condition": (
+            "def dark():\n    return us < 9\nwhile not dark:\n    go()\n",
+            (3, "dark without () is always true: dark() asks"),
+        ),
+        "called": ("def dark():\n    return us < 9\nwhile not dark():\n    go()\n", None),
+        "a parameter": ("def dark():\n    go()\ndef f(dark):\n    if dark:\n        dark()\n", None),
+        "replaced": ("def dark():\n    go()\ndark = None\nif dark:\n    dark()\n", None),
+        "a state": ("def seek():\n    go()\nstate = seek\nif state == seek:\n    state()\n", None),
+    },
+)  # fmt: skip
+def test_a_function_that_is_named_but_not_called_is_told(
+    text: str, uncalled: tuple[int, str] | None
+) -> None:
+    assert find_slip(text) == uncalled

@@ -14,6 +14,7 @@ from tuisim.base.syntax_tree import parse_module
 from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.programs.comparisons import list_constants
+from tuisim.programs.fixed_conditions import list_fixed_conditions
 from tuisim.programs.mistakes import (
     explain_error,
     find_fault,
@@ -227,7 +228,10 @@ class ProgramFacts:
     @cached_property
     def slips(self) -> tuple[tuple[int, str], ...]:
         """The lines that probably contain a mistake, as they have no effect, or always the same; with descriptions."""
-        return tuple(list_slips(self.tree))
+        return (
+            *list_slips(self.tree),
+            *list_fixed_conditions(self.tree, self.constants),
+        )
 
     def explain_error(self, error: str, line: int) -> str:
         """Return what in a line caused an error that Python's text does not name; empty if that is not known."""

@@ -33,6 +33,7 @@ def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
     """
     for find_slip in (
         _find_uncalled_method,
+        _find_uncalled_function,
         _find_equal_branches,
         _find_idle_comparison,
         _find_missing_return,
@@ -69,7 +70,7 @@ def _only_makes(node: ast.AST) -> bool:
     return all(ast.unparse(name).rpartition(".")[2][:1].isupper() for name in calls)
 
 
-_READ_METHODS = {
+READ_METHODS = {
     *("ambient", "angle", "color", "distance", "force", "heading", "hsv", "presence", "pressed"),
     *("reflection", "rotation", "speed"),
 }
@@ -90,10 +91,33 @@ def _find_uncalled_method(tree: ast.Module) -> tuple[int, str] | None:
         (value.lineno, _describe_uncalled(value))
         for _, value in _list_used(nodes)
         if isinstance(value, ast.Attribute)
-        and value.attr in _READ_METHODS
+        and value.attr in READ_METHODS
         and not devices.isdisjoint(ast.unparse(value.value).split("."))
     ]
     return min(methods, default=None)
+
+
+def _find_uncalled_function(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first line with one of the program's functions alone, or as a condition, without a call.
+
+    The result has a description; it is None if there is none.
+    """
+    nodes = [*ast.walk(tree)]
+    others = {node.id for node in nodes if isinstance(node, ast.Name) and is_set(node)}
+    others |= {node.arg for node in nodes if isinstance(node, ast.arg)}
+    others |= {node.asname or node.name for node in nodes if isinstance(node, ast.alias)}
+    functions = {node.name for node in nodes if isinstance(node, ast.FunctionDef)} - others
+    for node in nodes:
+        match node:
+            case ast.Expr(value=ast.Name(id=name)) if name in functions:
+                return node.lineno, f"{name} without () does nothing: {name}() calls it"
+            case (
+                ast.If(test=ast.Name(id=name))
+                | ast.While(test=ast.Name(id=name))
+                | ast.UnaryOp(op=ast.Not(), operand=ast.Name(id=name))
+            ) if name in functions:
+                return node.lineno, f"{name} without () is always true: {name}() asks"
+    return None
 
 
 def _list_devices(nodes: Sequence[ast.AST]) -> Iterator[str]:

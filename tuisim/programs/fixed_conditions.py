@@ -1,0 +1,358 @@
+"""Conditions in a program that are never or always true, such as `x < 85 and x > 90`, and branches never reached."""
+
+from __future__ import annotations
+
+import ast
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations, islice, pairwise, product
+from math import prod
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.conditions import COMPARE
+from tuisim.programs.comparisons import find_constant
+from tuisim.programs.mistakes import READ_METHODS
+from tuisim.programs.questions import Word
+from tuisim.programs.robot.source import SIGNS, TURNED
+
+_MAX_NODES = 400
+"""A larger condition is not examined."""
+_MAX_SAMPLES = 500
+_MAX_PARTS = 30
+"""Further parts of a condition, and further branches, are not examined in pairs."""
+_MAX_WORDS = 100
+"""Longer conditions are not quoted."""
+_PURE = ("abs", "float", "int", "len", "max", "min", "round", "str")
+_PURE_METHODS = {*READ_METHODS, "any", "done", "is_pressed", "ready", "stalled", "time", "value"}
+"""Functions and methods that read and compute, and change nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Limit:
+    """A comparison of a value with a constant."""
+
+    value: str
+    """The compared expression, as text."""
+    sign: str
+    word: Word
+
+    def is_met(self, sample: object) -> bool:
+        return bool(COMPARE[self.sign](sample, self.word))
+
+    def can_compare(self, sample: object) -> bool:
+        return self.sign in ("==", "!=") or isinstance(sample, int | float)
+
+
+def list_fixed_conditions(
+    tree: ast.Module, constants: Mapping[str, Word]
+) -> Iterator[tuple[int, str]]:
+    """Yield lines with a condition that is always the same, or with a branch never reached, each with a description.
+
+    Of each kind of mistake, only the first line is yielded.
+
+    Args:
+        tree: The program.
+        constants: Values of names in the program; see `list_constants`.
+    """
+    nodes = [*ast.walk(tree)]
+    for lines in (
+        _list_lone_words(nodes),
+        _list_fixed(nodes, constants),
+        _list_unreached(nodes, constants),
+    ):
+        if first := min(lines, default=None):
+            yield first
+
+
+def _list_fixed(
+    nodes: Sequence[ast.AST], constants: Mapping[str, Word]
+) -> Iterator[tuple[int, str]]:
+    inner = set[ast.AST]()
+    for node in nodes:
+        match node:
+            case ast.BoolOp() | ast.Compare(ops=[_, _, *_]) if node not in inner:
+                value = find_value(node, constants)
+                if value is not None:
+                    inner.update(ast.walk(node))
+                    yield node.lineno, _describe_fixed(node, value, constants)
+
+
+def find_value(test: ast.expr, constants: Mapping[str, Word]) -> bool | None:
+    """Return the value that a condition has whatever its parts are; None if it varies, or if that is not known.
+
+    Only values that are compared with at least two constants count; all other parts may be true or false.
+
+    Args:
+        test: The condition.
+        constants: Values of names in the program; see `list_constants`.
+    """
+    nodes = [*islice(ast.walk(test), _MAX_NODES + 1)]
+    if len(nodes) > _MAX_NODES:
+        return None
+    limits = {
+        node: [_read_limit(*pair, constants) for pair in _split_chain(node)]
+        for node in nodes
+        if isinstance(node, ast.Compare)
+    }
+    words: dict[str, list[Word]] = defaultdict(list)
+    for limit in (limit for each in limits.values() for limit in each if limit):
+        words[limit.value].append(limit.word)
+    samples = {value: _list_samples(each) for value, each in words.items() if len(each) > 1}
+    if not samples or prod(map(len, samples.values())) > _MAX_SAMPLES or _has_effect(test):
+        return None
+    values = {
+        _evaluate(test, dict(zip(samples, each, strict=True)), limits)
+        for each in product(*samples.values())
+    }
+    return values.pop() if len(values) == 1 else None
+
+
+def _split_chain(test: ast.Compare) -> Iterator[tuple[ast.expr, ast.cmpop, ast.expr]]:
+    """Yield the single comparisons of a chain such as `a < b < c`."""
+    for (left, right), operator in zip(
+        pairwise([test.left, *test.comparators]), test.ops, strict=True
+    ):
+        yield left, operator, right
+
+
+def _read_limit(
+    left: ast.expr, operator: ast.cmpop, right: ast.expr, constants: Mapping[str, Word]
+) -> _Limit | None:
+    """Return a comparison of a reading or variable with a constant; None for other comparisons."""
+    sign = SIGNS.get(type(operator), "")
+    value, word = left, find_constant(right, constants)
+    if word is None:
+        value, word, sign = right, find_constant(left, constants), TURNED.get(sign, sign)
+    is_ordered = isinstance(word, int | float) or sign in ("==", "!=")
+    is_known = word is not None and find_constant(value, constants) is None
+    if word is None or not (sign and is_ordered and is_known and _is_reading(value)):
+        return None
+    return _Limit(ast.unparse(value), sign, word)
+
+
+def _is_reading(node: ast.expr) -> bool:
+    """Return whether an expression has the same value if it is evaluated twice in one condition."""
+    match node:
+        case ast.Name() | ast.Constant():
+            return True
+        case ast.Attribute(value=value) | ast.UnaryOp(operand=value):
+            return _is_reading(value)
+        case ast.Subscript(value=value, slice=index):
+            return _is_reading(value) and _is_reading(index)
+        case ast.BinOp(left=left, right=right):
+            return _is_reading(left) and _is_reading(right)
+        case ast.Call(args=args, keywords=[]):
+            return _is_pure(node) and all(map(_is_reading, args))
+    return False
+
+
+def _is_pure(call: ast.Call) -> bool:
+    match call.func:
+        case ast.Name(id=name):
+            return name in _PURE
+        case ast.Attribute(attr=method):
+            return method in _PURE_METHODS
+    return False
+
+
+def _has_effect(test: ast.expr) -> bool:
+    """Return whether evaluating a condition may change a value in it."""
+    return any(
+        isinstance(node, ast.NamedExpr | ast.Await | ast.Yield | ast.YieldFrom)
+        or (isinstance(node, ast.Call) and not _is_pure(node))
+        for node in ast.walk(test)
+    )
+
+
+def _list_samples(words: Sequence[Word]) -> list[object]:
+    """Return values of every kind that comparisons with constants tell apart: equal, between, beyond and different."""
+    numbers = sorted({word for word in words if not isinstance(word, str)})
+    texts = {word for word in words if isinstance(word, str)}
+    if not numbers:
+        return [*texts, object()]
+    between = [(low + high) / 2 for low, high in pairwise(numbers)]
+    return [*numbers, *between, numbers[0] - 1, numbers[-1] + 1, *texts]
+
+
+def _evaluate(
+    test: ast.expr,
+    samples: Mapping[str, object],
+    limits: Mapping[ast.Compare, Sequence[_Limit | None]],
+) -> bool | None:
+    """Return the value of a condition for given values; None if it also depends on something else."""
+    values: list[bool | None]
+    match test:
+        case ast.UnaryOp(op=ast.Not(), operand=operand):
+            value = _evaluate(operand, samples, limits)
+            return None if value is None else not value
+        case ast.BoolOp(values=parts):
+            values = [_evaluate(part, samples, limits) for part in parts]
+        case ast.Compare():
+            values = [
+                limit.is_met(samples[limit.value])
+                if limit and limit.value in samples and limit.can_compare(samples[limit.value])
+                else None
+                for limit in limits[test]
+            ]
+        case _:
+            return None
+    deciding = isinstance(test, ast.BoolOp) and isinstance(test.op, ast.Or)
+    if deciding in values:
+        return deciding
+    return None if None in values else not deciding
+
+
+def _describe_fixed(test: ast.expr, value: bool, constants: Mapping[str, Word]) -> str:
+    """Return in words that a condition is always or never true, and what was probably meant."""
+    match test:
+        case ast.UnaryOp(operand=operand):
+            return _describe_fixed(operand, not value, constants)
+        case ast.BoolOp(op=op, values=parts):
+            for part in parts[:_MAX_PARTS]:
+                if find_value(part, constants) is value:
+                    return _describe_fixed(part, value, constants)
+            for pair in combinations(parts[:_MAX_PARTS], 2):
+                both = ast.BoolOp(op, [*pair])
+                if len(parts) > len(pair) and find_value(both, constants) is value:
+                    return _describe_fixed(both, value, constants)
+    return f"{_quote(test)} is {'always' if value else 'never'} true{_name_cure(test, constants)}"
+
+
+def _name_cure(test: ast.expr, constants: Mapping[str, Word]) -> str:
+    """Return as text what was probably meant by a condition that is always the same; empty if that is not known."""
+    span = _name_span(test, constants)
+    match test:
+        case ast.Compare() if span:
+            return f": write {span}"
+        case ast.BoolOp(op=op, values=parts):
+            is_and = isinstance(op, ast.And)
+            other = ast.BoolOp(ast.Or() if is_and else ast.And(), parts)
+            if find_value(other, constants) is not None:
+                return ""
+            if is_and and span:
+                return f": for a value between them write {span}, for one outside or instead of and"
+            return f": write {'or' if is_and else 'and'} instead of {'and' if is_and else 'or'}"
+    return ""
+
+
+def _name_span(test: ast.expr, constants: Mapping[str, Word]) -> str:
+    """Return the condition that a value is between the two limits of a condition, such as `75 < x < 85`; else empty."""
+    pairs = [
+        pair
+        for part in (test.values if isinstance(test, ast.BoolOp) else [test])
+        if isinstance(part, ast.Compare)
+        for pair in _split_chain(part)
+    ]
+    limits = [_read_limit(*pair, constants) for pair in pairs]
+    match limits:
+        case [
+            _Limit(value=value, word=float() | int() as a),
+            _Limit(value=other, word=float() | int() as b),
+        ] if value == other and {limit.sign[0] for limit in limits if limit} == {"<", ">"}:
+            return f"{min(a, b):g} < {value} < {max(a, b):g}"
+    return ""
+
+
+def _quote(test: ast.expr) -> str:
+    words = ast.unparse(test)
+    return words if len(words) <= _MAX_WORDS else "this condition"
+
+
+def _list_lone_words(nodes: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
+    """Yield the lines with a constant beside a comparison, such as `color == "red" or "blue"`."""
+    for node in nodes:
+        match node:
+            case ast.If(test=test) | ast.While(test=test) | ast.IfExp(test=test):
+                yield from _list_lone(test)
+            case ast.Compare(left=left, ops=[ast.Eq() | ast.NotEq()], comparators=[right]):
+                for side, other in ((left, right), (right, left)):
+                    match side:
+                        case ast.BoolOp(op=ast.Or(), values=[first, *_] as words) if all(
+                            map(_get_kind, words)
+                        ) and _is_reading(other):
+                            sign = "in" if isinstance(node.ops[0], ast.Eq) else "not in"
+                            choice = ", ".join(map(ast.unparse, words))
+                            yield (
+                                node.lineno,
+                                f"{ast.unparse(side)} is only {ast.unparse(first)}: "
+                                f"write {ast.unparse(other)} {sign} ({choice})",
+                            )
+
+
+def _list_lone(test: ast.expr) -> Iterator[tuple[int, str]]:
+    match test:
+        case ast.UnaryOp(op=ast.Not(), operand=operand):
+            yield from _list_lone(operand)
+        case ast.BoolOp(op=op, values=parts):
+            for part in parts:
+                yield from _list_lone(part)
+            word = next((part for part in parts if _get_kind(part)), None)
+            for part in parts:
+                if word is not None and (question := _ask_about(word, part)):
+                    name = "or" if isinstance(op, ast.Or) else "and"
+                    always = "so this is always true" if name == "or" else "and changes nothing"
+                    yield (
+                        word.lineno,
+                        f"{ast.unparse(word)} alone is true, {always}: write {name} {question}",
+                    )
+
+
+def _get_kind(node: ast.expr) -> str:
+    """Return the kind of a constant that is compared, but is no answer: a text, a number, or names such as `Color.RED`.
+
+    The result is empty for all other expressions, also for 0 and 1, which stand for no and yes.
+    """
+    match node:
+        case ast.Constant(value=str() as text) if text:
+            return "text"
+        case ast.Constant(value=int() | float() as number) if number not in (0, 1):
+            return "number"
+        case ast.Attribute(value=value, attr=attr) if attr.isupper():
+            return ast.unparse(value)
+    return ""
+
+
+def _ask_about(word: ast.expr, part: ast.expr) -> str:
+    """Return the comparison with `word` that was probably meant beside a comparison; empty if `part` is no such one.
+
+    Args:
+        word: A constant that stands alone, such as `"blue"`.
+        part: What stands beside it, such as `color == "red"`.
+    """
+    match part:
+        case ast.Compare(left=left, ops=[ast.Eq() | ast.NotEq() as operator], comparators=[right]):
+            if _get_kind(left) == _get_kind(word):
+                left, right = right, left
+            if _get_kind(right) == _get_kind(word) and not _get_kind(left):
+                return ast.unparse(ast.Compare(left, [operator], [word]))
+    return ""
+
+
+def _list_unreached(
+    nodes: Sequence[ast.AST], constants: Mapping[str, Word]
+) -> Iterator[tuple[int, str]]:
+    """Yield the lines with an `elif` that is never reached, as a condition before it is true whenever its own is."""
+    chained = {node.orelse[0] for node in nodes if isinstance(node, ast.If) and _is_elif(node)}
+    for node in nodes:
+        if isinstance(node, ast.If) and node not in chained:
+            tests = [node.test]
+            while _is_elif(node) and len(tests) < _MAX_PARTS:
+                node = node.orelse[0]
+                tests.append(node.test)
+            for first, later in combinations(tests, 2):
+                both = ast.BoolOp(ast.And(), [ast.UnaryOp(ast.Not(), first), later])
+                if find_value(later, constants) is None and find_value(both, constants) is False:
+                    yield later.lineno, _describe_unreached(first, later)
+
+
+def _is_elif(node: ast.If) -> bool:
+    return len(node.orelse) == 1 and isinstance(node.orelse[0], ast.If)
+
+
+def _describe_unreached(first: ast.expr, later: ast.expr) -> str:
+    if ast.dump(first) == ast.dump(later):
+        return f"this is never reached: line {first.lineno} asks the same"
+    return (
+        f"this is never reached: if {_quote(later)}, then also {_quote(first)} (line {first.lineno}); "
+        "ask the narrower question first"
+    )
