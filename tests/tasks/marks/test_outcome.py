@@ -10,8 +10,8 @@ from ev3dev2 import motor
 
 from tests.cases import cases
 from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
-from tuisim.tasks.goals.spec import AllOf, FinishCondition, Goal, ReachCondition
-from tuisim.tasks.marks.outcome import GoalOutcome, build_outcome
+from tuisim.tasks.goals.spec import AllOf, FinishCondition, Goal, ReachCondition, UseCondition
+from tuisim.tasks.marks.outcome import build_outcome
 from tuisim.tasks.task import Result
 
 FOLDER = Path("/copy-of/student/7")
@@ -104,8 +104,21 @@ def test_a_combined_goal_is_missed_with_the_reason_of_its_first_missed_part() ->
         _judgement(finish, GoalState.MISSED, "It raised an exception.", 9),
     )
     found = build_outcome(replace(DONE, judgements=judgements), 0, FOLDER)
-    missed = [
-        GoalOutcome(name, False, "It raised an exception.", 9)
-        for name in ("every", "both", "finish")
+    missed = (False, "It raised an exception.", 9)
+    assert {goal.name: (goal.met, goal.reason, goal.line) for goal in found.goals} == {
+        "every": missed,
+        "both": missed,
+        "near": (True, "", 0),
+        "finish": missed,
+    }
+
+
+def test_only_goals_that_a_sound_recording_decides_have_an_event() -> None:
+    near = _judgement(Goal("near", ReachCondition(x_mm=5)), GoalState.MET)
+    call = _judgement(Goal("call", UseCondition(("time.sleep",))), GoalState.MET)
+    sound = replace(DONE, judgements=(near, call))
+    events = [
+        [goal.event for goal in build_outcome(result, 0, FOLDER).goals]
+        for result in (sound, replace(sound, end="falsified"))
     ]
-    assert found.goals == (*missed[:2], GoalOutcome("near", True), missed[2])
+    assert events == [[near.event, None], [None, None]]

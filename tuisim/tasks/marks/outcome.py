@@ -17,8 +17,9 @@ from tuisim.base.errors import printable, shortened
 from tuisim.base.faults import UNJUDGED
 from tuisim.base.source import source_lines, user_python_path
 from tuisim.engine.protocol import End
+from tuisim.tasks.goals.condition import ConditionKind
 from tuisim.tasks.goals.judge import UNCOMPILED
-from tuisim.tasks.goals.judgement import GoalState, Judgement
+from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
 from tuisim.tasks.goals.spec import AllOf
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.task import Result
@@ -58,6 +59,8 @@ class GoalOutcome:
     """Whether it takes points off."""
     is_unknown: bool = False
     """Whether it could not be judged, so that nobody knows whether it was met."""
+    event: Change | None = None
+    """When and where it was decided; None if the program's text alone decides it, or the recording is falsified."""
 
     @property
     def is_good(self) -> bool:
@@ -131,21 +134,19 @@ def build_outcome(
     for name, judgement in judgements.items():
         if world is not None and name not in world.goals:
             continue
-        if judgement.state is GoalState.MET:
-            goals.append(GoalOutcome(name, True, is_penalty=judgement.goal.points < 0))
-        else:
-            cause = _find_cause(judgement, judgements)
-            reason = _join_lines(make_portable(cause.reason, folder))
-            goals.append(
-                GoalOutcome(
-                    name,
-                    False,
-                    reason,
-                    cause.line,
-                    is_penalty=judgement.goal.points < 0,
-                    is_unknown=judgement.state is GoalState.UNKNOWN,
-                )
+        met = judgement.state is GoalState.MET
+        cause = _find_cause(judgement, judgements)
+        goals.append(
+            GoalOutcome(
+                name,
+                met,
+                "" if met else _join_lines(make_portable(cause.reason, folder)),
+                0 if met else cause.line,
+                is_penalty=judgement.goal.points < 0,
+                is_unknown=judgement.state is GoalState.UNKNOWN,
+                event=None if result.end == End.FALSIFIED else _find_event(judgement),
             )
+        )
     return Outcome(
         seed,
         result.end,
@@ -272,6 +273,12 @@ def _find_cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Ju
             if judgements[name].state is not GoalState.MET:
                 return _find_cause(judgements[name], judgements)
     return judgement
+
+
+def _find_event(judgement: Judgement) -> Change | None:
+    """Return when and where a goal was decided; None if the program's text alone decides it."""
+    is_of_the_text = all(part.KIND is ConditionKind.FIXED for part in judgement.goal.parts)
+    return None if is_of_the_text else judgement.event
 
 
 def _describe_failure(result: Result) -> str:

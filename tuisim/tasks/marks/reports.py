@@ -6,23 +6,22 @@ import hashlib
 import math
 import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from tuisim.analysis.pins import Pin
 from tuisim.analysis.report import build_report
-from tuisim.analysis.source import LogRequest
+from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ExportError, LogError, counted
 from tuisim.base.faults import describe_fault
-from tuisim.engine.protocol import End
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
+from tuisim.logs.reader import build_log
 from tuisim.pictures.charts.files import write_whole
 from tuisim.pictures.html.render import Table
-from tuisim.tasks.goals.condition import ConditionKind
-from tuisim.tasks.goals.judgement import Change, format_points
+from tuisim.tasks.goals.judgement import format_points
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.marks.class_map import Miss, MissesOfRun, build_class_maps
@@ -95,10 +94,10 @@ def write_reports(
                 recorded = outcome.world, _compute_digest(run)
                 if recorded not in written:
                     columns = [column for column in sheet.columns if column.name in world.goals]
-                    goals = columns, _judge_goals(world.own_goals, outcome, run)
-                    misses = _find_misses(row.name, *goals, outcome, run)
+                    misses = _find_misses(row.name, columns, outcome, run)
                     shows = movies and bool(misses)
-                    _write(folder / name, _build_report(row.name, goals, outcome, run, movie=shows))
+                    report = _build_report(row.name, columns, outcome, run, movie=shows)
+                    _write(folder / name, report)
                     written[recorded] = f"{folder.name}/{name}"
                 path = written[recorded]
             except ExportError:
@@ -111,18 +110,13 @@ def write_reports(
             )
 
 
-_Judged = tuple[Sequence[Goal], Mapping[str, Change]]
-"""The goals that are shown, and when and where they were decided, as of `_judge_goals`."""
-
-
 def _build_report(
-    student: str, goals: _Judged, outcome: Outcome, run: StoredRun, *, movie: bool
+    student: str, columns: Sequence[Goal], outcome: Outcome, run: StoredRun, *, movie: bool
 ) -> str:
-    *_, opened = LogRequest(runs=(run.id,)).open_pieces()
-    opened = replace(opened, runs=tuple(map(_make_portable, opened.runs)))
-    goals_table, pins = _list_verdicts(*goals, outcome)
+    opened = OpenedLog(LogRequest(runs=(run.id,)), build_log((run,)), (_make_portable(run),))
+    goals, pins = _list_verdicts(columns, outcome)
     title = ", ".join(filter(None, (student, outcome.world, f"seed {outcome.seed}")))
-    return build_report(opened, title=title, movie=movie, pins=pins, goals=goals_table)
+    return build_report(opened, title=title, movie=movie, pins=pins, goals=goals)
 
 
 def _write(path: Path, content: str) -> None:
@@ -166,18 +160,13 @@ def _compute_digest(run: StoredRun) -> str:
 
 
 def _find_misses(
-    student: str,
-    columns: Sequence[Goal],
-    judged: Mapping[str, Change],
-    outcome: Outcome,
-    run: StoredRun,
+    student: str, columns: Sequence[Goal], outcome: Outcome, run: StoredRun
 ) -> tuple[Miss, ...]:
     """Return the goals that a run missed, each with the place where it was decided, or else the robot's last position.
 
     Args:
         student: The student's name.
         columns: The goals that are shown.
-        judged: When and where goals were decided, from `_judge_goals`.
         outcome: The outcome of the run.
         run: The run.
     """
@@ -185,22 +174,17 @@ def _find_misses(
     missed = {goal.name: goal for goal in outcome.goals if not goal.is_good}
     misses = []
     for column in columns:
-        place = judged.get(column.name) or last
-        if column.name in missed and place is not None:
-            misses.append(
-                Miss(student, column.name, place.x_mm, place.y_mm, missed[column.name].reason)
-            )
+        goal = missed.get(column.name)
+        if goal is not None and (place := goal.event or last) is not None:
+            misses.append(Miss(student, goal.name, place.x_mm, place.y_mm, goal.reason))
     return tuple(misses)
 
 
-def _list_verdicts(
-    columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Outcome
-) -> tuple[Table, list[Pin]]:
+def _list_verdicts(columns: Sequence[Goal], outcome: Outcome) -> tuple[Table, list[Pin]]:
     """Return the table of the goals of a run, and a pin on the mat for each goal that was decided at a place.
 
     Args:
         columns: The goals that are shown, in their order.
-        judged: When and where goals were decided, from `_judge_goals`.
         outcome: The outcome of the run.
     """
     goals = {goal_outcome.name: goal_outcome for goal_outcome in outcome.goals}
@@ -222,7 +206,7 @@ def _list_verdicts(
         else:
             earned = 0
         points = f"{format_points(earned)} of {format_points(max(0, column.points))}"
-        if (event := judged.get(column.name)) is not None:
+        if (event := goal.event) is not None:
             result += f" at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
             verdict = f"{number}. {column.say} {result}"
             pins.append(
@@ -236,33 +220,6 @@ def _list_verdicts(
             )
         rows.append([str(number), column.say, result, why, points])
     return Table(_HEADS, rows, numbers=len(_HEADS) - 1), pins
-
-
-def _judge_goals(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str, Change]:
-    """Return when and where goals were met or missed in a run, by their names.
-
-    Goals that the program's text alone decides are left out. The result is empty if the recording is falsified or
-    damaged.
-    """
-    if outcome.end == End.FALSIFIED:
-        return {}
-    # Imported on demand: judging is slow to import, and most runs are judged already.
-    from tuisim.tasks.goals.judge import judge
-
-    try:
-        judgements = judge(goals, run)
-    except LogError:
-        # If the recording is damaged, the report has only the outcome.
-        return {}
-    return {
-        judgement.goal.name: judgement.event
-        for judgement in judgements
-        if judgement.event and not _is_of_the_text(judgement.goal)
-    }
-
-
-def _is_of_the_text(goal: Goal) -> bool:
-    return all(part.KIND is ConditionKind.FIXED for part in goal.parts)
 
 
 def write_class_page(
