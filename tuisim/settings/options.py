@@ -143,10 +143,14 @@ def read_run_values(spec: RunSpec) -> dict[str, Scalar]:
 
 def list_chosen_values(spec: RunSpec) -> list[str]:
     """Return the values of a run that differ from their defaults, as texts such as `walls false`."""
+    chosen = {
+        path: toml_form(run_value.value, value)
+        for path, run_value in RUN_VALUES.items()
+        if (value := get_value(spec, run_value.spec_path)) != run_value.default
+    }
     return [
         f"{path} {value if isinstance(value, str) else quote(value)}"
-        for path, value in read_run_values(spec).items()
-        if value != toml_form(RUN_VALUES[path].value, RUN_VALUES[path].default)
+        for path, value in chosen.items()
     ]
 
 
