@@ -175,8 +175,8 @@ class Motion:
         """Fraction of a tick's turn that already applies to the motion of that tick."""
         self._build_solids(spec)
         self.tick = 0
-        left, right = spec.robot.wheel_motors
-        self.left, self.right = create_motor(spec, left.kind), create_motor(spec, right.kind)
+        self.left = create_motor(spec, spec.robot.left_motor)
+        self.right = create_motor(spec, spec.robot.right_motor)
         self.motors: tuple[Motor, ...] = self.left, self.right, *others
         """All motors, in the order of `RobotSpec.motors`."""
         self.pen_down = spec.robot.pen.down

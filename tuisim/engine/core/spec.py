@@ -494,8 +494,8 @@ class RobotSpec(Spec):
     @property
     def wheel_motors(self) -> tuple[MotorSpec, MotorSpec]:
         """The motors of the left and the right wheel; on a robot without wheels, their port is `NO_PORT`."""
-        return MotorSpec(self.left_port, self.left_motor), MotorSpec(
-            self.right_port, self.right_motor
+        return MotorSpec.restore(port=self.left_port, kind=self.left_motor), MotorSpec.restore(
+            port=self.right_port, kind=self.right_motor
         )
 
     @property
