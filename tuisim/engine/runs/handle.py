@@ -11,17 +11,16 @@ import subprocess
 import time
 from collections.abc import Hashable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, Protocol
 
 from tuisim.base.errors import HostError, LogError, RobotError, counted
 from tuisim.base.source import Program, user_python_path
 from tuisim.engine.breakpoints import parse_breakpoints
-from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.plugged import PluggedPart
 from tuisim.engine.core.profile import compute_due_ns
-from tuisim.engine.core.spec import NoiseSpec, RunSpec
+from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles
 from tuisim.engine.protocol import (
     CLEANUP_S,
@@ -109,9 +108,13 @@ def _build_template_key(program: Program, spec: RunSpec, field: FieldFiles) -> H
 
     They may differ in the program, the options, the seed, the noise and the start, which are not part of the key.
     """
-    world = replace(spec.world, noise=NoiseSpec(), start=Pose(0.0, 0.0, 0.0))
+    world = [
+        getattr(spec.world, value.name)
+        for value in fields(spec.world)
+        if value.name not in ("noise", "start")
+    ]
     # The identities of the mat's files are part of the key, so that a template never uses files that were replaced.
-    return program.prelude, field, field.identities(), replace(spec, seed=0, world=world)
+    return program.prelude, field, field.identities(), spec.robot, spec.profile, *world
 
 
 def _list_needs(program: Program, field: FieldFiles) -> list[Path]:
