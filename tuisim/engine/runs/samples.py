@@ -126,15 +126,21 @@ def counts_of(output: OutputView) -> Counts:
 
 def list_samples(rows: Iterable[OutputRow]) -> list[Sample]:
     """Return the samples among the rows that a program printed, in order."""
-    samples: list[Sample] = []
-    for row in rows:
+    return [sample for _, sample in find_samples(rows)]
+
+
+def find_samples(rows: Iterable[OutputRow]) -> list[tuple[int, Sample]]:
+    """Return the samples among the rows that a program printed, in order, each with the index of its row."""
+    samples: list[tuple[int, Sample]] = []
+    for number, row in enumerate(rows):
         if row.stream not in SAMPLE_STREAMS:
             continue
         parsed = parse_sample(row.text)
         if parsed is not None:
             name, value, time_s = parsed
             printed_s = row.time_ns / 1e9 if time_s is None else time_s
-            samples.append(Sample(name, value, printed_s, row.time_ns, row.tick, row.line))
+            sample = Sample(name, value, printed_s, row.time_ns, row.tick, row.line)
+            samples.append((number, sample))
     return samples
 
 

@@ -17,7 +17,7 @@ from tuisim.engine.runs.frames import compute_column_values, evaluate_condition,
 from tuisim.engine.runs.readings import Readings, read_readings
 from tuisim.engine.runs.records import SAMPLE_STREAMS, OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.samples import Sample, list_samples, select_rows
+from tuisim.engine.runs.samples import Sample, find_samples, select_rows
 from tuisim.engine.runs.side_files import read_actions
 from tuisim.tasks.goals.brick import (
     BRICK_COLUMNS,
@@ -169,11 +169,7 @@ class Evidence:
     @cached_property
     def samples(self) -> list[tuple[int, Sample]]:
         """The samples that the program printed, each with the index of its row in `rows`."""
-        return [
-            (number, sample)
-            for number, row in enumerate(self.rows)
-            for sample in list_samples([row])
-        ]
+        return find_samples(self.rows)
 
     def list_sample_ticks(self, name: str) -> list[int]:
         """Return the ticks of the samples of a variable, in ascending order."""
