@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import cache
 from typing import Any
 
 import click
@@ -60,8 +61,9 @@ def parse_words(words: Sequence[str]) -> dict[str, Any]:
     Raises:
         ConfigError: a word is no option, or a value is wrong.
     """
-    return dict(
-        parse(
-            Command("tuisim", params=build_shared_options(magic=True), add_help_option=False), words
-        ).settings
-    )
+    return dict(parse(_build_magic_line(), words).settings)
+
+
+@cache
+def _build_magic_line() -> Command:
+    return Command("tuisim", params=build_shared_options(magic=True), add_help_option=False)
