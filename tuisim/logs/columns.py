@@ -16,7 +16,14 @@ from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import PER_S, convert_to_floats
 from tuisim.logs.choices import ReadChoices
-from tuisim.logs.dates import C_TIME, SPAN, is_moment, normalize_dates, order_is_guessed
+from tuisim.logs.dates import (
+    CLOCK_OF_12_HOURS,
+    SPAN,
+    WORDS,
+    is_moment,
+    normalize_dates,
+    order_is_guessed,
+)
 from tuisim.logs.units import SECONDS
 
 if TYPE_CHECKING:
@@ -48,7 +55,21 @@ NAMES = (
         "stamp",
         "timer",
     ),
-    *("uptime", "zeit", "temps", "tiempo", "tempo", "sec"),
+    *(
+        "x_value",
+        "uptime",
+        "zeit",
+        "temps",
+        "tiempo",
+        "tempo",
+        "tid",
+        "tijd",
+        "czas",
+        "время",
+        "时间",
+        "時間",
+        "sec",
+    ),
     *(word for word in UNITS_S if len(word) > 1 and word.endswith("s")),
     *COUNTS,
 )
@@ -200,8 +221,10 @@ def parse_times(column: pa.ChunkedArray) -> Times:
     texts = normalize_dates(column.cast(pa.string()))
     spans = texts.filter(pc.match_substring_regex(texts, SPAN)).to_pandas()
     if not len(spans):
-        form = "mixed" if pc.any(pc.match_substring_regex(texts, C_TIME)).as_py() else "ISO8601"
+        form = "mixed" if pc.any(pc.match_substring_regex(texts, WORDS)).as_py() else "ISO8601"
         dates = pd.to_datetime(texts.to_pandas(), format=form, utc=True, errors="coerce")
+        if pc.all(pc.match_substring_regex(texts, CLOCK_OF_12_HOURS)).as_py():
+            return _unwrap(_count_seconds(dates - dates.dt.normalize()), _DAY_S, "a day")
         return Times(_count_seconds(dates - dates.bfill().iloc[0]))
     cells = texts.to_pandas()
     seconds = _count_seconds(pd.to_timedelta(cells.where(cells.isin(spans)), errors="coerce"))
@@ -324,7 +347,9 @@ def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataTy
         names: The names in lower case, the most wanted first.
         fits: Returns whether a type fits.
     """
-    columns = {field.name.strip().lower(): field.name for field in table.schema if fits(field.type)}
+    columns = {
+        field.name.strip(" _").lower(): field.name for field in table.schema if fits(field.type)
+    }
     return next((columns[name] for name in names if name in columns), "")
 
 

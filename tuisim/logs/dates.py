@@ -10,35 +10,48 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+MONTH = rf"(?:{'|'.join(_MONTHS)})"
 _YEAR_FIRST = r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}"
 _YEAR_LAST = r"\d{1,2}[-/.]\d{1,2}[-/.]\d{4}"
-_DATE = rf"(?:{_YEAR_FIRST}|{_YEAR_LAST})"
-_GAP = r"(?:T| *[/,_] *| +(?:- +)?)"
+_MONTH_IN_WORDS = rf"\d{{1,2}}[-/. ]{MONTH}[a-z]*[-/. ]\d{{4}}"
+_CHINESE = r"\d{4}年\d{1,2}月\d{1,2}日?"
+_SHORT_YEAR = r"\d{1,2}[-/.]\d{1,2}[-/.]\d{2}"
+"""A date whose year has two digits; a time of day must follow."""
+_DATE = rf"(?:{_YEAR_FIRST}|{_YEAR_LAST}|{_MONTH_IN_WORDS}|{_CHINESE})"
+_GAP = r"(?:T|:|日 *| *[/,_] *| +(?:- +)?)"
 """The characters between a date and its time of day."""
 _PART = r"(?:[.,]\d+)"
 """Fraction of a second."""
-_ZONE = r"(?:Z| ?UTC| ?[+-]\d{2}:\d{2}|[+-]\d{4})"
-C_TIME = (
-    rf"[A-Z][a-z]{{2}} (?:{'|'.join(_MONTHS)}) {{1,2}}\d{{1,2}} \d{{2}}:\d{{2}}:\d{{2}} \d{{4}}"
-)
+_ZONE = r"(?:Z| ?UTC| ?[+-]\d{2}:?\d{2})"
+_HALF = r"(?: ?[AaPp][Mm])"
+"""The half of the day, on a clock of 12 hours."""
+_MINUTES = r"\d{1,2}:\d{2}\.\d+"
+"""Minutes, and seconds with a fraction."""
+C_TIME = rf"[A-Z][a-z]{{2}} {MONTH} {{1,2}}\d{{1,2}} \d{{2}}:\d{{2}}:\d{{2}} \d{{4}}"
 """A date and time as `time.ctime` writes it."""
 MOMENT = (
-    rf"(?:{_DATE}(?:{_GAP}\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?{_ZONE}?)?"
-    rf"|\d{{8}}T\d{{4,6}}|\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?|{C_TIME})"
+    rf"(?:(?:{_DATE}{_GAP}|{_SHORT_YEAR} +)\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?(?:{_HALF}|{_ZONE})?"
+    rf"|{_DATE}|\d{{8}}T\d{{4,6}}|\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?{_HALF}?|\d{{1,2}}:\d{{2}}{_HALF}|{_MINUTES}|{C_TIME})"
 )
 """Regular expression of a date, a time of day with seconds, or both."""
 _MOMENT_CELL = re.compile(rf"\s*[\[(<]?\s*{MOMENT}\s*[\])>]?\s*")
 _DATE_CELL = re.compile(rf"\s*{_DATE}\s*")
-_CLOCK_CELL = re.compile(rf"\s*\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?\s*")
+_CLOCK_CELL = re.compile(rf"\s*\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?{_HALF}?|{_HALF})\s*")
 
 SPAN = r"^-?(?:\d+ days? )?\d+:\d{2}:\d{2}(?:\.\d+)?$"
 """A time span as pandas prints it, or hours, minutes and seconds."""
+CLOCK_OF_12_HOURS = rf"^\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?{_HALF}$"
+WORDS = rf"{_HALF}$|{C_TIME}|{_MONTH_IN_WORDS}"
+"""What pandas reads only if it looks at each date anew."""
 _USUAL = rf"{SPAN}|^\d{{4}}-\d{{2}}-\d{{2}}(?:$|[T ]\d{{2}}:\d{{2}}(?:$|[^,U]*$))"
 """Texts that need no change."""
 _REWRITTEN = (
     (r"^[\[(<] *| *[\])>]$", ""),
     (r" ?UTC$", "Z"),
+    (rf"^({_MINUTES})$", r"0:\1"),
     (r"(:\d{2}),(\d+)", r"\1.\2"),
+    (r"日 *(\d)", r" \1"),
+    (r"^(\d{4})年(\d{1,2})月(\d{1,2})日?", r"\1-\2-\3"),
     (rf"^({_DATE}){_GAP}(\d{{1,2}}:)", r"\1 \2"),
     (r"^(\d{4})[/.](\d{1,2})[/.](\d{1,2})", r"\1-\2-\3"),
 )
@@ -63,7 +76,7 @@ def is_date(cell: str) -> bool:
 
 
 def is_clock(cell: str) -> bool:
-    """Return whether a cell is a time of day with seconds, without a date."""
+    """Return whether a cell is a time of day with seconds or AM or PM, without a date."""
     return _CLOCK_CELL.fullmatch(cell) is not None
 
 
@@ -77,15 +90,26 @@ def normalize_dates(texts: Any) -> Any:
     texts = pc.utf8_trim_whitespace(texts)
     if not pc.any(pc.invert(pc.match_substring_regex(texts, _USUAL))).as_py():
         return texts
-    texts = _replace_patterns(texts, _REWRITTEN)
+    texts = _replace_patterns(_expand_years(texts), _REWRITTEN)
     first, second = _find_largest_parts(texts)
     order = r"\3-\1-\2" if first <= _LAST_MONTH < second else r"\3-\2-\1"
     return _replace_patterns(texts, ((_YEAR_AT_END, order), *_PADDED))
 
 
+def _expand_years(texts: Any) -> Any:
+    """Return texts in which the years of dates with two digits have four.
+
+    The year is first if the last number takes more values than the first, as the day does; else it is last.
+    """
+    parts: Any = pc.extract_regex(texts, r"^(?P<first>\d+)[-/.]\d+[-/.](?P<last>\d{2}) ")
+    counts = [pc.count_distinct(pc.struct_field(parts, name)).as_py() for name in ("first", "last")]
+    order = r"20\1-\2-\3 " if counts[1] > counts[0] else r"\1-\2-20\3 "
+    return pc.replace_substring_regex(texts, r"^(\d{1,2})[-/.](\d{1,2})[-/.](\d{2}) ", order)
+
+
 def order_is_guessed(texts: Any) -> bool:
     """Return whether dates such as 03/04/2024 leave open whether the day or the month is first."""
-    texts = _replace_patterns(texts, _REWRITTEN[:1])
+    texts = _expand_years(_replace_patterns(texts, _REWRITTEN[:1]))
     first, second = _find_largest_parts(texts)
     if not 0 < max(first, second) <= _LAST_MONTH:
         return False
