@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import io
+import re
 from collections.abc import Iterator
 from typing import Any, Protocol
 
@@ -22,7 +23,11 @@ MAX_DOCUMENT_BYTES = 64 << 20
 
 _UTF_8 = "utf-8-sig"
 _GUESSES = {"cp1252": "Windows-1252", "gbk": "GBK", "shift_jis": "Shift-JIS"}
-"""Encodings that are tried in this order if a text is not UTF-8, with their names."""
+"""Encodings that are guessed if a text is not UTF-8, with their names."""
+_find_high_bytes = re.compile(rb"[\x80-\xff]").findall
+_find_kanji_bytes = re.compile(rb"[\x81-\x9f]").findall
+_IN_WORDS = re.compile(rb"[a-z][\x92\xa0-\xff]{1,2}|[\x92\xa0-\xff]{1,2}[a-z]")
+"""Bytes of western letters, which stand beside others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,17 +138,31 @@ class LineCutter:
 
     def _guess(self, data: bytes) -> str:
         """Choose an encoding for a text that is not UTF-8; return the text of some bytes in that encoding."""
-        for encoding in _GUESSES:
-            try:
-                codecs.getincrementaldecoder(encoding)().decode(data)
-            except UnicodeDecodeError:
-                continue
-            break
-        else:
-            encoding = next(iter(_GUESSES))
+        encoding = _guess_encoding(data)
         self._notes.say(f"not UTF-8: read as {_GUESSES[encoding]} (--encoding selects another)")
         self._choose(encoding)
         return self._decoder.decode(data)
+
+
+def _guess_encoding(data: bytes) -> str:
+    """Return one of `_GUESSES` for bytes that are not UTF-8."""
+    rest = _IN_WORDS.sub(b"", data)
+    high_bytes = _find_high_bytes(rest)
+    if 2 * len(high_bytes) >= len(_find_high_bytes(data)):
+        # Most kanji of Shift-JIS begin with such a byte, and Chinese in GB 2312 has none.
+        if 4 * len(_find_kanji_bytes(rest)) >= len(high_bytes) and _can_decode(data, "shift_jis"):
+            return "shift_jis"
+        if _can_decode(data, "gb2312"):
+            return "gbk"
+    return next((name for name in _GUESSES if _can_decode(data, name)), "cp1252")
+
+
+def _can_decode(data: bytes, encoding: str) -> bool:
+    try:
+        codecs.getincrementaldecoder(encoding)().decode(data)
+    except UnicodeDecodeError:
+        return False
+    return True
 
 
 class Readable(Protocol):
