@@ -12,7 +12,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, counted
 from tuisim.engine.core.conditions import NUMBER
 from tuisim.logs.arrow import make_names_unique
-from tuisim.logs.cells import EMPTY_CELLS, is_unit
+from tuisim.logs.cells import EMPTY_CELLS, MINUS, UNIT_WORDS, is_unit
 from tuisim.logs.columns import parse_time_name
 from tuisim.logs.dates import is_date, is_moment
 from tuisim.logs.warnings import Notes
@@ -35,6 +35,8 @@ _NUMBER = re.compile(
     r"|0[xX][0-9a-fA-F]+|[+-]?(?:inf|infinity|nan)|true|false",
     re.IGNORECASE,
 )
+is_rule = re.compile(r"[\s|+:=-]*(?:--|==)[\s|+:=-]*").fullmatch
+"""Matches a line drawn of signs between the heading and the rows."""
 _MIN_PART = 10
 """The table has at least one row for this many of the longest run of rows alike."""
 _MAX_LINES, _MAX_JOINS = 100, 100
@@ -106,7 +108,7 @@ def parse_kinds(cells: Sequence[str]) -> str:
 
 
 def _classify_cell(cell: str) -> str:
-    text = cell.strip()
+    text = cell.strip().replace(MINUS, "-")
     if text in EMPTY_CELLS:
         return "-"
     if _NUMBER.fullmatch(text):
@@ -410,6 +412,8 @@ def _find_names(
     width = len(run.kinds)
     if above:
         *before, last = above
+        if before and _has_gaps(last, before[-1]):
+            *before, last = before
         if len(last.kinds) == width and is_words(last.kinds):
             if before and len(before[-1].kinds) == width and _has_units(last.cells, before[-1]):
                 pairs = zip(before[-1].cells, last.cells, strict=True)
@@ -448,20 +452,21 @@ def _join_unit(name: str, unit: str) -> str:
     return name if has_unit else f"{name} [{unit}]"
 
 
+def _has_gaps(line: _Line, names: _Line) -> bool:
+    """Return whether a line below names has words below some of them only, such as how a column was averaged."""
+    are_names = len(names.kinds) == len(line.kinds) and set(names.kinds) == {"w"}
+    return are_names and set(line.kinds) == {"w", "-"} and not _has_units(line.cells, names)
+
+
 def _has_units(cells: Sequence[str], names: _Line) -> bool:
     units = [cell.strip(" ()[]").lower() for cell in cells]
-    return is_words(names.kinds) and any(units) and all(is_unit(u) or u in "-1" for u in units)
+    are_units = all(is_unit(unit) or unit in UNIT_WORDS or unit in "-1" for unit in units)
+    return is_words(names.kinds) and any(units) and are_units
 
 
 def _has_names(rows: Sequence[_Line]) -> bool:
     """Return whether the first of some rows has the names of the columns, although it looks like the rows below it."""
-    first = rows[0]
-    if first.kinds[0] == "t" and (len(rows) < 2 or rows[1].kinds[0] == "t"):
-        return False
-    # A single line with a number is a row, since a table with only a heading would be empty.
-    return (
-        "n" not in first.kinds if len(rows) < 2 else 2 * first.kinds.count("n") < len(first.kinds)
-    )
+    return not has_numbers(rows[0].kinds)
 
 
 def _number_columns(cells: Sequence[str], notes: Notes) -> list[str]:

@@ -28,6 +28,7 @@ from tuisim.logs.heading import (
     close_quotes,
     find_heading,
     has_numbers,
+    is_rule,
     is_words,
     parse_kinds,
     split_cells,
@@ -128,7 +129,8 @@ class CsvReader:
     def _begin(self, block: Block) -> Block:
         # All comments above the table, which may be many, and some of its lines are read.
         comments = sum(1 for _ in takewhile(lambda line: line[1].startswith("#"), block.lines()))
-        lines = list(islice(block.lines(), comments + SNIFFED_LINES))
+        first_lines = islice(block.lines(), comments + SNIFFED_LINES)
+        lines = [line for line in first_lines if not is_rule(line[1])]
         if not lines:
             return block
         self._heading = find_heading(lines, self._notes, self._choices.sign, self._choices.header)
