@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from tuisim.logs.warnings import Notes
 
 EMPTY_CELLS = ("", "NA", "N/A", "null", "None", "-")
 """Cells that mean a missing value."""
+MINUS = "\N{MINUS SIGN}"
 _SPECIAL = r"^[+-]?(?i:inf|infinity|nan)$"
 UNIT = (
     r"(?:[mµun]?s|sec|min|h|[mck]?m(?:/s²?)?|°c?|(?:deg|°|rad)(?:/s)?|%|m?v|m?a|w|k?hz|c|k|lux|n|nm|k?g|rpm|dps"
@@ -26,6 +28,10 @@ UNIT = (
 )
 """Regular expression of a unit as it stands in cells and below names, in lower case."""
 is_unit = re.compile(UNIT, re.IGNORECASE).fullmatch
+UNIT_WORDS = frozenset(
+    ("second", "volt", "volts", "amp", "ampere", "watt", "deg c", "degc", "ts", "rn")
+)
+"""Further units in a row below names, such as an oscilloscope or a data logger writes it."""
 _UNIT = r"^(?P<number>.*\d\.?)(?P<gap>\s*)(?P<unit>%|°\w?|[A-Za-zµΩ][A-Za-z0-9µΩ²/]{0,7})$"
 _JUDGED_CELLS = 10_000
 """Cells of a column from which the form of its numbers is found."""
@@ -60,7 +66,7 @@ _DECIMAL_COMMA = _NumberForm(
     ",",
 )
 _COMMAS = _NumberForm(
-    r"^[+-]?(?:\d{1,3}(?:,\d{3})+|\d{1,3})(?:\.\d*)?$",
+    r"^[+-]?(?:\d{1,3}(?:,\d{2,3})*,\d{3}|\d{1,3})(?:\.\d*)?$",
     ((",", ""),),
     "have commas between thousands (1,000 is a thousand)",
     ".",
@@ -77,6 +83,7 @@ _GAPS = _NumberForm(
     "have gaps between thousands",
 )
 _HEXADECIMAL = _NumberForm(r"^0[xX][0-9a-fA-F]{1,15}$", (), "are hexadecimal", is_hexadecimal=True)
+_BARE_HEXADECIMAL = replace(_HEXADECIMAL, pattern=r"^[0-9a-fA-F]{2,15}$", changes=(("^", "0x"),))
 _TRUTHS = _NumberForm(r"^(?i:true|false)$", ((r"(?i)true", "1"), (r"(?i)false", "0")))
 
 
@@ -105,7 +112,7 @@ def _parse_numbers(cells: pa.Array, form: _NumberForm) -> tuple[pa.Array, pa.Arr
 
 def _trim(cells: pa.Array) -> tuple[Any, Any]:
     """Return texts without blanks around them, with null for empty texts, and a mask of the empty texts."""
-    texts: Any = pc.utf8_trim_whitespace(cells)
+    texts: Any = pc.replace_substring(pc.utf8_trim_whitespace(cells), MINUS, "-")
     empty = pc.or_(pc.is_null(texts), pc.is_in(texts, value_set=build_text_array(EMPTY_CELLS)))
     return pc.if_else(empty, pa.scalar(None, pa.string()), texts), empty
 
@@ -122,6 +129,8 @@ def _find_form(cells: pa.Array, separator: str, decimal: str) -> _NumberForm | N
     special = pc.match_substring_regex(texts, _SPECIAL)
     if not pc.all(special).as_py():
         texts = texts.filter(pc.invert(special))
+    if _is_bare_hexadecimal(texts):
+        return _BARE_HEXADECIMAL
     commas = (_COMMAS, _DECIMAL_COMMA) if separator == "," else (_DECIMAL_COMMA, _COMMAS)
     forms = [
         form
@@ -129,6 +138,22 @@ def _find_form(cells: pa.Array, separator: str, decimal: str) -> _NumberForm | N
         if not decimal or form.decimal in ("", decimal)
     ]
     return _choose_form(texts, forms) or _find_unit_form(texts, forms)
+
+
+def _is_bare_hexadecimal(texts: pa.Array) -> bool:
+    """Return whether texts are hexadecimal numbers without `0x`, as loggers of a CAN bus write them.
+
+    They have the same length, and only some of them letters.
+    """
+    are_alike = pc.count_distinct(pc.utf8_length(texts)).as_py() == 1
+    if (
+        not are_alike
+        or not pc.all(pc.match_substring_regex(texts, _BARE_HEXADECIMAL.pattern)).as_py()
+    ):
+        return False
+    are_plain = pc.match_substring_regex(texts, _PLAIN.pattern)
+    begin_plain = pc.match_substring_regex(texts, r"^(?:\d+$|00)")
+    return not pc.all(are_plain).as_py() and bool(pc.any(begin_plain).as_py())
 
 
 def _find_unit_form(texts: pa.Array, forms: Sequence[_NumberForm]) -> _NumberForm | None:
