@@ -14,23 +14,23 @@ from tuisim.engine.core.conditions import NUMBER
 from tuisim.engine.runs.samples import parse_sample
 from tuisim.logs.cells import UNIT
 from tuisim.logs.choices import ReadChoices
-from tuisim.logs.columns import NAMES, parse_time_name
-from tuisim.logs.dates import MOMENT
+from tuisim.logs.columns import COUNTS, NAMES, parse_time_name
+from tuisim.logs.dates import MOMENT, MONTH
 from tuisim.logs.heading import BLANKS, SEPARATORS, parse_kinds, split_cells
 from tuisim.logs.json_rows import ObjectReader, Row
 from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.warnings import Notes
 
 _STAMPED = re.compile(
-    rf"\s*(?:(?P<open>[\[(<])\s*)?(?P<stamp>(?>{MOMENT})|(?>{NUMBER}))(?(open)\s*[\])>])"
-    r"(?P<between>\s*(?::|->|=>|=|-(?= ))\s*| +|(?<=[\])>]))(?P<rest>\S.*?)\s*"
+    rf"\s*(?:(?P<open>[\[(<])\s*)?(?:{MONTH} +\d{{1,2}} )?(?P<stamp>(?>{MOMENT})|(?>{NUMBER}))(?(open)\s*[\])>])"
+    r"(?P<between>\s*(?::(?!\d\d\.)|->|=>|=|-(?= ))\s*| +|(?<=[\])>]))(?P<rest>\S.*?)\s*"
 )
 _LEVEL = r"(?:DEBUG|INFO|WARN(?:ING)?|ERROR|CRITICAL)"
 _PREFIX = re.compile(
     rf"\s*(?:>+|\[[^\]=]*\]|{_LEVEL}(?=[\s:])\s*:?|-(?=\s)|[\w.]+\s*:(?=\s*[^\W\d][\w.]*\s*[:=])"
-    r"|[\w.]+\s+-(?=\s))\s*"
+    r"|[\w.]+\s+-(?=\s)|[\w.\-]+ [^\s:\[]+\[\d+\]:)\s*"
 )
-"""A prompt, brackets, a level of Python's `logging`, or the name of a logger."""
+"""A prompt, brackets, a level of Python's `logging`, the name of a logger, or a computer and a process of syslog."""
 _VALUE = rf"(?:{NUMBER}|(?i:[+-]?(?:nan|inf(?:inity)?)|none|null|na)\b)"
 """A number, or what is printed where there is none."""
 _ITEM = re.compile(
@@ -45,7 +45,10 @@ _VALUES = re.compile(rf"{_VALUE}(?:(?:\s*[,;]\s*|\s+){_VALUE})*")
 _SEPARATORS = frozenset(SEPARATORS)
 _SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")
 _WORDS = re.compile(r"[\s,;:]+")
-_TUPLE = re.compile(r"\s*(?:[A-Za-z_]*\((?P<tuple>.*)\)|\[(?P<list>[^\[\]{}]*)\])\s*,?")
+_TUPLE = re.compile(
+    r"\s*(?:[A-Za-z_]*\((?P<tuple>.*)\)|\[(?P<list>[^\[\]{}]*)\]|\|(?P<row>.*)\|)\s*,?"
+)
+_TIME_NAMES = frozenset(NAMES) - {*COUNTS}
 _MAX_CHARACTERS = 4000
 """Longer lines are not searched for samples."""
 
@@ -76,6 +79,10 @@ def parse_line(line: str) -> ProgramLine | None:
         return ProgramLine(float(teleplot[2]) / 1000, ((teleplot[1], teleplot[3]),))
     time, rest, certain = _split_time(line.strip())
     if samples := _ITEM.findall(_strip_prefixes(rest, _ITEMS)):
+        first, unit_s = parse_time_name(samples[0][0])
+        if time is None and len(samples) > 1 and first in _TIME_NAMES:
+            seconds = float(samples[0][1]) * (unit_s or 1.0)
+            return ProgramLine(seconds, samples[1:])
         return ProgramLine(time, samples)
     # If it is not certain that the first number is a time, it may be a value: numbers are then not read.
     numbers = _strip_prefixes(rest, _VALUES) if certain else ""
@@ -153,16 +160,16 @@ def _list_samples(row: int, line: str) -> list[Row]:
 
 
 def has_tuples(lines: Sequence[str]) -> bool:
-    """Return whether most of the lines are tuples or lists in Python's form."""
+    """Return whether most of the lines are tuples or lists in Python's form, or rows between bars."""
     if len(lines) < 2 or lines[0].strip() == "[" or lines[0].lstrip().startswith(("[[", "[{")):
         return False
     return 2 * sum(_TUPLE.fullmatch(line) is not None for line in lines) > len(lines)
 
 
 def strip_brackets(line: str) -> str:
-    """Return a line that is a tuple or list without its brackets; other lines unchanged."""
+    """Return a line that is a tuple or list without its brackets, or a row without its outer bars; others unchanged."""
     match = _TUPLE.fullmatch(line)
-    return line if match is None else match["tuple"] or match["list"] or ""
+    return line if match is None else match["tuple"] or match["list"] or match["row"] or ""
 
 
 def _split_stamped(line: str) -> str:
