@@ -6,7 +6,7 @@ import ast
 import csv
 import io
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -20,6 +20,7 @@ from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.warnings import Notes
 
 _ALLOWED = "a JSON log is rows as objects, or an object of columns that have equal lengths"
+_MAX_DEPTH = 8
 _NAMELESS = "(no name)"
 # Python's output can contain values that JSON does not have, such as sets and bytes.
 _format_value = json.JSONEncoder(default=repr, skipkeys=True).encode
@@ -67,6 +68,7 @@ class ObjectReader:
         Args:
             numbered_rows: The objects, each with its row in the file.
         """
+        numbered_rows = [(number, dict(_list_cells(row, ""))) for number, row in numbered_rows]
         names = dict.fromkeys(name for _, cells in numbered_rows for name in cells)
         texts = {
             _escape_surrogates(str(name)) or _NAMELESS: pa.array(
@@ -80,6 +82,15 @@ class ObjectReader:
 def build_json_reader(notes: Notes) -> ObjectReader:
     """Return a reader for a file each of whose lines is a JSON object, or a list of objects."""
     return ObjectReader(notes, lambda _, line: _parse_rows(line), "a JSON object", "JSON objects")
+
+
+def _list_cells(row: Row, prefix: str) -> Iterator[tuple[str, Any]]:
+    """Yield the cells of an object; those of objects in it have names with a point, such as `imu.x`."""
+    for name, cell in row.items():
+        if isinstance(cell, dict) and cell and prefix.count(".") < _MAX_DEPTH:
+            yield from _list_cells(cell, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}", cell
 
 
 def _format_cell(cell: object) -> str | None:
