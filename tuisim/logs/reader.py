@@ -58,7 +58,13 @@ from tuisim.logs.program_lines import (
     strip_brackets,
 )
 from tuisim.logs.text_tables import CsvReader
-from tuisim.logs.time_order import guess_unit_s, join_times, keep_timed_rows, number_runs
+from tuisim.logs.time_order import (
+    guess_unit_s,
+    join_times,
+    keep_timed_rows,
+    number_runs,
+    reverse_newest_first,
+)
 from tuisim.logs.units import TIMEDELTA
 from tuisim.logs.warnings import Notes
 
@@ -172,6 +178,7 @@ def _build_log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: Rea
     table, layout, times = keep_timed_rows(table, layout, later)
     if not metadata:
         if times is not None:
+            table, times = reverse_newest_first(table, layout, times, later)
             table, layout = number_runs(table, layout, times, later)
         _tell_odd_columns(table, layout, unread, later)
     return Log(

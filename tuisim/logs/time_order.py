@@ -102,6 +102,18 @@ def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
     return next((unit_s for unit_s, min_step in _MIN_STEPS.items() if step >= min_step), None)
 
 
+def reverse_newest_first(
+    table: pa.Table, layout: Layout, times: Times, notes: Notes
+) -> tuple[pa.Table, Times]:
+    """Return the rows of a table in the order of time if the newest is first, with their times; else both unchanged."""
+    steps = np.diff(times.seconds)
+    if len(steps) < 2 or (steps > 0).any() or not steps.any():
+        return table, times
+    notes.say("the newest row is first: the rows are read from the last")
+    table = table.take(np.arange(table.num_rows)[::-1])
+    return table, read_times(table, layout)
+
+
 def number_runs(
     table: pa.Table, layout: Layout, times: Times, notes: Notes
 ) -> tuple[pa.Table, Layout]:
