@@ -137,12 +137,12 @@ EVERYTHING = SceneState(
 @pytest.mark.parametrize(
     "view, options, checksum",
     [
-        (VIEW, {}, 15489762),
-        (VIEW, {"for_file": True}, 3186909634),
-        (Viewport.fit_field(240, 120, CellPoints(2, 4)), {}, 135519599),
-        (Viewport.fit_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 929788647),
-        (Viewport.fit_field(38, 19), {"grey": True}, 2203019224),
-        (Viewport.fit_field(76, 60, CellPoints(2, 3)), {"mono": True}, 991141988),
+        (VIEW, {}, 2822133340),
+        (VIEW, {"for_file": True}, 359310167),
+        (Viewport.fit_field(240, 120, CellPoints(2, 4)), {}, 3575795110),
+        (Viewport.fit_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 3450928851),
+        (Viewport.fit_field(38, 19), {"grey": True}, 3672902916),
+        (Viewport.fit_field(76, 60, CellPoints(2, 3)), {"mono": True}, 3418784859),
         (Viewport(140, 78, 4.0, 1003 - 280.0, 507 + 156.0), {"whole_cells": True}, 3233824671),
     ],
     ids=["middle", "for a file", "octants", "coarse", "small and grey", "mono", "close"],

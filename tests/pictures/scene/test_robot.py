@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import atan2, degrees, hypot
+from math import atan2, cos, degrees, hypot, radians, sin
 
 import numpy as np
 import pytest
@@ -105,6 +105,25 @@ def test_the_marker_of_a_small_robot_points_where_the_robot_heads(
     shown_deg = degrees(atan2((row - tip_row) * aspect, tip_col - col))
     assert abs((shown_deg - heading + 180) % 360 - 180) < 30
     assert (picture == COLORED.wheel).all(axis=2).sum() >= 4 * cell.cols
+
+
+@pytest.mark.parametrize("cell", [CellPoints(1, 2), CellPoints(2, 2), CellPoints(2, 4)])
+@pytest.mark.parametrize("cols", [37, 78, 118, 156, 198])
+def test_the_nose_of_a_robot_of_few_pixels_is_in_front_of_all_else(
+    cell: CellPoints, cols: int
+) -> None:
+    view = Viewport.fit_field(cols * cell.cols, cols // 4 * cell.rows, cell)
+    for heading in range(0, 360, 15):
+        picture = np.zeros((view.height_px, view.width_px, 3), np.uint8)
+
+        draw_robot(picture, view, Pose(1200, 570, float(heading)), build_outline(ROBOT), COLORED)
+
+        rows, cols_px = np.nonzero(picture.any(axis=2))
+        ahead = cols_px * view.mm_per_px * cos(radians(heading))
+        ahead -= rows * view.mm_per_row * sin(radians(heading))
+        front = ahead >= ahead.max() - view.mm_per_row
+        marker = (picture[rows, cols_px] == COLORED.marker).all(axis=1)
+        assert marker[front].mean() >= 0.5, heading
 
 
 @pytest.mark.parametrize("cols", [58, 118, 198])

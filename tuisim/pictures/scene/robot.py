@@ -24,10 +24,11 @@ _MIN_CELLS = 7.0
 
 _DISC_CELLS = 9.5
 """A crisp robot narrower than this many cells is a disc with a nose: a turned rectangle of few pixels has no shape."""
-_NOSE_CELLS = 1.2
-"""Cells by which the heading marker projects beyond a disc."""
-_THIN_CELLS = 0.5
-"""Half of its width at the tip of a disc."""
+_NOSE_CELLS = 2.0
+"""Cells by which the heading marker projects beyond a crisp robot: of few pixels, only a nose outside the body tells
+the front from the back."""
+_THIN_CELLS = 0.6
+"""Half of its width at the tip of the nose."""
 _DISC_WHEEL_CELLS = 1.2
 """Width of the wheels of a disc."""
 
@@ -169,12 +170,13 @@ def draw_robot(
     outline = colors.choose_parts(outline)
     scale = choose_scale(outline, view)
     col, row = view.to_px(pose.x_mm, pose.y_mm)
-    is_crisp = 2 * outline.half_width_mm * scale < _CRISP_PX * view.mm_per_px
-    if is_crisp:
-        col = math.floor(col) + 0.5
-        row = math.floor(row) + 0.5
     step_mm, row_mm = view.mm_per_px / scale, view.mm_per_row / scale
-    reach_mm = measure_reach_mm(outline)
+    is_crisp = 2 * outline.half_width_mm < _CRISP_PX * step_mm
+    if is_crisp:
+        col, row = math.floor(col) + 0.5, math.floor(row) + 0.5
+    cell_mm = step_mm * view.cell.cols
+    nose_mm = is_crisp * _NOSE_CELLS * cell_mm
+    reach_mm = measure_reach_mm(outline) + nose_mm
     left, right = _find_range(col, reach_mm / step_mm + 2, view.width_px)
     top, bottom = _find_range(row, reach_mm / row_mm + 2, view.height_px)
     if left >= right or top >= bottom:
@@ -185,17 +187,17 @@ def draw_robot(
     east = (_sample_places(left, right, across) - col)[None, :] * step_mm
     north = (row - _sample_places(top, bottom, down))[:, None] * row_mm
     side, ahead = _turn_places(east, north, pose.heading_deg)
-    cell_mm = step_mm * view.cell.cols
-    detail_mm = cell_mm / detail_cols
-    edge_mm = colors.choose_edge_mm(cell_mm) if colors.has_small_edge or not is_crisp else 0.0
+    edge_mm = (colors.has_small_edge or not is_crisp) * colors.choose_edge_mm(cell_mm)
     if is_crisp and 2 * outline.half_width_mm < _DISC_CELLS * cell_mm:
         parts = _classify_disc(outline, side, ahead, cell_mm, edge_mm, colors)
     else:
-        parts = _classify_samples(outline, side, ahead, detail_mm, detail_cols, edge_mm, colors)
+        parts = _classify_samples(
+            outline, side, ahead, cell_mm, detail_cols, edge_mm, nose_mm, colors
+        )
     if colors.is_outline:
         parts[(parts != _EDGE) & (parts != _MARKER)] = _NONE
     else:
-        _mount(parts, outline, side, ahead, detail_mm, pressed)
+        _mount(parts, outline, side, ahead, cell_mm / detail_cols, pressed)
     blocks = parts.reshape(bottom - top, down, right - left, across)
     _blend(
         picture[top:bottom, left:right], _pick_part(blocks) if is_crisp else blocks, colors, opacity
@@ -228,9 +230,10 @@ def _classify_samples(
     outline: RobotOutline,
     side: FloatArray,
     ahead: FloatArray,
-    px_mm: float,
+    cell_mm: float,
     cell_cols: int,
     edge_mm: float,
+    nose_mm: float,
     colors: RobotColors,
 ) -> npt.NDArray[np.intp]:
     """Return for each sample the number of the robot's part that covers it.
@@ -238,11 +241,13 @@ def _classify_samples(
     Args:
         outline: Shape of the robot.
         side, ahead: Where the samples are: to the right of the robot's axis, and ahead, in mm.
-        px_mm: Width of a pixel.
+        cell_mm: Width of a cell.
         cell_cols: Pixels across a cell.
         edge_mm: Width of the robot's edge.
+        nose_mm: How far the heading marker projects beyond the front, for a crisp robot; 0 for another.
         colors: The colours of the parts, which say whether wheels and marker are drawn.
     """
+    px_mm = cell_mm / cell_cols
     across = np.abs(side)
     parts = np.zeros(side.shape, np.intp)
     front_mm, back_mm = outline.front_mm, outline.back_mm
@@ -255,13 +260,15 @@ def _classify_samples(
     beside = np.abs(across - outline.half_width_mm + wheel_mm / 2) <= wheel_mm / 2
     if outline.has_wheels:
         parts[beside & (np.abs(ahead) <= outline.wheel_radius_mm)] = _WHEEL
+    tip_mm = front_mm + nose_mm
     base_mm = back_mm * 0.55
-    length_mm = front_mm - base_mm
+    length_mm = tip_mm - base_mm
     # The marker is longer than wide: in an even triangle of few pixels any corner could be the tip.
     widest_mm = min(0.62 * (outline.half_width_mm - outline.wheel_width_mm), 0.28 * length_mm)
-    flank = np.maximum(widest_mm * (front_mm - ahead) / length_mm, 0.4 * px_mm)
+    thin_mm = _THIN_CELLS * cell_mm if nose_mm else 0.4 * px_mm
+    flank = np.maximum(widest_mm * (tip_mm - ahead) / length_mm, thin_mm)
     if colors.has_marker:
-        parts[(ahead >= base_mm) & (ahead <= front_mm) & (across <= flank)] = _MARKER
+        parts[(ahead >= base_mm) & (ahead <= tip_mm) & (across <= flank)] = _MARKER
     for x_mm, y_mm, radius in outline.color_sensors_mm:
         # In pixels of a whole cell a small sensor would only blur the marker.
         if 2 * radius >= 1.5 * px_mm or cell_cols > 1:
