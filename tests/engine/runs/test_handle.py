@@ -30,9 +30,8 @@ def test_a_process_that_ends_while_its_events_are_read_is_not_called_crashed(
 def test_the_whole_output_of_a_very_short_run_is_read(start: Start) -> None:
     handle = start("print('bye')")
     handle._look_at_s = math.inf
-    for view in (handle.telemetry, handle.output):
-        view.read_new()
-        view.holds = True
+    handle.telemetry.hold()
+    handle.output.hold()
     ended = handle.wait(PATIENCE_S)
     assert ended is not None
     assert ([row.text for row in handle.output.read_all_rows()], handle.telemetry.count) == (

@@ -387,8 +387,7 @@ class RunHandle:
         # New views read the files as anyone does who opens the run later: they may differ from what was read before.
         telemetry, output = open_views(self.folder, is_checked=True)
         # Reading each file once is enough, because the process has ended.
-        damages = telemetry.read_new(), output.read_new()
-        telemetry.holds = output.holds = True
+        damages = telemetry.hold(), output.hold()
         if wrong := next(filter(None, damages), "") or self._find_excess(telemetry):
             return wrong
         for view in (telemetry, output) if is_whole else ():

@@ -88,9 +88,8 @@ class Recording:
 
     def hold(self) -> None:
         """Read the telemetry and the output that exist now. Later data is not read until the next `RunHandle.pump`."""
-        for view in (self.telemetry, self.output):
-            view.read_new()
-            view.holds = True
+        self.telemetry.hold()
+        self.output.hold()
 
     @property
     def newest(self) -> int:

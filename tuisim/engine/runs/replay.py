@@ -274,8 +274,7 @@ def replay_run(
     except OSError as error:
         raise LogError(f"cannot be written: {error.strerror}", file=str(run.folder)) from error
     run = replace(run, telemetry=TelemetryView(run.folder), actions=done)
-    run.telemetry.read_new()
-    run.telemetry.holds = True
+    run.telemetry.hold()
     if run.telemetry.array().tobytes() != ticks.telemetry:
         raise LogError("was changed after its end", file=str(run.folder))
     return (

@@ -369,7 +369,7 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
         first_spec = _restore_spec(data["spec"]) if known is None else known
         plugged = tuple(map(PluggedPart.from_plain, _check_type(data["plugged"], list, "plugged")))
         end = None if data["end"] is None else _parse_end(data["end"])
-        lost = [view.note or _describe_lost(view, end) for view in (telemetry, output)]
+        lost = [_read_recording(view, end) for view in (telemetry, output)]
         # The recording of a run that has ended does not change any more.
         telemetry.holds = output.holds = end is not None
         return StoredRun(
@@ -398,8 +398,16 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
         raise LogError(f"damaged: {shortened(what)}", file=str(folder / RUN_FILE)) from error
 
 
-def _describe_lost(view: TelemetryView | OutputView, end: Ended | None) -> str:
-    """Return a text that says which records of an ended run are missing in a recording; empty if none are missing."""
+def _read_recording(view: TelemetryView | OutputView, end: Ended | None) -> str:
+    """Read a recording once, and return a text that says what is damaged or missing in it; empty if nothing is.
+
+    Args:
+        view: The recording, which is then held.
+        end: The end of the run, which tells whether records are missing; None if it has not ended.
+    """
+    view.hold()
+    if note := view.note:
+        return note
     if end is None or end.end not in _TOLD:
         return ""
     if view.is_missing:

@@ -214,6 +214,12 @@ class _View(ABC):
             self._read_new()
         return self._damage
 
+    def hold(self) -> str:
+        """Read as `read_new` does, and set `holds`."""
+        damage = self.read_new()
+        self.holds = True
+        return damage
+
     def _get_known(self, count: int) -> memoryview | None:
         """Return the copy of the recording if it has more than `count` records, else None.
 

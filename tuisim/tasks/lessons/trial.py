@@ -121,9 +121,8 @@ def run_model(lesson: Lesson, step: LessonStep | None) -> Recording:
             handle.wait()
             run = handle.stored()
             # The whole recording is read now, since the run's folder is removed afterwards.
-            for view in (run.telemetry, run.output):
-                view.read_new()
-                view.holds = True
+            run.telemetry.hold()
+            run.output.hold()
             return Recording(run, name="the model answer")
         finally:
             handle.close()
