@@ -153,6 +153,12 @@ def test_a_fault_of_tuisim_in_a_batch_becomes_a_result_and_a_report_file(
     assert not list(tmp_path.iterdir())
 
 
+def test_a_kept_run_has_the_tags_of_its_task(tmp_path: Path) -> None:
+    result = execute(replace(task("1 / 0"), keep=Keep.ALL, tags=("student:ada",)), tmp_path)
+    assert RunStore().load_run(result.run_id).tags == ("student:ada",)
+    assert RunStore().find(result.run_id).tags == "student:ada"
+
+
 @pytest.mark.parametrize("step", ["write_end", "add_folder"])
 def test_a_run_that_cannot_be_stored_is_judged_all_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str

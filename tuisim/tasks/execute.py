@@ -82,7 +82,7 @@ def _run_task(task: Task, folder: Path) -> Result:
         finally:
             handle.close()
         return (
-            replace(result, run_id=_keep(temporary, ended))
+            replace(result, run_id=_keep(temporary, ended, task.tags))
             if _is_kept(task, run, ended, judgements)
             else result
         )
@@ -157,7 +157,7 @@ def _is_kept(task: Task, run: StoredRun, ended: Ended, judgements: Sequence[Judg
     return task.keep is Keep.ALL
 
 
-def _keep(temporary: TemporaryRun, ended: Ended) -> str:
+def _keep(temporary: TemporaryRun, ended: Ended, tags: Sequence[str]) -> str:
     """Store a finished run and return its id; return "" if the program damaged the recording after the run was judged.
 
     Raises:
@@ -165,7 +165,7 @@ def _keep(temporary: TemporaryRun, ended: Ended) -> str:
     """
     try:
         temporary.write_end(ended)
-        return RunStore().add_folder(temporary.folder).id
+        return RunStore().add_folder(temporary.folder, tags).id
     except LogError as error:
         if has_machine_cause(error) or isinstance(error.__cause__, sqlite3.Error):
             raise

@@ -52,6 +52,8 @@ class Task:
     """Whether the run is replayed from the program's commands, and the replay judged, not its own recording."""
     returns_files: bool = False
     """Whether the result contains the files of the recording."""
+    tags: tuple[str, ...] = ()
+    """The tags of the run in the store, each a single word."""
     real_time_limit_s: float = 0.0
     """Real seconds, without those in which it waits for a processor, after which it is stopped; 0 is no limit."""
 

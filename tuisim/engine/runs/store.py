@@ -120,13 +120,18 @@ class RunStore:
             raise
         return NewRun(run_id, number, folder, lock_fd, data)
 
-    def add_folder(self, folder: Path) -> NewRun:
+    def add_folder(self, folder: Path, tags: Sequence[str] = ()) -> NewRun:
         """Move the folder of a finished run into the store, list the run, and return it with its new folder.
+
+        Args:
+            folder: The folder.
+            tags: Further tags for the run, each a single word.
 
         Raises:
             LogError: there is no run in the folder, or the home folder cannot be written.
         """
         data = read_run_file(folder)
+        data["tags"] += tags
         run_id, place, lock_fd = self._create_folder(datetime.now(UTC))
         try:
             info = _build_info(run_id, data)

@@ -16,7 +16,6 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.catalogue import STUDENT_TAG
 from tuisim.engine.runs.handle import RunOptions
-from tuisim.engine.runs.store import RunStore
 from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.settings.presses import press_actions
 from tuisim.tasks.goals.trial_world import TrialWorld
@@ -181,10 +180,6 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
             place = workspace / str(result.index)
             try:
                 outcome = build_outcome(result, turn.seed, place, turn.world)
-                # A tag names the student, as all programs of a class may have the same name.
-                if outcome.run_id:
-                    words = turn.entry.student.name.split()
-                    RunStore().tag(outcome.run_id, [STUDENT_TAG + "_".join(words)])
             except Exception as error:  # Any error concerns this run only; the others go on.
                 outcome = _build_unjudged(turn, error)
             remove_tree(place)
@@ -231,6 +226,8 @@ def _build_tasks(
             goals=turn.world.own_goals,
             parameters={"student": student.name, "seed": turn.seed},
             keep=plan.keep,
+            # A tag names the student, as all programs of a class may have the same name.
+            tags=(STUDENT_TAG + "_".join(student.name.split()),),
             real_time_limit_s=REAL_TIME_LIMIT_S,
             isolate=plan.isolate,
             is_replayed=True,
