@@ -243,13 +243,11 @@ def _name_span(test: ast.expr, constants: Mapping[str, Word]) -> str:
         if isinstance(part, ast.Compare)
         for pair in _split_chain(part)
     ]
-    limits = [_read_limit(*pair, constants) for pair in pairs]
-    match limits:
-        case [
-            _Limit(value=value, word=float() | int() as a),
-            _Limit(value=other, word=float() | int() as b),
-        ] if value == other and {limit.sign[0] for limit in limits if limit} == {"<", ">"}:
-            return f"{min(a, b):g} < {value} < {max(a, b):g}"
+    limits = [limit for pair in pairs if (limit := _read_limit(*pair, constants))]
+    low, *high = sorted(limit.word for limit in limits if not isinstance(limit.word, str)) or [0]
+    is_span = len(limits) == len(pairs) == 2 and len({limit.value for limit in limits}) == 1
+    if is_span and high and {limit.sign[0] for limit in limits} == {"<", ">"}:
+        return f"{low:g} < {limits[0].value} < {high[0]:g}"
     return ""
 
 
@@ -332,21 +330,25 @@ def _list_unreached(
     nodes: Sequence[ast.AST], constants: Mapping[str, Word]
 ) -> Iterator[tuple[int, str]]:
     """Yield the lines with an `elif` that is never reached, as a condition before it is true whenever its own is."""
-    chained = {node.orelse[0] for node in nodes if isinstance(node, ast.If) and _is_elif(node)}
+    chained = {branch for node in nodes for branch in _list_elifs(node)}
     for node in nodes:
         if isinstance(node, ast.If) and node not in chained:
-            tests = [node.test]
-            while _is_elif(node) and len(tests) < _MAX_PARTS:
-                node = node.orelse[0]
-                tests.append(node.test)
+            branches = [node]
+            for branch in branches:
+                branches += _list_elifs(branch)[: _MAX_PARTS - len(branches)]
+            tests = [branch.test for branch in branches]
             for first, later in combinations(tests, 2):
                 both = ast.BoolOp(ast.And(), [ast.UnaryOp(ast.Not(), first), later])
                 if find_value(later, constants) is None and find_value(both, constants) is False:
                     yield later.lineno, _describe_unreached(first, later)
 
 
-def _is_elif(node: ast.If) -> bool:
-    return len(node.orelse) == 1 and isinstance(node.orelse[0], ast.If)
+def _list_elifs(node: ast.AST) -> list[ast.If]:
+    """Return the `elif` that follows an `if` or `elif` at once, or none."""
+    match node:
+        case ast.If(orelse=[ast.If() as branch]):
+            return [branch]
+    return []
 
 
 def _describe_unreached(first: ast.expr, later: ast.expr) -> str:
