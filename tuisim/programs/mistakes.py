@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from tuisim.base.source import PYBRICKS, find_encoding
 from tuisim.programs.comparisons import is_set
+from tuisim.programs.wrong_calls import explain_call
 
 
 def find_fault(text: str) -> tuple[str, int] | None:
@@ -175,7 +176,7 @@ def _list_used(nodes: Sequence[ast.AST]) -> Iterator[tuple[int, ast.expr]]:
 
 
 def explain_error(tree: ast.Module, error: str, line: int) -> str:
-    """Return why a line raised an error, if it uses a method without `()`, or a function without `return`.
+    """Return why a line raised an error: it uses a method without `()`, a function without `return`, or wrong values.
 
     The result is empty for other errors.
 
@@ -195,7 +196,7 @@ def explain_error(tree: ast.Module, error: str, line: int) -> str:
         ]
         return _describe_uncalled(names[0]) if len(names) == 1 else ""
     if "NoneType" not in error:
-        return ""
+        return explain_call(tree, error, line)
     empty = _map_empty_functions(nodes)
     results: dict[str, str] = {}
     for node in nodes:
