@@ -190,11 +190,11 @@ async def test_tab_after_a_name_that_nothing_begins_with_says_so(home: Path) -> 
         code, area = await typed(pilot, "nothing_like_it")
         await pilot.press("tab")
         await until(
-            pilot, lambda: "no name begins with nothing_like_it" in str(code.border_subtitle)
+            pilot, lambda: "no known name begins with nothing_like_it" in str(code.border_subtitle)
         )
         assert area.program_text == "nothing_like_it"
         await pilot.press("backspace")
-        await until(pilot, lambda: "no name begins" not in str(code.border_subtitle))
+        await until(pilot, lambda: "no known name" not in str(code.border_subtitle))
 
 
 async def test_tab_indents_in_a_comment_where_no_name_may_follow(home: Path) -> None:

@@ -15,6 +15,7 @@ from tuisim.app.editor.completion import (
     find_signature,
     find_word,
     is_in_call,
+    list_installed,
 )
 
 EV3DEV2 = "from ev3dev2.motor import LargeMotor\nfrom ev3dev2.sensor.lego import TouchSensor\nm = LargeMotor()\n"
@@ -93,7 +94,7 @@ def test_completion_lists_names_used_by_programs_first_and_inherited_ones_last(
         ("from pybricks.rob", ["robotics"]),
         ("from pybricks.tools import w", ["wait"]),
         ("def speed_of(wheel):\n    return wheel\n\nspee", ["speed_of", "SpeedPercent"]),
-        ("import ti", ["time", "timeit"]),
+        ("import timei", ["timeit"]),
         ("x = (1,\nif tank_drive.of", ["off"]),
     ],
     ids=[
@@ -120,6 +121,19 @@ def test_completion_lists_exactly_the_names_that_begin_like_the_word(
     home: Path, text: str, found: list[str]
 ) -> None:
     assert names(text) == found
+
+
+def test_completion_reads_packages_wherever_python_finds_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    packages, own = tmp_path / "lib" / "dist-packages", tmp_path / "work"
+    for folder in (packages, own):
+        folder.mkdir(parents=True)
+        monkeypatch.syspath_prepend(str(folder))
+
+    folders = list_installed()
+
+    assert str(packages) in folders and str(own) not in folders
 
 
 @pytest.mark.parametrize("text", ["", "    ", "'tank_drive.o", "# tank_drive.o", "3.", "x ="])

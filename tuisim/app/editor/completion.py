@@ -66,6 +66,8 @@ _HELP = {
 }
 """Help in place of docstrings that are true only of a brick."""
 _EXTENSIONS = [path for path in sys.path if path.endswith("lib-dynload")]
+_PACKAGE_FOLDERS = frozenset({"site-packages", "dist-packages"})
+"""Names of folders into which packages are installed."""
 _WARM_UP_PLACE = "colorLeft.r", "", 0, len("colorLeft.r")
 """The first question to Jedi, as arguments of `find_candidates`: what an object of the prelude has."""
 _asking = Lock()
@@ -266,14 +268,22 @@ def _build_script(text: str, path: str) -> tuple[Script, int]:
     ]
     project = jedi.Project(folder, added_sys_path=own, smart_sys_path=False)
     environment = InterpreterEnvironment()
-    # Jedi imports compiled modules to read their names: let it import only those of Python and of installed packages.
-    installed = [
-        *dict.fromkeys(map(sysconfig.get_path, ("stdlib", "platstdlib", "purelib", "platlib")))
-    ]
-    environment.get_sys_path = lambda: [*installed, *_EXTENSIONS]
+    environment.get_sys_path = list_installed
     return jedi.Script(
         prelude + program.text, environment=environment, project=project
     ), prelude.count("\n")
+
+
+def list_installed() -> list[str]:
+    """Return the folders of Python's own modules and of installed packages.
+
+    Jedi imports compiled modules to read their names, and may import only those in these folders. Packages are not
+    always installed in the folder of this environment: they can also be the system's, the user's, or in a folder that a
+    `.pth` file names.
+    """
+    own = map(sysconfig.get_path, ("stdlib", "platstdlib", "purelib", "platlib"))
+    packages = (path for path in sys.path if Path(path).name in _PACKAGE_FOLDERS)
+    return [*dict.fromkeys((*own, *packages, *_EXTENSIONS))]
 
 
 def _find_pybricks(text: str) -> str:

@@ -286,7 +286,7 @@ class Code(Vertical):
             helped = Text("looking up …")
         elif (word := self._area.unknown_word) is not None:
             helped = Text(
-                f"no name begins with {word}" if word else "nothing known follows the dot"
+                f"no known name begins with {word}" if word else "nothing known follows the dot"
             )
         self.border_subtitle = helped if helped else escape_markup(title_words)
 
