@@ -41,7 +41,7 @@ def place_robot(choice: RobotChoice, mat: Background) -> RobotSpec:
         choice: The robot, with the settings in its file.
         mat: The mat.
     """
-    if choice.own_places:
+    if choice.own_places or not mat.sensor_x_mm:
         return choice.spec
     moved = tuple(
         replace(sensor, x_mm=mat.sensor_x_mm.get(sensor.name, sensor.x_mm))
