@@ -37,6 +37,8 @@ from tuisim.settings.options import list_chosen_values
 if TYPE_CHECKING:
     from PIL.Image import Image
 
+    from tuisim.pictures.scene.view import Viewport
+
 Explain: TypeAlias = Callable[[StoredRun], Sequence[str]]
 SUFFIXES = (".html", ".htm")
 MAX_BANDS = 100
@@ -188,14 +190,14 @@ def _choose_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
 def _draw_world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> Picture:
     mat = _find_mat_name(run)
     try:
-        picture = _draw_way(run)
+        view = find_end_view(run)
+        picture = _draw_way(run, view)
     except LogError as error:
         why = str(error).replace(run.spec.world.background, mat)
         return Picture(f"No picture: {why}")
     which = f"run {run.number}: " if many else ""
     text = f"{which}the mat {mat} and the robot at its end pose; its path in orange, from the ring"
     text += "; numbers: where goals were met (✓) or missed (✗)" if pins else ""
-    view = find_end_view(run)
     return Picture(text, encode_picture(picture), picture.size, view, place_pins(pins, view))
 
 
@@ -204,16 +206,19 @@ def _find_mat_name(run: StoredRun) -> str:
     return run.spec.world.background.rpartition(os.sep)[2]
 
 
-def _draw_way(run: StoredRun) -> Image:
+def _draw_way(run: StoredRun, view: Viewport) -> Image:
     """Return a picture of a run: mat, obstacles, pen trace, robot, and the path of the axle's midpoint.
 
     A ring marks the start of the path.
+
+    Args:
+        run: The run.
+        view: The view of the picture, from `find_end_view`.
     """
     from PIL import ImageDraw
 
     picture = draw_end(run)
     records: Any = run.telemetry.array()
-    view = find_end_view(run)
     path: Any = view.to_px(records["x_mm"], records["y_mm"])
     way = list(zip(*(places.tolist() for places in path), strict=True))
     draw = ImageDraw.Draw(picture)
