@@ -152,12 +152,14 @@ def _list_turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
             answers=plan.options.answers or world.answers,
             actions=press_actions(presses, of_world.profile.tick_hz),
         )
+        settings = [repr(world), options.to_plain()]
+        plain = dump_run(of_world)
         for seed in plan.seeds:
-            spec = replace(of_world, seed=seed)
-            own = [repr(world), options.to_plain(), dump_run(spec)]
+            own = [*settings, {**plain, "seed": seed}]
             text = json.dumps([*basis, *own], sort_keys=True, default=str).encode(
                 "utf-8", "surrogatepass"
             )
+            spec = replace(of_world, seed=seed)
             turns.append(_Turn(entry, seed, world, spec, options, hashlib.sha256(text).hexdigest()))
     return turns
 
