@@ -134,7 +134,8 @@ def build_outcome(
     for name, judgement in judgements.items():
         if world is not None and name not in world.goals:
             continue
-        met = judgement.state is GoalState.MET
+        state = judgement.state
+        met = state is GoalState.MET
         cause = _find_cause(judgement, judgements)
         goals.append(
             GoalOutcome(
@@ -143,7 +144,7 @@ def build_outcome(
                 "" if met else _join_lines(make_portable(cause.reason, folder)),
                 0 if met else cause.line,
                 is_penalty=judgement.goal.points < 0,
-                is_unknown=judgement.state is GoalState.UNKNOWN,
+                is_unknown=state is GoalState.UNKNOWN,
                 event=None if result.end == End.FALSIFIED else _find_event(judgement),
             )
         )
