@@ -30,6 +30,10 @@ _IN_WORDS = re.compile(rb"[a-z][\x92\xa0-\xff]{1,2}|[\x92\xa0-\xff]{1,2}[a-z]")
 """Bytes of western letters, which stand beside others."""
 
 
+_COLOURS = re.compile(r"\x1b\[[\d;]*m")
+"""What a program writes to colour its lines in a terminal."""
+
+
 @dataclass(frozen=True, slots=True)
 class Block:
     """Consecutive whole lines of a text file."""
@@ -105,6 +109,8 @@ class LineCutter:
         if "\0" in lines:
             self._notes.say("null bytes were skipped")
             lines = lines.replace("\0", "")
+        if "\x1b" in lines:
+            lines = _COLOURS.sub("", lines)
         block = Block(self._row, lines)
         self._row += block.text.count("\n")
         return block
