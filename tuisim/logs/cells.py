@@ -32,7 +32,7 @@ UNIT_WORDS = frozenset(
     ("second", "volt", "volts", "amp", "ampere", "watt", "deg c", "degc", "ts", "rn")
 )
 """Further units in a row below names, such as an oscilloscope or a data logger writes it."""
-_UNIT = r"^(?P<number>.*\d\.?)(?P<gap>\s*)(?P<unit>%|°\w?|[A-Za-zµΩ][A-Za-z0-9µΩ²/]{0,7})$"
+_UNIT = r"^(?P<number>.*\d\.?)(?P<gap>\s*)(?P<unit>%|°\w?|[€$£¥]|[A-Za-zµΩ][A-Za-z0-9µΩ²/]{0,7})$"
 _JUDGED_CELLS = 10_000
 """Cells of a column from which the form of its numbers is found."""
 _CODED = pa.dictionary(pa.int32(), pa.string())
