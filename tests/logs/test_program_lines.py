@@ -85,7 +85,7 @@ CASES: dict[str, Case] = {
     "month or day first": (
         "a.txt",
         b"04/07/2023 16:02:52 -> 5\n05/07/2023 16:02:52 -> 6\n",
-        two(0, 86400, note="the dates in 'time' are read as day, month, year"),
+        two(0, 86400, note="the dates or times in 'time' are read as day, month, year"),
     ),
     "one day, so that its month is of no interest": (
         "a.txt",

@@ -51,6 +51,25 @@ TIMES: dict[str, tuple[str, list[float]]] = {
         _number_lines(["59:59.5", "60:00.0", "60:07.5"]),
         [3599.5, 3600, 3607.5],
     ),
+    "hours and minutes": (_number_lines(["23:58", "23:59", "00:01"]), [86280, 86340, 86460]),
+    "a time span of Python": (
+        _number_lines(['"0:59:59"', '"1 day, 0:00:00"', '"2 days, 0:00:00.5"']),
+        [3599, 86400, 172800.5],
+    ),
+    "a zone of two digits": (
+        _number_lines(
+            ["2024-01-05 10:00:00+01", "2024-01-05 10:00:10+01", "2024-01-05 11:00:20+02"]
+        ),
+        [0, 10, 20],
+    ),
+    "coloured lines of ESP-IDF": (
+        "".join(f"\x1b[0;32mI ({1000 + 50 * n}) main: red={5 + n}\x1b[0m\n" for n in range(3)),
+        [1, 1.05, 1.1],
+    ),
+    "a node of ROS": (
+        "".join(f"[INFO] [1700000000.{5 + n}] [left_node]: red: {5 + n}\n" for n in range(3)),
+        [0, 0.1, 0.2],
+    ),
     "X_Value of LabVIEW": ("X_Value\tred\n0.5\t5\n1.0\t6\n1.5\t7\n", [0.5, 1.0, 1.5]),
     "the newest row first": ("time,red\n9,7\n5,6\n2,5\n", [2, 5, 9]),
     "syslog": (
@@ -122,6 +141,11 @@ TABLES: dict[str, Case] = {
         "a.csv",
         "time,red\n0,\N{MINUS SIGN}5\n1,6\n".encode(),
         Read(2, check=lambda log: values(log) == [-5, 6]),
+    ),
+    "prices": (
+        "a.csv",
+        "t;red\n0;5,50 €\n1;6,50 €\n".encode(),
+        Read(2, note="have the unit €", check=lambda log: values(log) == [5.5, 6.5]),
     ),
     "Indian thousands": (
         "a.csv",

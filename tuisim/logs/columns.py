@@ -20,9 +20,9 @@ from tuisim.logs.dates import (
     CLOCK_OF_12_HOURS,
     SPAN,
     WORDS,
+    describe_guess,
     is_moment,
     normalize_dates,
-    order_is_guessed,
 )
 from tuisim.logs.units import SECONDS
 
@@ -410,11 +410,12 @@ def find_unread_time(table: pa.Table, layout: Layout) -> str:
     return next((name for name in texts if parse_time_name(name).base in {*NAMES} - {*COUNTS}), "")
 
 
-def has_guessed_order(table: pa.Table, layout: Layout) -> bool:
-    """Return whether the times are dates such as 03/04/2024, in which only a guess tells the day from the month."""
+def describe_guessed_times(table: pa.Table, layout: Layout) -> str:
+    """Return a note on what the numbers in a time column of texts are taken for, if only a guess tells; else empty."""
     if not layout.time or not is_text(table.field(layout.time).type):
-        return False
-    return order_is_guessed(table.column(layout.time).cast(pa.string()))
+        return ""
+    parts = describe_guess(table.column(layout.time).cast(pa.string()))
+    return f"the dates or times in {layout.time!r} are read as {parts}" if parts else ""
 
 
 def time_in_words(layout: Layout) -> str:

@@ -22,7 +22,7 @@ _GAP = r"(?:T|:|日 *| *[/,_] *| +(?:- +)?)"
 """The characters between a date and its time of day."""
 _PART = r"(?:[.,]\d+)"
 """Fraction of a second."""
-_ZONE = r"(?:Z| ?UTC| ?[+-]\d{2}:?\d{2})"
+_ZONE = r"(?:Z| ?UTC| ?[+-]\d{2}(?::?\d{2})?)"
 _HALF = r"(?: ?[AaPp][Mm])"
 """The half of the day, on a clock of 12 hours."""
 _MINUTES = r"\d{1,2}:\d{2}\.\d+"
@@ -36,10 +36,12 @@ MOMENT = (
 """Regular expression of a date, a time of day with seconds, or both."""
 _MOMENT_CELL = re.compile(rf"\s*[\[(<]?\s*{MOMENT}\s*[\])>]?\s*")
 _DATE_CELL = re.compile(rf"\s*{_DATE}\s*")
-_CLOCK_CELL = re.compile(rf"\s*\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?{_HALF}?|{_HALF})\s*")
+_CLOCK_CELL = re.compile(rf"\s*\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?{_HALF}?\s*")
 
-SPAN = r"^-?(?:\d+ days? )?\d+:\d{2}:\d{2}(?:\.\d+)?$"
-"""A time span as pandas prints it, or hours, minutes and seconds."""
+SPAN = r"^-?(?:\d+ days?,? )?\d+:\d{2}:\d{2}(?:\.\d+)?$"
+"""A time span as pandas or Python prints it, or hours, minutes and seconds."""
+_HOURS = r"^(\d{1,2}:\d{2})$"
+"""Hours and minutes."""
 CLOCK_OF_12_HOURS = rf"^\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?{_HALF}$"
 WORDS = rf"{_HALF}$|{C_TIME}|{_MONTH_IN_WORDS}"
 """What pandas reads only if it looks at each date anew."""
@@ -49,6 +51,7 @@ _REWRITTEN = (
     (r"^[\[(<] *| *[\])>]$", ""),
     (r" ?UTC$", "Z"),
     (rf"^({_MINUTES})$", r"0:\1"),
+    (_HOURS, r"\1:00"),
     (r"(:\d{2}),(\d+)", r"\1.\2"),
     (r"日 *(\d)", r" \1"),
     (r"^(\d{4})年(\d{1,2})月(\d{1,2})日?", r"\1-\2-\3"),
@@ -66,8 +69,8 @@ _LAST_MONTH = 12
 
 
 def is_moment(cell: str) -> bool:
-    """Return whether a cell is a date, a time of day with seconds, or both, perhaps in brackets, or a time span."""
-    return (_MOMENT_CELL.fullmatch(cell) or re.fullmatch(SPAN, cell)) is not None
+    """Return whether a cell is a date, a time of day, or both, perhaps in brackets, or a time span."""
+    return is_clock(cell) or (_MOMENT_CELL.fullmatch(cell) or re.fullmatch(SPAN, cell)) is not None
 
 
 def is_date(cell: str) -> bool:
@@ -76,7 +79,7 @@ def is_date(cell: str) -> bool:
 
 
 def is_clock(cell: str) -> bool:
-    """Return whether a cell is a time of day with seconds or AM or PM, without a date."""
+    """Return whether a cell is a time of day without a date."""
     return _CLOCK_CELL.fullmatch(cell) is not None
 
 
@@ -107,7 +110,14 @@ def _expand_years(texts: Any) -> Any:
     return pc.replace_substring_regex(texts, r"^(\d{1,2})[-/.](\d{1,2})[-/.](\d{2}) ", order)
 
 
-def order_is_guessed(texts: Any) -> bool:
+def describe_guess(texts: Any) -> str:
+    """Return what the numbers in dates and times are taken for, such as `day, month, year`; empty if they are clear."""
+    if pc.any(pc.match_substring_regex(texts, _HOURS)).as_py():
+        return "hours and minutes"
+    return "day, month, year" if _order_is_guessed(texts) else ""
+
+
+def _order_is_guessed(texts: Any) -> bool:
     """Return whether dates such as 03/04/2024 leave open whether the day or the month is first."""
     texts = _expand_years(_replace_patterns(texts, _REWRITTEN[:1]))
     first, second = _find_largest_parts(texts)

@@ -21,13 +21,14 @@ from tuisim.logs.json_rows import ObjectReader, Row
 from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.warnings import Notes
 
-_STAMPED = re.compile(
-    rf"\s*(?:(?P<open>[\[(<])\s*)?(?:{MONTH} +\d{{1,2}} )?(?P<stamp>(?>{MOMENT})|(?>{NUMBER}))(?(open)\s*[\])>])"
-    r"(?P<between>\s*(?::(?!\d\d\.)|->|=>|=|-(?= ))\s*| +|(?<=[\])>]))(?P<rest>\S.*?)\s*"
-)
 _LEVEL = r"(?:DEBUG|INFO|WARN(?:ING)?|ERROR|CRITICAL)"
+_STAMPED = re.compile(
+    rf"\s*(?:\[?{_LEVEL}\]?:? +|[DEIVW] (?=\())?"
+    rf"(?:(?P<open>[\[(<])\s*)?(?:{MONTH} +\d{{1,2}} )?(?P<stamp>(?>{MOMENT})|(?>{NUMBER}))(?(open)\s*[\])>])"
+    r"(?P<between>\s*(?::(?!\d\d[.;,\t])|->|=>|=|-(?= ))\s*| +|(?<=[\])>]))(?P<rest>\S.*?)\s*"
+)
 _PREFIX = re.compile(
-    rf"\s*(?:>+|\[[^\]=]*\]|{_LEVEL}(?=[\s:])\s*:?|-(?=\s)|[\w.]+\s*:(?=\s*[^\W\d][\w.]*\s*[:=])"
+    rf"\s*(?:>+|\[[^\]=]*\]:?|{_LEVEL}(?=[\s:])\s*:?|-(?=\s)|[\w.]+\s*:(?=\s*[^\W\d][\w.]*\s*[:=])"
     r"|[\w.]+\s+-(?=\s)|[\w.\-]+ [^\s:\[]+\[\d+\]:)\s*"
 )
 """A prompt, brackets, a level of Python's `logging`, the name of a logger, or a computer and a process of syslog."""

@@ -38,9 +38,9 @@ from tuisim.logs.columns import (
     UNIT_NAMES,
     Layout,
     choose_columns,
+    describe_guessed_times,
     find_unread_time,
     guess_columns,
-    has_guessed_order,
     is_text,
 )
 from tuisim.logs.export import find_companion, log_metadata
@@ -164,8 +164,8 @@ def _build_log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: Rea
     unread = find_unread_time(table, layout) if choices.time is None else ""
     if unread:
         notes.say(f"the times in {unread!r} cannot be read: row numbers are used")
-    if has_guessed_order(table, layout):
-        notes.say(f"the dates in {layout.time!r} are read as day, month, year")
+    if guess := describe_guessed_times(table, layout):
+        notes.say(guess)
     metadata = arrow.read_metadata(parts[0].schema) or read_companion(Path(title))
     # These notes are about the rows so far, so they are collected again each time.
     later = Notes()

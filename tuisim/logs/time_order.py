@@ -98,7 +98,9 @@ def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
     times = times[np.isfinite(times)][:_JUDGED_TIMES]
     if len(times) < 3 or (times != np.floor(times)).any():
         return None
-    step = float(np.median(np.abs(np.diff(times))))
+    # A line with several samples gives as many rows with the same time.
+    steps = np.abs(np.diff(times))
+    step = float(np.median(steps[steps > 0])) if steps.any() else 0.0
     return next((unit_s for unit_s, min_step in _MIN_STEPS.items() if step >= min_step), None)
 
 
