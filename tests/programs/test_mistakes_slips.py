@@ -114,6 +114,14 @@ def test_a_wait_of_a_few_milliseconds_meant_as_seconds_is_named(
     assert find_slip(text) == slip
 
 
+def test_a_value_alone_on_a_line_is_not_told_to_be_called() -> None:
+    slip = find_slip("eye.color\n")
+    assert slip is not None
+    assert slip[1].startswith(
+        "eye.color alone does nothing: eye.color() calls it if it is a method"
+    )
+
+
 HUB = "from pybricks.hubs import Hub; hub = eye = self.bumper = motor = Hub()\n"
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from tuisim.base.source import PYBRICKS, find_encoding
 from tuisim.programs.comparisons import is_set
+from tuisim.programs.moves import ANY_MOVE, STOPS
 from tuisim.programs.wrong_calls import explain_call
 
 
@@ -80,13 +81,22 @@ _SHOWS = ("print", "str", "int", "float", "abs", "round")
 
 
 def _find_uncalled_method(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line that names a method without calling it, and a description; None if there is none."""
+    """Return the first line that names a method without calling it, and a description; None if there is none.
+
+    A name alone on a line that is no move may also be a value, such as `color` in `ev3dev2`.
+    """
     nodes = [*ast.walk(tree)]
     for node in nodes:
         match node:
             case ast.Expr(value=ast.Attribute(attr=attr) as name) if not attr.startswith("__"):
                 words = ast.unparse(name)
-                return node.lineno, f"{words} without () does nothing: {words}() calls it"
+                if attr in (*ANY_MOVE, *STOPS):
+                    return node.lineno, f"{words} without () does nothing: {words}() calls it"
+                return (
+                    node.lineno,
+                    f"{words} alone does nothing: {words}() calls it if it is a method, "
+                    f"print({words}) shows it if it is a value",
+                )
     devices = {*_list_devices(nodes)}
     methods = [
         (value.lineno, _describe_uncalled(value))
