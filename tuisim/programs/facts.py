@@ -24,7 +24,12 @@ from tuisim.programs.mistakes import (
 from tuisim.programs.questions import Question, QuestionReader, Word
 from tuisim.programs.robot.scopes import Binding, Bound, Imported, Scope, build_scope
 from tuisim.programs.robot.source import Module, parse
-from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_reads, find_thresholds
+from tuisim.programs.robot.thresholds import (
+    ProgramThreshold,
+    find_light_reads,
+    find_sensor_names,
+    find_thresholds,
+)
 from tuisim.programs.waits import (
     LoopEnd,
     find_first_drive,
@@ -272,6 +277,10 @@ class ProgramFacts:
         If it reads a sensor in several ways, the first one that it compares with a value counts, else the first of all.
         """
         return find_light_reads(self._program, robot)
+
+    def find_sensor_names(self, robot: RobotSpec) -> Mapping[str, str]:
+        """Return the names that the program gives the robot's sensors, such as `colorLeft`, by port."""
+        return find_sensor_names(self._program, robot)
 
     def find_thresholds(self, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:
         """Return the values with which the program compares each colour sensor, by sensor name, in order of lines."""

@@ -122,11 +122,11 @@ GOOD = {
     "stays inside": STAYS_INSIDE,
 }
 WRONG = {
-    "the sign of two sensors": (WRONG_SIGN, "1.04", "right sensor left the black, and did not"),
+    "the sign of two sensors": (WRONG_SIGN, "1.04", "colorRight left the black, and did not"),
     "and then far over the mat": (
         WRONG_SIDES,
         "1.03",
-        "right sensor left the black, and did not",
+        "colorRight left the black, and did not",
     ),
     "too fast": (EDGE.format(seconds=9, left=30, right=40), "", "the robot left the mat"),
     "the sides swapped": (
@@ -143,12 +143,12 @@ WRONG = {
     "too weak": (
         P.format(mat="Lollipop", seconds=8, gain=0.05, speed=40),
         "0.01",
-        "the left sensor saw only grey",
+        "colorLeft saw only grey",
     ),
     "not at the line": (
         P.format(mat="Loop", seconds=8, gain=0.3, speed=15),
         "0.01",
-        "from here on the left sensor saw only white",
+        "from here on colorLeft saw only white",
     ),
 }
 
@@ -170,7 +170,7 @@ def test_a_wrong_program_is_told_where_it_lost_the_line(name: str) -> None:
 
 def test_the_right_sign_is_not_blamed_for_a_line_lost_at_high_speed() -> None:
     (reason,) = lost_in(run_text(STEERS.format(x=1240, sign=1, speed=40)))
-    assert "sensor left the black" in reason.text
+    assert "left the black" in reason.text
     assert "sign" not in reason.text
 
 

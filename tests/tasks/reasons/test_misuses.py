@@ -73,19 +73,19 @@ tank_drive.on_for_seconds(SpeedPercent(speed), SpeedPercent(speed), 0.5)
 WRONG = {
     "compared again and again": (
         ONCE,
-        "0.61 s, line 6: the colour sensor on in2 saw 89.02 % here, but line 3 read it only once, at "
+        "0.61 s, line 6: colorLeft on in2 saw 89.02 % here, but line 3 read it only once, at "
         "0.01 s (100 %), before the loop in line 5: read it inside the loop",
     ),
     "a colour": (
         ONCE.replace("reflected_light_intensity_pc", "color_name")
         .replace("light < 90", "light == 'Black'")
         .replace("Grey_bands", "Grey_bands -x 1200"),
-        "s, line 6: the colour sensor on in2 saw black here, but line 3 read it only once, at 0.02 s (white)",
+        "s, line 6: colorLeft on in2 saw black here, but line 3 read it only once, at 0.02 s (white)",
     ),
-    "steered by": (STEERS, "s, line 5: the colour sensor on in2 saw "),
+    "steered by": (STEERS, "s, line 5: colorLeft on in2 saw "),
     "asked once": (
         ASKS.format(15),
-        "0.01 s, line 4: this line asked only once: the ultrasonic sensor on in1 read 108 cm, not less "
+        "0.01 s, line 4: this line asked only once: ultrasonic on in1 read 108 cm, not less "
         "than 15 cm; so line 5 did not stop what line 3 started: a while loop asks until it comes",
     ),
     "asked once, never stopped": (

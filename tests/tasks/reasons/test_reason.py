@@ -97,7 +97,7 @@ CASES = {
         "0.49 s, line 2: the robot was pushed 28 mm aside by the wall while it turned, from",
     ),
     "waits": (WAITS, ReasonKind.BLOCKED, "2.00 s, line 4: from here on it waited: touch sensor on"),
-    "lost": (WRONG_SIGN, ReasonKind.LOST, "line 4: the right sensor left the black, and did"),
+    "lost": (WRONG_SIGN, ReasonKind.LOST, "line 4: colorRight left the black, and did"),
     "never stopped": (
         "from ev3dev2.motor import *\nLargeMotor(OUTPUT_B).on(20)\nimport time\ntime.sleep(1)\n",
         ReasonKind.ENDED,
@@ -187,13 +187,13 @@ def test_a_turn_that_is_meant_is_not_called_wrong(text: str) -> None:
 END = {
     "a lost line": (
         WRONG_SIGN.replace("get_clock() < 8", "True"),
-        ", line 4: the right sensor left the black, and did not see it again",
+        ", line 4: colorRight left the black, and did not see it again",
     ),
     "at once": ("tank_drive.on(20, 20)\n", "0.00 s, line 1: the program ended when"),
     "a band between two reads": (
         "# %%sim_magic_preloaded -b Grey_bands\nimport time\ntank_drive.on(80, 80)\n"
         "while colorLeft.reflected_light_intensity_pc > 10:\n    time.sleep(1.02)\n",
-        " s, line 5: the left sensor saw light of 0 here, but the program read it only at ",
+        " s, line 5: colorLeft saw light of 0 here, but the program read it only at ",
     ),
     "as it should": ("tank_drive.on_for_seconds(20, 20, 1)\n", ""),
     "a wait": (WAITS, ""),

@@ -23,7 +23,7 @@ def test_values_are_those_that_the_loop_read_and_would_have_read_elsewhere() -> 
     (loop,) = data.facts.loop_ends
     series = data.measure(loop, (0, len(data.records)))
     assert series is not None
-    assert (series.device, series.unit) == ("the colour sensor on in2", " %")
+    assert (series.device, series.unit) == ("colorLeft on in2", " %")
     assert series.values[0] == 100 and series.values[-1] <= 95 < series.values[-2]
     assert list(series.ticks) == list(data.light_ticks["left"])
     later = data.records[-1:].copy()

@@ -28,31 +28,31 @@ LIGHT = "colorLeft.reflected_light_intensity_pc"
 VAIN = {
     "the other way": (
         f"{TURNS}while gyro.angle < 90:\n    pass\n",
-        "the gyro on in4 to read 90° or more: it went from 0 to -",
+        "gyro on in4 to read 90° or more: it went from 0 to -",
     ),
     "too far": (
         f"{TURNS}while gyro.angle > -90000:\n    pass\n",
-        "the gyro on in4 to read -90000° or less: it went from 0",
+        "gyro on in4 to read -90000° or less: it went from 0",
     ),
     "equality": (
         f"{DRIVES}while {LIGHT} != 50:\n    pass\n",
-        "the colour sensor on in2 to read exactly 50 %: 50.2 at 4.53 s came nearest",
+        "colorLeft on in2 to read exactly 50 %: 50.2 at 4.53 s came nearest",
     ),
     "at rest": (
         f"{BANDS}while {LIGHT} > 50:\n    pass\n",
-        "the colour sensor on in2 to read 50 % or less: it stayed at 100",
+        "colorLeft on in2 to read 50 % or less: it stayed at 100",
     ),
     "a colour": (
         f"{DRIVES}while colorLeft.color_name != 'Red':\n    print(1)\n",
-        "the colour sensor on in2 to see 'Red': it saw only 'Black', 'White'",
+        "colorLeft on in2 to see 'Red': it saw only 'Black', 'White'",
     ),
     "a name in small letters": (
         f"{DRIVES}while colorLeft.color_name != 'white2':\n    print(1)\n",
-        "the colour sensor on in2 to see 'white2': it saw only 'Black', 'White'",
+        "colorLeft on in2 to see 'white2': it saw only 'Black', 'White'",
     ),
     "a text for a number": (
         f"{DRIVES}while colorLeft.color != 'White':\n    print(1)\n",
-        "the colour sensor on in2 to see 'White': it saw only 1, 6; "
+        "colorLeft on in2 to see 'White': it saw only 1, 6; "
         "color is a number (6 for 'White'), color_name is the word",
     ),
     "read once": (
@@ -66,11 +66,11 @@ VAIN = {
     ),
     "a change the other way": (
         f"{BANDS}start = gyro.angle\ntank_drive.on(-20, 20)\nwhile gyro.angle - start < 90:\n    pass\n",
-        "the gyro on in4 to change by 90° or more: it went from 0 to -",
+        "gyro on in4 to change by 90° or more: it went from 0 to -",
     ),
     "an aim the other way": (
         f"{BANDS}aim = gyro.angle + 90\ntank_drive.on(-20, 20)\nwhile gyro.angle < aim:\n    pass\n",
-        "the gyro on in4 to change by 90° or more: it went from 0 to -",
+        "gyro on in4 to change by 90° or more: it went from 0 to -",
     ),
     "rotations for degrees": (
         f"{BANDS}tank_drive.on_for_rotations(20, 20, 360)\n",
@@ -133,7 +133,7 @@ def test_a_turn_to_a_class_constant_gives_no_reason_and_no_error() -> None:
 def test_a_turn_that_ends_at_once_names_the_gyro_that_nobody_reset() -> None:
     stale = find_first(list_stale_angles, load(SQUARE))
     assert stale is not None and stale.line == 5
-    assert stale.text.startswith("the gyro on in4 was at 90° already when the loop began again")
+    assert stale.text.startswith("gyro on in4 was at 90° already when the loop began again")
     assert (
         find_first(
             list_stale_angles,
@@ -208,11 +208,11 @@ while left.angle() > -9999:
         ),
         "no colour": (
             GREYS,
-            "the colour sensor on in3 to see red: it saw only black, blue, no colour, white",
+            "eye on in3 to see red: it saw only black, blue, no colour, white",
         ),
         "a text for a colour": (
             GREYS.replace("Color.RED", "'red'"),
-            "the colour sensor on in3 to see 'red': it saw only Color.BLACK, Color.BLUE, "
+            "eye on in3 to see 'red': it saw only Color.BLACK, Color.BLUE, "
             "Color.NONE, Color.WHITE; a text equals no colour, Color.RED does",
         ),
         "the gyro of a hub": (
@@ -243,15 +243,15 @@ EARLY = {
     ),
     "a text that is no number": (
         f"{DRIVES}while colorLeft.color == 'White':\n    pass\ntank_drive.off()\n",
-        "the loop ended at once: the colour sensor on in2 read 6, not 'White'",
+        "the loop ended at once: colorLeft on in2 read 6, not 'White'",
     ),
     "another colour": (
         f"{DRIVES}while colorLeft.color == ColorSensor.COLOR_RED:\n    pass\n",
-        "the colour sensor on in2 read white, not red",
+        "colorLeft on in2 read white, not red",
     ),
     "a true limit": (
         f"{DRIVES}while {LIGHT} < 20:\n    pass\ntank_drive.off()\n",
-        "the loop ended at once: the colour sensor on in2 read 100 %, already 20 % or more",
+        "the loop ended at once: colorLeft on in2 read 100 %, already 20 % or more",
     ),
 }
 

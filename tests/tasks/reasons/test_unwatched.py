@@ -34,12 +34,12 @@ def list_unwatched(text: str) -> list[str]:
     [
         (
             TWO_TURNS.format("rotations", 1),
-            "3.16 s, line 6: the left sensor saw light of 1 here, but the program read it only at 2.69 s and 4.03 s: "
+            "3.16 s, line 6: colorLeft saw light of 1 here, but the program read it only at 2.69 s and 4.03 s: "
             "line 6 takes too long",
         ),
         (
             BLACK.format(1.5),
-            "6.60 s, line 5: the left sensor saw black here, but the program read it only at 6.10 s and 7.62 s: "
+            "6.60 s, line 5: colorLeft saw black here, but the program read it only at 6.10 s and 7.62 s: "
             "line 5 takes too long",
         ),
     ],

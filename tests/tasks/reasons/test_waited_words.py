@@ -288,22 +288,22 @@ TURNS = "from ev3dev2.motor import *\nMoveTank(OUTPUT_B, OUTPUT_C).on(10, -10)\n
 MEASURED = {
     "an obstacle around": (
         f"{ULTRASONIC}{TURNS}while us.distance_centimeters > 25: pass",
-        "from 0.01 s on, line 5 waited for the ultrasonic sensor on in1 to read 25 cm or less: 55.1",
+        "from 0.01 s on, line 5 waited for us on in1 to read 25 cm or less: 55.1",
     ),
     "a band, by a robot that spins": (
         "# %%sim_magic_preloaded -b Grey_bands\ntank_drive.on(30, -30)\n"
         "while colorLeft.reflected_light_intensity_pc > 5: pass",
-        "from 0.01 s on, line 3 waited for the colour sensor on in2 to read 5 % or less: it stayed at 100; "
+        "from 0.01 s on, line 3 waited for colorLeft on in2 to read 5 % or less: it stayed at 100; "
         "the robot only turns on the spot",
     ),
     "nearer than a wall": (
         f"{ULTRASONIC}STOP_CM = 0.2\nwhile us.distance_centimeters > STOP_CM: pass",
-        "from 0.01 s on, line 4 waited for the ultrasonic sensor on in1 to read 0.2 cm or less: it stayed "
+        "from 0.01 s on, line 4 waited for us on in1 to read 0.2 cm or less: it stayed "
         "at 116.1; at a wall it reads 3 cm, never less",
     ),
     "the way is not free": (
         f"{ULTRASONIC}while us.distance_centimeters < 250: pass",
-        "from 0.01 s on, line 3 waited for the ultrasonic sensor on in1 to read 250 cm or more: it stayed",
+        "from 0.01 s on, line 3 waited for us on in1 to read 250 cm or more: it stayed",
     ),
     "tones of a distance": (
         f"{INFRARED}{TONES}while True: s.play_tone(200 + 8 * ir.proximity, 0.3)",
@@ -311,15 +311,15 @@ MEASURED = {
     ),
     "a turn": (
         f"{GYRO}while g.angle < 90: pass",
-        "gyro on in4 was never turned: only its motors turn this robot",
+        "g on in4 was never turned: only its motors turn this robot",
     ),
     "an obstacle for a state": (
         f"{ULTRASONIC}state = 0\nwhile state < 2:\n    if us.distance_centimeters < 20: state = 2\n",
-        "ultrasonic sensor on in1 saw nothing nearer than 116 cm",
+        "us on in1 saw nothing nearer than 116 cm",
     ),
     "nearer than a wall, by a state": (
         f"{ULTRASONIC}state = 0\nwhile state < 2:\n    if us.distance_centimeters < 2: state = 2\n",
-        "ultrasonic sensor on in1 saw nothing nearer than 116 cm: at a wall it reads 3 cm, never less",
+        "us on in1 saw nothing nearer than 116 cm: at a wall it reads 3 cm, never less",
     ),
     "the largest turn": (f"{GYRO}m = 0\nwhile True:\n    if g.angle > m: m = g.angle\n", ""),
     "a note of what is near": (
@@ -328,7 +328,7 @@ MEASURED = {
     ),
     "a turn that comes": (
         f"{GYRO}{TURNS}while g.angle < 9000: pass",
-        "from 0.01 s on, line 5 waited for the gyro on in4 to read 9000° or more: it went from 0 to",
+        "from 0.01 s on, line 5 waited for g on in4 to read 9000° or more: it went from 0 to",
     ),
 }
 
@@ -349,7 +349,7 @@ def test_a_wait_spread_over_thousands_of_lines_is_found_by_its_readings(
     lines = "    v = us.distance_centimeters\n    if v < 5: v = 1\n" * 1500
     (tmp_path / "prog.py").write_text(f"{ULTRASONIC}while True:\n{lines}")
     facts = json.loads(here("run", "prog.py", "--timeout", 6, "--json").stdout)
-    assert facts["waited_for"].startswith("ultrasonic sensor on in1 saw nothing nearer than")
+    assert facts["waited_for"].startswith("us on in1 saw nothing nearer than")
 
 
 def test_a_gamepad_that_never_comes_is_named(tmp_path: Path, here: Command) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
@@ -16,6 +17,7 @@ from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.programs.robot.library import DeviceKind
 from tuisim.programs.robot.mentions import Mention, Mentions, read_mentions
+from tuisim.programs.robot.places import SENSOR_SPECS
 from tuisim.programs.robot.scopes import Bound, Scope
 from tuisim.programs.robot.source import SIGNS, TURNED, Module, parse, read_modules
 from tuisim.programs.robot.values import Instance
@@ -110,6 +112,28 @@ def find_thresholds(
         return _find_thresholds(program, robot)
     except RecursionError:
         return {}
+
+
+@lru_cache(maxsize=4)
+def find_sensor_names(program: Program, robot: RobotSpec) -> Mapping[str, str]:
+    """Return the names that a program gives the robot's sensors, such as `colorLeft`, by port.
+
+    Sensors with two names, or without a name, are left out. The result is empty for a program that is not Python, or
+    too deeply nested to be read.
+    """
+    try:
+        mentions = _read_mentions(program)
+    except RecursionError:
+        return {}
+    used = {*re.findall(r"\w+", program.text)}
+    names: dict[str, set[str]] = defaultdict(set)
+    for device in mentions.devices if mentions else ():
+        kind = SENSOR_SPECS.get(device.kind)
+        ports = [each.port for each in robot.sensors if kind and isinstance(each, kind)]
+        port = device.port or (ports[0] if len(ports) == 1 else "")
+        if port in ports and (name := next(iter(device.names), "")) in used - {port, "Port"}:
+            names[port].add(name)
+    return {port: name for port, (name, *others) in names.items() if not others}
 
 
 def _find_thresholds(

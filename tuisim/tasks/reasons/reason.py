@@ -279,9 +279,9 @@ def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
     seen_by_eyes = data.records, run.spec, data.mat, data.light_ticks
     for lost in find_lost_lines(*seen_by_eyes):
         if line := find_steering(data.facts.tree, run.telemetry.record(lost.tick).line):
-            yield _describe_loss(run, lost, line)
+            yield _describe_loss(data, lost, line)
     if not has_waited and (seen := find_one_color(*seen_by_eyes)):
-        text = f"from here on the {seen.sensor} sensor saw only {seen.color}"
+        text = f"from here on {data.name_eye(seen.sensor)} saw only {seen.color}"
         if seen.left_tick is not None:
             text += f", until it left the mat at {seen.left_tick / data.hz:.2f} s"
         if blank := describe_blank_mat(data):
@@ -362,27 +362,27 @@ def _explain_lost(run: StoredRun, tick: int, text: str) -> Reason:
     return Reason(ReasonKind.LOST, time_s, run.telemetry.record(tick).line, text)
 
 
-def _describe_loss(run: StoredRun, lost: LostLine, steering: int) -> Reason:
+def _describe_loss(data: RunData, lost: LostLine, steering: int) -> Reason:
     """Return the reason for a loss of the line; it says when a sensor saw the line again, if one did.
 
     Args:
-        run: The run.
+        data: The run.
         lost: The loss.
         steering: The line of the program that steers.
     """
-    hz = run.spec.profile.tick_hz
-    text = f"the {lost.sensor} sensor left the {'black' if lost.is_black else 'dark'}"
+    hz = data.hz
+    text = f"{data.name_eye(lost.sensor)} left the {'black' if lost.is_black else 'dark'}"
     until_s = math.inf
     if lost.seen_again is None:
         text += ", and did not see it again"
     else:
         sensor, tick = lost.seen_again
-        who = "it" if sensor == lost.sensor else f"the {sensor} one"
+        who = "it" if sensor == lost.sensor else data.name_eye(sensor)
         text += f"; {who} saw it again after {(tick - lost.tick) / hz:.1f} s"
         until_s = tick / hz
     if lost.wrong_turn:
         text += f": {lost.wrong_turn}, so the steering in line {steering} has the wrong sign"
-    return replace(_explain_lost(run, lost.tick, text), until_s=until_s)
+    return replace(_explain_lost(data.run, lost.tick, text), until_s=until_s)
 
 
 def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:

@@ -57,7 +57,7 @@ class Series:
     """The values that a program read of one sensor or motor, in the unit in which it reads them."""
 
     device: str
-    """Kind and port of the sensor or motor."""
+    """Name or kind, and port, of the sensor or motor."""
     port: str
     column: str
     """The end of the name of its column."""
@@ -149,6 +149,16 @@ class RunData:
         from tuisim.engine.runs.command_events import CommandIndex
 
         return {port: scale for _, port, scale in CommandIndex(self.run).read_scale_changes()}
+
+    @property
+    def sensor_names(self) -> Mapping[str, str]:
+        """The names that the program gives its sensors, by port, as far as they are known."""
+        return self.facts.find_sensor_names(self.run.spec.robot)
+
+    def name_eye(self, name: str) -> str:
+        """Return how the program calls a colour sensor of the robot, or else, for example, `the left sensor`."""
+        ports = (eye.port for eye in self.run.spec.robot.color_sensors if eye.name == name)
+        return self.sensor_names.get(next(ports, "")) or f"the {name} sensor"
 
     @cached_property
     def mat(self) -> Field:
@@ -251,7 +261,8 @@ class RunData:
         if values is None:
             return None
         sensor, (column, _, unit) = sensors[0], read
-        device = f"the {_NOUNS.get(type(sensor), 'sensor')} {describe_place(sensor.port)}"
+        noun = self.sensor_names.get(sensor.port) or f"the {_NOUNS.get(type(sensor), 'sensor')}"
+        device = f"{noun} {describe_place(sensor.port)}"
         return Series(device, sensor.port, column, unit, ticks, values)
 
     def _measure_wheel(

@@ -149,7 +149,7 @@ def list_stale_angles(data: RunData) -> Iterator[Unmet]:
         series = data.measure(loop, (0, len(data.records)))
         if series is None or series.column != "deg" or isinstance(loop.limit, str):
             continue
-        if not series.device.startswith("the gyro"):
+        if series.device.startswith("the motor"):
             continue
         left = np.cumsum((lines < loop.first_line) | (lines > loop.last_line))[series.ticks]
         is_last = np.append(np.diff(left) > 0, True)

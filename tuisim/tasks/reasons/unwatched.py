@@ -128,7 +128,7 @@ def _list_passes(
             lines, counts = np.unique(records["line"][between], return_counts=True)
             value = values[start + 1 : end][differs][int(differs.sum()) // 2]
             text = (
-                f"the {sensor.name} sensor saw {_name_value(threshold.read, value)} here, but the program read it "
+                f"{data.name_eye(sensor.name)} saw {_name_value(threshold.read, value)} here, but the program read it "
                 f"only at {start / hz:.2f} s and {end / hz:.2f} s: line {lines[counts.argmax()]} takes too long"
             )
             yield Unmet(tick / hz, int(records["line"][tick]), text)

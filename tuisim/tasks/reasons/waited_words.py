@@ -79,10 +79,11 @@ def find_waits(data: RunData) -> list[Wait]:
         if unmet and unmet.line == awaited.line:
             waits.append(_describe_unmet(verb, unmet, f"; {remedy}", awaited.subject))
             continue
-        text = describe_awaited(awaited)
+        name = data.sensor_names.get(awaited.port, "")
+        text = describe_awaited(awaited, name)
         what = f"{text}: {remedy}"
         # A program that steers by what it sees may not wait, so the text says only what it saw.
-        text = f"the {text}" if awaited.subject in SEEN else f"{verb}: {text}"
+        text = f"{'' if name else 'the '}{text}" if awaited.subject in SEEN else f"{verb}: {text}"
         waits.append(Wait(awaited.since_s, awaited.line, text, what, awaited.subject))
     return waits or ([_describe_unmet(verb, unmet)] if unmet else [])
 
@@ -106,8 +107,13 @@ def describe_wait_with_keys(awaited: Iterable[Awaited], spec: RunSpec) -> str:
     )
 
 
-def describe_awaited(awaited: Awaited) -> str:
-    """Return as text what a program read without seeing what it waited for, such as `gyro on in4 was never turned`."""
+def describe_awaited(awaited: Awaited, name: str = "") -> str:
+    """Return as text what a program read without seeing what it waited for, such as `gyro on in4 was never turned`.
+
+    Args:
+        awaited: What the program waited for.
+        name: The program's name for a sensor that measures; empty for none.
+    """
     port = awaited.port
     value = awaited.value
     match awaited.subject:
@@ -128,13 +134,15 @@ def describe_awaited(awaited: Awaited) -> str:
             return f"infrared sensor on {port} found no beacon"
         case Subject.COLOR:
             color = _find_color(awaited)
-            return f"colour sensor on {port} saw only {value}" + (f", not {color}" if color else "")
+            return f"{name or 'colour sensor'} on {port} saw only {value}" + (
+                f", not {color}" if color else ""
+            )
         case Subject.DISTANCE:
-            return f"ultrasonic sensor on {port} saw nothing nearer than {value}"
+            return f"{name or 'ultrasonic sensor'} on {port} saw nothing nearer than {value}"
         case Subject.PROXIMITY:
-            return f"infrared sensor on {port} saw nothing nearer than {value}"
+            return f"{name or 'infrared sensor'} on {port} saw nothing nearer than {value}"
         case Subject.GYRO:
-            return f"gyro {describe_place(port)} was never turned"
+            return f"{name or 'gyro'} {describe_place(port)} was never turned"
         case Subject.CONNECTION:
             return f"a server in line {awaited.line}: nobody connected"
         case Subject.DATA:
