@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -376,13 +377,22 @@ def _find_named_time(table: pa.Table) -> str:
 
     The result is empty if there is none.
     """
-    moments = _list_moments(table)
-    numbers = list_numeric_columns(table.schema)
+    likely = table.select(
+        [
+            index
+            for index, name in enumerate(table.column_names)
+            if parse_time_name(name).base in NAMES or has_time_word(name)
+        ]
+    )
+    moments = _list_moments(likely)
+    numbers = list_numeric_columns(likely.schema)
     usable = [n for n in (*moments, *numbers) if table.column(n).null_count < table.num_rows]
     bases = {parse_time_name(name).base: name for name in reversed(usable)}
     named = (bases[word] for word in NAMES if word in bases)
     compound = (n for n in usable if has_time_word(n) and (n in moments or _is_rising(table, n)))
-    return next((name for names in (named, compound, moments) for name in names), ROW)
+    name = next(chain(named, compound), None)
+    # The cells of other columns are looked at only if no name tells.
+    return next(iter(_list_moments(table)), ROW) if name is None else name
 
 
 def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:
