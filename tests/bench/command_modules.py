@@ -60,7 +60,7 @@ def command_modules(effort: Effort) -> Iterator[Figure]:
         marks = str(place / "marks.html")
         yield from _count(
             "a marking of two programs with two seeds",
-            11_500,
+            9_300,
             walk_command(place, "mark", goals, str(classroom), *words, "--export", marks),
         )
     after_keys = walk_ticks_back(run_id, KEYS_A_REPEAT * effort.repeats)
