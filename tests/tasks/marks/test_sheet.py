@@ -350,6 +350,18 @@ def test_each_student_has_a_feedback_file_of_a_plain_name(tmp_path: Path) -> Non
     ]
 
 
+def test_no_other_name_takes_the_name_of_a_students_file() -> None:
+    assert build_file_stems(["ada ", "ada", "b?", "b_", "ben", "ben-2", "ben."]) == [
+        "ada-2",
+        "ada",
+        "b_-2",
+        "b_",
+        "ben",
+        "ben-2",
+        "ben-3",
+    ]
+
+
 def test_files_of_the_longest_name_can_be_written(tmp_path: Path) -> None:
     sheet = build_sheet("", COLUMNS, range(1), [_student("\U0001f40d" * 63)], {})
     write_feedback(tmp_path, sheet, [TEXT])

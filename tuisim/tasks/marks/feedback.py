@@ -29,23 +29,31 @@ _FORBIDDEN = frozenset('/\\:*?"<>|')
 
 
 def build_file_stems(names: Iterable[str]) -> list[str]:
-    """Return a name for each student's file, without its suffix: all distinct, and without unusual characters."""
-    stems: list[str] = []
+    """Return a name for each student's file, without its suffix: all distinct, and without unusual characters.
+
+    A student whose name needs no change has files of that name, even if another student's name becomes equal to it.
+    """
+    names = [*names]
+    plain = [_make_plain(name) for name in names]
+    stems: dict[int, str] = {}
     taken: set[str] = set()
-    for name in names:
-        plain = "".join(
-            "_" if character in _FORBIDDEN or not character.isprintable() else character
-            for character in name
-        )
-        stem = plain.encode()[:MAX_NAME_BYTES].decode(errors="ignore").strip(" .") or "student"
+    for index in sorted(range(len(names)), key=lambda index: plain[index] != names[index]):
         number = 1
-        candidate = stem
+        candidate = plain[index]
         while candidate.casefold() in taken:
             number += 1
-            candidate = f"{stem}-{number}"
+            candidate = f"{plain[index]}-{number}"
         taken.add(candidate.casefold())
-        stems.append(candidate)
-    return stems
+        stems[index] = candidate
+    return [stems[index] for index in range(len(names))]
+
+
+def _make_plain(name: str) -> str:
+    plain = "".join(
+        "_" if character in _FORBIDDEN or not character.isprintable() else character
+        for character in name
+    )
+    return plain.encode()[:MAX_NAME_BYTES].decode(errors="ignore").strip(" .") or "student"
 
 
 def build_feedback(sheet: Sheet, row: SheetRow, source: str = "") -> str:
