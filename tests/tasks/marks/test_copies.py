@@ -8,7 +8,7 @@ import pytest
 
 from tests.tasks.marks.the_class import CLASS
 from tuisim.tasks.marks import copies
-from tuisim.tasks.marks.copies import MIN_TOKENS, Similar, find_similar, list_tokens
+from tuisim.tasks.marks.copies import MAX_LINE, MIN_TOKENS, Similar, find_similar, list_tokens
 
 LINE = """\
 while True:
@@ -109,6 +109,11 @@ def test_short_programs_are_not_compared_and_broken_ones_up_to_the_error() -> No
 
 def test_tokens_of_a_program_end_before_an_unclosed_string() -> None:
     tokens = list_tokens("x = 1\n'" + r"\'" * 100)
+    assert [token.text for token in tokens] == ["x", "=", "1", "\n"]
+
+
+def test_tokens_of_a_program_end_before_a_line_that_takes_much_memory() -> None:
+    tokens = list_tokens(f"x = 1\ny = {'9' * MAX_LINE}\nz = 3\n")
     assert [token.text for token in tokens] == ["x", "=", "1", "\n"]
 
 

@@ -14,7 +14,7 @@ import tokenize
 import zlib
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from itertools import chain, combinations, islice
+from itertools import chain, combinations, islice, takewhile
 
 from tuisim.base.data_class import dataclass
 
@@ -47,10 +47,15 @@ class Token:
     line: int
 
 
+MAX_LINE = 100_000
+"""The most characters of a line: for each digit of a number, the search for tokens takes 600 bytes of memory."""
+
+
 def list_tokens(text: str) -> Iterator[Token]:
-    """Yield the tokens of a program; if it has a syntax error, only the tokens before the error."""
+    """Yield the tokens of a program; if it has a syntax error or a very long line, only the tokens before that."""
+    lines = takewhile(lambda line: len(line) <= MAX_LINE, io.StringIO(text))
     try:
-        for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        for token in tokenize.generate_tokens(lines.__next__):
             if token.type in _SKIPPED:
                 continue
             if token.type == tokenize.ERRORTOKEN and token.string in "'\"":
