@@ -12,6 +12,7 @@ from tests.running import Run
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.commands.robot import encode_parts
 from tuisim.engine.core.plugged import PluggedPart
+from tuisim.engine.core.spec import MotorSpec, RobotSpec
 from tuisim.engine.runs import command_events
 from tuisim.engine.runs.command_events import CommandIndex, parse_command_search
 from tuisim.engine.runs.command_records import CommandsWriter
@@ -164,6 +165,24 @@ def test_a_motor_has_the_port_that_it_was_plugged_in_at(stored: StoredRun) -> No
     events = [index.event(number) for number in index.find_events()]
     assert [event.part for event in events] == ["motor", "ports", "motor D"]
     assert (events[2].asked, events[2].came) == ("run 50 °/s", "")
+
+
+def test_the_motors_of_the_robot_are_not_listed_for_each_command(
+    stored: StoredRun, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    motors = stored.spec.robot.motors
+    lists: list[RobotSpec] = []
+
+    def list_motors(robot: RobotSpec) -> tuple[MotorSpec, ...]:
+        lists.append(robot)
+        return motors
+
+    write_commands(stored, *[(0, 0, Call.SET_POLARITY, (float(n % 2),)) for n in range(100)])
+    index = CommandIndex(stored)
+    monkeypatch.setattr(RobotSpec, "motors", property(list_motors))
+    index.read_scale_changes()
+    assert len(index.scale_changes) == 99
+    assert len(lists) == 1
 
 
 def test_a_command_event_uses_the_motors_latest_direction_and_gears(stored: StoredRun) -> None:

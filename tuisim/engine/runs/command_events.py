@@ -248,18 +248,20 @@ class CommandIndex:
 
         scales = np.isin(rows["call"], SCALING_CALLS)
         columns = (column[scales].tolist() for column in (times, codes, rows["values"]))
+        # A program can give a million of these commands: the ports of a robot are not listed for each.
+        ports: dict[int, list[str]] = {}
         for time_ns, code, values in zip(*columns, strict=True):
+            if len(self.scale_changes) == _MAX_SCALES:
+                return
             scale = compute_scale(code >> 8 & 0xFF, values)
-            motors = self._robots[code >> 16].motors
-            part = code & 0xFF
+            number, part = code >> 16, code & 0xFF
+            if number not in ports:
+                ports[number] = [motor.port for motor in self._robots[number].motors]
             # The program may have damaged the record.
-            if part >= len(motors) or not scale or not math.isfinite(scale):
+            if part >= len(ports[number]) or not scale or not math.isfinite(scale):
                 continue
-            port = motors[part].port
-            if (
-                self._newest_scales.get(port, 1.0) != scale
-                and len(self.scale_changes) < _MAX_SCALES
-            ):
+            port = ports[number][part]
+            if self._newest_scales.get(port, 1.0) != scale:
                 self._newest_scales[port] = scale
                 self.scale_changes.append((self._find_tick(time_ns), port, scale))
 
