@@ -18,7 +18,7 @@ from tuisim.engine.core.commands.table import CALLS
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.core.tick_record import TICK_FIELDS
-from tuisim.engine.protocol import SetButtons, SetNoise, SetPen, SetPose, UserAction
+from tuisim.engine.protocol import End, SetButtons, SetNoise, SetPen, SetPose, UserAction
 from tuisim.engine.runs.command_records import read_commands
 from tuisim.engine.runs.records import HEADER_BYTES, MOTORS_FILE
 from tuisim.engine.runs.replay import replay
@@ -68,6 +68,45 @@ def test_runs_of_many_random_programs_are_replayed_to_the_same_records(
         draw_program(100 + seed, profile), profile=profile, prelude="none", actions=actions, **how
     )
     assert_is_replayed(done, actions)
+
+
+LARGE = """\
+left = tank_drive.left_motor
+for number in (10**15, -10**300):
+    left.position = number
+    for move in (left.run_forever, left.run_to_abs_pos, left.run_timed):
+        try:
+            move(position_sp=number, speed_sp=number, time_sp=number)
+        except ValueError:
+            left.run_forever(speed_sp=100)
+        __import__('time').sleep(0.1)
+"""
+LARGE_OF_PYBRICKS = """\
+from pybricks.ev3devices import Motor
+from pybricks.parameters import Port
+from pybricks.tools import wait
+left = Motor(Port.B)
+for number in (10**15, -10**300):
+    left.reset_angle(number)
+    left.run(200)
+    wait(100)
+"""
+
+
+@pytest.mark.parametrize(
+    "profile, text",
+    [
+        *((profile, LARGE) for profile in ("robolab", "ev3", "nbev3devsim")),
+        *((profile, LARGE_OF_PYBRICKS) for profile in ("lego-micropython", "pybricks4")),
+    ],
+)
+def test_a_program_with_numbers_that_are_too_large_is_replayed_and_not_called_falsified(
+    run: Run, profile: str, text: str
+) -> None:
+    prelude = "preloaded" if text == LARGE else "none"
+    done = run(text, profile=profile, prelude=prelude)
+    assert done.ended.end == End.FINISHED
+    assert_is_replayed(done)
 
 
 def test_a_replay_repeats_the_users_actions(run: Run) -> None:

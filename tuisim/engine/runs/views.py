@@ -64,8 +64,8 @@ _AGAIN_BYTES = 1 << 14
 """Bytes that are read at a time of rows that are no longer in memory."""
 _MANY_TICKS = 1 << 13
 """Number of records from which on it is worth importing numpy to check them."""
-_MAX_NUMBER = 1e12
-"""Larger than any position, angle or speed that a run can reach."""
+_MAX_NUMBER = 1e30
+"""Larger than any position, angle or speed that a run can reach with commands up to `MAX_NUMBER`."""
 
 
 @dataclass(frozen=True, slots=True)

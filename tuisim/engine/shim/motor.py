@@ -10,7 +10,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import NotSimulated
 from tuisim.engine.core.brick_motor import BrickMotor
 from tuisim.engine.core.browser_motor import BrowserMotor
-from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.commands.calls import MAX_NUMBER, Call
 from tuisim.engine.core.commands.table import obey
 from tuisim.engine.core.hub_spec import HUB_MOTORS
 from tuisim.engine.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED, Motor
@@ -81,9 +81,10 @@ class Tacho(ABC):
         """Return the values that the program has written to the motor's attributes, and the motor's speed."""
 
     def _tell(self, call: Call, *values: float) -> None:
-        """Give a command with its values to the simulated motor, at the present time."""
+        """Give a command with its values, cut off at the largest number, to the motor, at the present time."""
         sim = self._session.sim
-        obey(sim, self._session.now, sim.find_number(self._motor), call, *values)
+        numbers = (max(-MAX_NUMBER, min(MAX_NUMBER, value)) for value in values)
+        obey(sim, self._session.now, sim.find_number(self._motor), call, *numbers)
 
     @abstractmethod
     def device(self) -> SimDevice:
