@@ -14,6 +14,7 @@ from tuisim.engine.core.profile import EV3
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.logs.bands import (
     CUT_OFF,
+    NO_EDGE,
     BandReport,
     build_band_report,
     describe_levels,
@@ -98,6 +99,19 @@ def test_bands_have_the_places_and_widths_that_the_robot_drove_over() -> None:
     assert (report.transitions, report.total) == (1, 21)
 
 
+def test_a_band_between_others_without_a_width_says_why() -> None:
+    light = [100.0] * 6 + [0.0] + [50.0] * 7 + [100.0] * 6
+    columns = {"Light": light, "x_mm": np.arange(20) * 10.0, "y_mm": np.zeros(20)}
+    table = pa.table({"time": np.arange(20) / 10, **columns})
+
+    report = build_band_report(Log("log", table, guess_columns(table)), "Light")
+
+    assert [describe_width(band) for band in report.bands] == [CUT_OFF, NO_EDGE, CUT_OFF]
+    assert describe_levels(report).endswith(
+        "; no edge: other samples lie between this band and the next"
+    )
+
+
 def test_levels_measured_by_a_brick_get_the_right_names_of_greys() -> None:
     light = find_light(RunSpec(RobotSpec(), WorldSpec(), EV3))
     values = np.repeat([85.0, 74.0, 70.0, 45.0, 5.0], 5)
@@ -140,6 +154,10 @@ def test_a_single_sample_at_an_end_of_a_log_counts_as_a_level(
     assert (words == "Light: no level: its values stand still nowhere") is (not levels)
 
 
+WITHOUT_PLACES: dict[str, Any] = {"start_mm": np.nan, "width_mm": np.nan, "cut_off": False}
+"""The columns of bands in a log without positions."""
+
+
 def test_bands_of_the_same_level_are_described_together() -> None:
     columns: dict[str, Any] = {
         "number": np.arange(4),
@@ -147,6 +165,7 @@ def test_bands_of_the_same_level_are_described_together() -> None:
         "level": np.array([50.0, 7.0, 56.0, 100.0]),
         "samples": np.array([10, 4, 20, 1]),
         "spread": np.zeros(4),
+        **WITHOUT_PLACES,
     }
     assert describe_levels(BandReport("Grey", columns, 1, 36)) == (
         "Grey: 3 levels: 54.00 grey (2x), 7.00, 100.00 white (one sample); 1 of 36 samples lies on edges or slopes"
@@ -160,6 +179,7 @@ def test_noisy_bands_of_nearly_one_level_are_described_as_one() -> None:
         "level": np.array([92.08, 17.84, 92.23, 18.10, 95.0]),
         "samples": np.array([60, 60, 60, 60, 60]),
         "spread": np.array([0.7, 0.8, 0.75, 0.83, 0.74]),
+        **WITHOUT_PLACES,
     }
     words = describe_levels(BandReport("Helligkeit", columns, 0, 300))
     assert words.startswith("Helligkeit: 3 levels: 92.16 (2x), 17.97 (2x), 95.00; ")

@@ -29,6 +29,8 @@ ONE_SAMPLE = "one sample"
 """Marks a level that only the first or the last sample of the log has."""
 CUT_OFF = "cut off"
 """Stands for the width of a band on which the log begins or ends."""
+NO_EDGE = "no edge"
+"""Stands for the width of a band with other samples between it and a neighbour, so that its edge is not known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,16 +183,14 @@ def _measure_places(
 def describe_width(band: Band) -> str:
     """Return the width of a band in mm as text.
 
-    If the width is unknown, the text is `CUT_OFF` for a band at an end of the log, and `–` for any other band. It is
-    empty for a log without positions.
+    If the width is unknown, the text is `CUT_OFF` for a band at an end of the log, and `NO_EDGE` for any other band. It
+    is empty for a log without positions.
     """
     if not isfinite(band.start_mm):
         return ""
     if isfinite(band.width_mm):
         return f"{band.width_mm:.0f}"
-    if band.cut_off:
-        return CUT_OFF
-    return "–"
+    return CUT_OFF if band.cut_off else NO_EDGE
 
 
 def compute_driven_mm(log: Log, series: Series) -> FloatArray | None:
@@ -206,7 +206,8 @@ def compute_driven_mm(log: Log, series: Series) -> FloatArray | None:
 def describe_levels(report: BandReport) -> str:
     """Return the levels of a variable's bands as a text of one line.
 
-    Each level has its grey after it and, if several bands have this level, their number, such as `50.20 grey (3x)`.
+    Each level has its grey after it and, if several bands have this level, their number, such as `50.20 grey (3x)`. If
+    the width of a band is `NO_EDGE`, the text says why.
     """
     if not report.count:
         return f"{report.variable}: no level: its values stand still nowhere"
@@ -226,7 +227,10 @@ def describe_levels(report: BandReport) -> str:
     known = f"{counted(len(levels), 'level')}: {', '.join(parts)}"
     lie = "lies" if report.transitions == 1 else "lie"
     edges = f"{report.transitions} of {report.total} samples {lie} on edges or slopes"
-    return f"{report.variable}: {known}; {edges}"
+    places, widths, cut_off = (report.columns[name] for name in ("start_mm", "width_mm", "cut_off"))
+    has_reason = bool(np.any(np.isfinite(places) & np.isnan(widths) & ~np.asarray(cut_off)))
+    reason = f"; {NO_EDGE}: other samples lie between this band and the next" if has_reason else ""
+    return f"{report.variable}: {known}; {edges}{reason}"
 
 
 _Level = tuple[str, float, int, float]
