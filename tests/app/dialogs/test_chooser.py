@@ -8,7 +8,12 @@ import pytest
 from textual.app import App
 from textual.widgets import Input, OptionList, Static
 
-from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser, list_files
+from tuisim.app.dialogs.chooser import (
+    ChoiceGroup,
+    Chooser,
+    build_program_chooser,
+    list_files,
+)
 from tuisim.app.notices import NoticeRow
 from tuisim.app.terminal_app import TerminalApp
 from tuisim.base.errors import ConfigError
@@ -181,3 +186,29 @@ async def test_a_choosers_group_of_short_names_gives_the_room_to_titles() -> Non
         rows = [strip.text for strip in app.screen._compositor.render_strips()]
         assert any("Skip  leaves one step undone" in row for row in rows)
         assert any(f"{long_name}  new" in row for row in rows)
+
+
+def test_a_text_without_numbers_is_not_listed_as_a_log(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    texts = {
+        "printed.txt": "Start\nColour: 100.0\nColour: 86.3\n",
+        "stamped.log": "[0.1] Grey: 5\n[0.2] Grey: 6\n",
+        "table.txt": "time;light\n0,1;50\n0,2;51\n",
+        "measured.csv": "a,b\n",
+        "shopping.txt": "Milk\nBread\n",
+        "requirements.txt": "textual==8.0.1\nnumpy>=2\n",
+        "empty.txt": "",
+    }
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text)
+    monkeypatch.chdir(tmp_path)
+
+    logs = next(group for group in build_program_chooser()._groups if group.title == "Logs")
+
+    assert [name for _, name, _ in logs.entries] == [
+        "measured.csv",
+        "printed.txt",
+        "stamped.log",
+        "table.txt",
+    ]

@@ -20,7 +20,7 @@ from textual.widgets.option_list import Option
 
 from tuisim.app import background
 from tuisim.app.dialogs.dialog import MOVE_KEYS, FieldDialog, name_and_title
-from tuisim.app.dialogs.paths import complete_path, is_path, list_completions
+from tuisim.app.dialogs.paths import check_numbers, complete_path, is_path, list_completions
 from tuisim.app.dialogs.save import parse_path
 from tuisim.app.error_words import shorten_error
 from tuisim.base.data_class import dataclass
@@ -46,7 +46,8 @@ if TYPE_CHECKING:
 
 OPENABLE = (".py", ".toml")
 TABLES = (".toml", ".json")
-LOGS = (*LOG_SUFFIXES, ".txt", ".log")
+TEXTS = (".txt", ".log")
+LOGS = (*LOG_SUFFIXES, *TEXTS)
 IMAGES = (".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff")
 """Suffixes of the files that choosers list in a folder."""
 MAX_FILES = 200
@@ -337,7 +338,10 @@ def build_program_chooser() -> Chooser:
         ChoiceGroup(
             "Worlds and goals" if own.entries else f"{here.title}: worlds and goals", worlds
         ),
-        ChoiceGroup("Logs", list_files(LOGS).entries),
+        ChoiceGroup(
+            "Logs",
+            [*list_files(LOG_SUFFIXES).entries, *list_files(TEXTS, check_numbers).entries],
+        ),
         ChoiceGroup("Examples", [(str(path), name, title) for name, path, title in examples]),
         ChoiceGroup(
             "Examples of goals", [(str(path), path.name, _read_title(path)) for path in goals]

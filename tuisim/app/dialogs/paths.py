@@ -1,14 +1,20 @@
-"""Files that a typed path may mean."""
+"""Files that dialogs offer: those that a typed path may mean, and texts that may be logs."""
 
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Collection
 from itertools import takewhile
 from pathlib import Path
 
+from tuisim.base.errors import LogError
 from tuisim.base.folders import user_path
+from tuisim.base.source import source_lines
 from tuisim.logs.export import is_companion
+
+_JUDGED_BYTES = 4096
+_NUMBER = re.compile(r"(?<![^\s,;:=|(\[])[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?![^\s,;:%|)\]])")
 
 
 def is_path(typed: str) -> bool:
@@ -66,3 +72,19 @@ def _is_folder(file: os.DirEntry[str]) -> bool:
         return file.is_dir()
     except OSError:
         return False
+
+
+def check_numbers(path: Path) -> None:
+    """Check that a text may be a log: that most of its first lines have a number.
+
+    Raises:
+        LogError: it is another text, or cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            lines = source_lines(file.read(_JUDGED_BYTES).decode(errors="replace"))
+    except OSError as error:
+        raise LogError("cannot be read", str(error), file=str(path)) from error
+    written = [line for line in lines if line.strip()]
+    if 2 * sum(_NUMBER.search(line) is not None for line in written) <= len(written):
+        raise LogError("is no log", "most lines of a log have a number", file=str(path))
