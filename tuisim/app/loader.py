@@ -22,7 +22,7 @@ from tuisim.base.source import Program
 from tuisim.engine.files import means_file
 from tuisim.engine.runs.run_folder import format_end, restore_program
 from tuisim.engine.runs.store import RunStore
-from tuisim.programs.program_file import drop_wrong_mat
+from tuisim.programs.program_file import drop_wrong_names
 from tuisim.programs.program_settings import Decided, find_free_paths
 from tuisim.settings.options import START, Settings
 
@@ -222,7 +222,7 @@ class Loader:
     def _open_source(self, source: ProgramSource) -> Decided:
         """Open a program in the world of its magic line; return the settings that the text of the program decides."""
         program, magic = _split_source(source)
-        source = drop_wrong_mat(source, self._run_controller.next_run.settings["mats"])
+        source = drop_wrong_names(source, self._run_controller.next_run.settings["mats"])
         plan = self._run_controller.next_run
         before = self._run_controller.program
         if before is not None and before.path != program.path:

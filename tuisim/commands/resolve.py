@@ -26,9 +26,9 @@ from tuisim.programs.notebook_file import is_notebook, read_notebook_programs
 from tuisim.programs.program_file import (
     ProgramSource,
     build_program,
-    drop_wrong_mat,
+    drop_wrong_names,
     find_program,
-    find_wrong_mat,
+    find_wrong_names,
     read_program,
 )
 from tuisim.programs.program_settings import Decided, build_program_settings, find_free_paths
@@ -163,10 +163,13 @@ def _prepare_source(
     try:
         program = effective.apply(file.program)
         spec = _build_spec(effective.settings)
-    except ConfigError as error:
-        wrong = find_wrong_mat(file.program.text, file.program.name, effective.settings["mats"])
-        is_it = wrong is not None and effective.settings["background"] == file.options["background"]
-        raise (wrong.error if wrong and is_it and not error.file else error) from None
+    except ConfigError:
+        path = Path(file.program.path) if file.program.path else None
+        mats = effective.settings["mats"]
+        for wrong in find_wrong_names(file.program.text, path, file.program.name, mats):
+            if effective.settings[wrong.path] == file.options[wrong.path]:
+                raise wrong.error from None
+        raise
     above = (effective.decided.layer, file.options, arguments.settings)
     changed = _find_effective_defaults(spec, world, config, resolve_settings().settings, *above)
     return Prepared(
@@ -231,7 +234,7 @@ def prepare_app(
     mats = Settings.merge(_select_defaults(world, config), source.options, arguments.settings)[
         "mats"
     ]
-    return _prepare_source(drop_wrong_mat(source, mats), world, arguments, config)
+    return _prepare_source(drop_wrong_names(source, mats), world, arguments, config)
 
 
 def prepare_replay(

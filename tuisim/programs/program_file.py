@@ -6,15 +6,15 @@ import ast
 import os
 import re
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import (
-    BackgroundError,
     ConfigError,
     closest,
     did_you_mean,
@@ -34,71 +34,85 @@ from tuisim.base.source import (
 from tuisim.base.syntax_tree import NOT_PYTHON, parse_module
 from tuisim.engine.files import close_beside, read_bytes
 from tuisim.engine.mats import find_mat
+from tuisim.engine.obstacles import load_obstacles
 from tuisim.programs.mistakes import find_fault
 from tuisim.programs.robot.course import has_course_names, list_global_names
 from tuisim.programs.robot.source import find_library, read_modules
+from tuisim.settings.profiles import load_profile
+from tuisim.settings.robots import RobotChoice
 from tuisim.settings.shared_options import parse_words
 
 
-class WrongMat(NamedTuple):
-    """A mat in a program's magic line that does not exist or cannot be read."""
+class WrongName(NamedTuple):
+    """A mat, robot, set of obstacles or profile in a magic line that does not exist or cannot be read."""
 
+    path: str
+    """Path of the setting, such as `robot`."""
     line: int
     """From 1."""
-    error: BackgroundError
+    error: ConfigError
     """Names the program and the line."""
 
     @property
     def words(self) -> str:
-        """What is wrong with the mat, and which mat may have been meant, in one line."""
+        """What is wrong with the name, and which one may have been meant, in one line."""
         guess, question, _ = self.error.hint.partition("?")
         return f"{self.error.message.partition(': ')[2]}{f', {guess}?' if question else ''}"
 
 
-def find_wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
-    """Return the fault of the mat that a program's magic line names; None if it names no mat, or an existing one.
+_LOADERS: Mapping[str, Callable[[str], object]] = {
+    "robot": RobotChoice.load,
+    "obstacles": load_obstacles,
+    "profile": load_profile,
+}
+"""The functions that return what a setting names, or raise a ConfigError, by the setting's path."""
 
-    A mat that is given as a path, or with another folder of mats, is not checked: the result is then None, too.
+
+def find_wrong_names(
+    text: str, file: Path | None, name: str, mats: str | None = None
+) -> tuple[WrongName, ...]:
+    """Return the wrong names in a program's magic line; a mat in another folder of mats is not checked.
 
     Args:
         text: The program.
-        name: The name of its file.
-        folder: A further folder with mats of the user; None for none.
+        file: The file of the program, beside which its magic line names other files; None if it has none.
+        name: The name of the file.
+        mats: A further folder with mats of the user; None for none.
     """
     try:
         magic = find_magic(text, name)
-        options: Mapping[str, str] = magic.options if magic else {}
-        if (
-            magic
-            and "background" in options
-            and "mats" not in options
-            and not is_file_name(options["background"])
-        ):
-            find_mat(options["background"], folder)
-    except BackgroundError as error:
-        assert magic is not None
-        return WrongMat(
-            magic.line,
-            BackgroundError(error.message, error.hint, file=f"{name}, line {magic.line}"),
-        )
     except ConfigError:
-        pass
-    return None
+        return ()
+    if magic is None:
+        return ()
+    options = resolve_files(file.parent if file else Path.cwd(), magic.options)
+    loaders: Mapping[str, Callable[[str], object]]
+    loaders = {"background": partial(find_mat, folder=mats), **_LOADERS}
+    wrong = []
+    for path, load in loaders.items():
+        if path not in options or (path == "background" and "mats" in options):
+            continue
+        try:
+            load(options[path])
+        except ConfigError as error:
+            where = f"{name}, line {magic.line}"
+            placed = type(error)(error.message, error.hint, file=where)
+            wrong.append(WrongName(path, magic.line, placed))
+    return tuple(wrong)
 
 
-def drop_wrong_mat(source: ProgramSource, folder: str | None) -> ProgramSource:
-    """Return a program without a wrong mat in its magic line, so that it can be opened and corrected.
+def drop_wrong_names(source: ProgramSource, mats: str | None) -> ProgramSource:
+    """Return a program without the wrong names in its magic line, so that it can be opened and corrected.
 
     Args:
         source: The program.
-        folder: A further folder with mats of the user; None for none.
+        mats: A further folder with mats of the user; None for none.
     """
-    if find_wrong_mat(source.program.text, source.program.name, folder) is None:
-        return source
-    return replace(
-        source,
-        options={path: value for path, value in source.options.items() if path != "background"},
-    )
+    program = source.program
+    file = Path(program.path) if program.path else None
+    wrong = {name.path for name in find_wrong_names(program.text, file, program.name, mats)}
+    options = {path: value for path, value in source.options.items() if path not in wrong}
+    return replace(source, options=options) if wrong else source
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +125,7 @@ class Mistake:
 
 
 def find_wrong_option(text: str, name: str) -> Mistake | None:
-    """Return what is wrong with an option in a program's magic line, except for an unknown mat; None if nothing is.
+    """Return what is wrong with an option in a program's magic line, except for a wrong name; None if nothing is.
 
     Args:
         text: The program.
@@ -125,13 +139,16 @@ def find_wrong_option(text: str, name: str) -> Mistake | None:
     return None
 
 
-def find_mistake(text: str, name: str, mats: str | None = None) -> Mistake | None:
+def find_mistake(
+    text: str, name: str, mats: str | None = None, file: Path | None = None
+) -> Mistake | None:
     """Return what is wrong in the magic line of a program, or its syntax error; None if it can run.
 
     Args:
         text: The text of the file; a magic line is allowed.
         name: Name of the file, for the message.
         mats: A further folder with mats of the user; None for none.
+        file: The file of the program; None if it has none.
     """
     if mistake := find_wrong_option(text, name):
         return mistake
@@ -139,8 +156,9 @@ def find_mistake(text: str, name: str, mats: str | None = None) -> Mistake | Non
     if fault := find_fault(source.program.text):
         message, line = fault
         return Mistake(line, f"line {line}: {message}" if line else message)
-    wrong = find_wrong_mat(text, name, mats)
-    return Mistake(wrong.line, f"line {wrong.line}: {wrong.words}") if wrong else None
+    for wrong in find_wrong_names(text, file, name, mats):
+        return Mistake(wrong.line, f"line {wrong.line}: {wrong.words}")
+    return None
 
 
 MAX_PROGRAM_BYTES = 4 << 20

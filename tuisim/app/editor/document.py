@@ -22,7 +22,7 @@ from tuisim.app.editor.text_file import (
 from tuisim.app.editor.text_lines import LineMap, count_differing_lines
 from tuisim.base.errors import ConfigError, TuisimError, counted
 from tuisim.base.source import source_lines
-from tuisim.programs.program_file import describe_new_file, find_wrong_mat, find_wrong_option
+from tuisim.programs.program_file import describe_new_file, find_wrong_names, find_wrong_option
 from tuisim.settings.options import Settings
 
 if TYPE_CHECKING:
@@ -365,15 +365,22 @@ class Document:
 
     @property
     def _lacks_options(self) -> bool:
-        """Whether the magic line has a wrong option or a wrong mat, so that the program was opened without it.
+        """Whether the magic line has a wrong option or a wrong name, so that the program was opened without it.
 
-        A wrong mat no longer counts once the user has chosen another mat.
+        A wrong name no longer counts once the user has chosen another, such as another mat.
         """
         if find_wrong_option(self._text, self._name):
             return True
-        settings = self._run_controller.next_run.settings
-        is_usual = settings["background"] == Settings()["background"]
-        return is_usual and find_wrong_mat(self._text, self._name, settings["mats"]) is not None
+        plan = self._run_controller.next_run
+        chosen = plan.settings.changed(plan.words)
+        return any(
+            wrong.path in plan.free or chosen[wrong.path] == Settings()[wrong.path]
+            for wrong in find_wrong_names(self._text, self._file, self._name, plan.settings["mats"])
+        )
+
+    @property
+    def _file(self) -> Path | None:
+        return Path(self._path) if self._path else None
 
     @property
     def _is_applied(self) -> bool:
@@ -387,7 +394,7 @@ class Document:
         from tuisim.programs.program_file import find_mistake
 
         mistake = find_mistake(
-            self._text, self._name, self._run_controller.next_run.settings["mats"]
+            self._text, self._name, self._run_controller.next_run.settings["mats"], self._file
         )
         if code := self._panel_area.code:
             code.mark_error(mistake.line if mistake else 0, mistake.message if mistake else "")
