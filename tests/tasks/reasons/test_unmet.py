@@ -233,6 +233,14 @@ def test_waits_in_vain_of_programs_in_other_libraries_are_found(text: str, words
 
 
 EARLY = {
+    "never called": (
+        f"{BANDS}def go():\n    tank_drive.on(20, 20)\nprint(go)\n",
+        "this line would drive the robot, but it never ran: nothing called the function of line 2",
+    ),
+    "a condition that was false": (
+        f"{BANDS}if __name__ == 'main':\n    tank_drive.on_for_degrees(20, 20, 400)\n",
+        "this line would drive the robot, but it never ran",
+    ),
     "no wait": (
         f"{DRIVES}tank_drive.off()\n",
         "the program ended when the motors that this line starts had",

@@ -42,6 +42,12 @@ if TYPE_CHECKING:
 
 STOP_CALLS = (Call.STOP, Call.STOP_DRIVER, Call.HOLD, Call.STOP_BASE)
 """The commands that only stop a motor or a drive base."""
+START_CALLS = (
+    *(Call.RUN, Call.RUN_UNTIL, Call.RUN_TO),
+    *(Call.RUN_FOREVER, Call.RUN_TO_ABS_POS, Call.RUN_TO_REL_POS, Call.RUN_TIMED, Call.RUN_DIRECT),
+    *(Call.RUN_FREELY, Call.RUN_AT, Call.MOVE, Call.FOLLOW, Call.MOVE_BASE, Call.DRIVE_BASE),
+)
+"""The commands that can make a motor turn."""
 _MAX_READING_LINES = 64
 """The most reading lines of a program that are analysed."""
 _NOUNS: Mapping[type[SensorSpec], str] = {

@@ -13,7 +13,7 @@ from tuisim.engine.runs.records import Stream
 from tuisim.programs.facts import LoopEnd
 from tuisim.tasks.reasons.one_colour import describe_colors, name_limit, name_seen
 from tuisim.tasks.reasons.read_columns import LIGHT_COLUMNS
-from tuisim.tasks.reasons.run_data import RunData, Series, list_distinct
+from tuisim.tasks.reasons.run_data import START_CALLS, RunData, Series, list_distinct
 
 _MIN_STAY_S = 3.0
 """A program that has been in a loop for less time does not wait in it in vain."""
@@ -68,6 +68,8 @@ def find_early_end(data: RunData) -> Unmet | None:
     Args:
         data: The run.
     """
+    import numpy as np
+
     run = data.run
     if not data.is_finished or run.time_s >= _MIN_RUN_S:
         return None
@@ -87,6 +89,10 @@ def find_early_end(data: RunData) -> Unmet | None:
         "the program ended when the motors that this line starts had moved the robot by only "
         f"{way_mm:.1f} mm"
     )
+    if not np.isin(data.commands["call"], START_CALLS).any():
+        text = "this line would drive the robot, but it never ran"
+        if function := data.facts.find_place(line)[0]:
+            text += f": nothing called the function of line {function}"
     return find_first(_list_met, data) or Unmet(run.time_s, line, text)
 
 
