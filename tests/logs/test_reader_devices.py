@@ -66,6 +66,19 @@ TIMES: dict[str, tuple[str, list[float]]] = {
         "".join(f"\x1b[0;32mI ({1000 + 50 * n}) main: red={5 + n}\x1b[0m\n" for n in range(3)),
         [1, 1.05, 1.1],
     ),
+    "milliseconds after a colon": (
+        _number_lines(["10:00:00:000", "10:00:00:250", "10:00:00:500"]),
+        [36000, 36000.25, 36000.5],
+    ),
+    "a time in brackets with its unit": (
+        "".join(f"[{250 * n} ms] red={5 + n}\n" for n in range(3)),
+        [0, 0.25, 0.5],
+    ),
+    "objects as Python prints them": (
+        "".join(f"Reading(t={n / 2}, red={5 + n})\n" for n in range(3)),
+        [0, 0.5, 1],
+    ),
+    "a rule of underscores": ("  t   red\n ___  ___\n  0  5\n  1  6\n  2  7\n", [0, 1, 2]),
     "a node of ROS": (
         "".join(f"[INFO] [1700000000.{5 + n}] [left_node]: red: {5 + n}\n" for n in range(3)),
         [0, 0.1, 0.2],

@@ -20,7 +20,7 @@ _SHORT_YEAR = r"\d{1,2}[-/.]\d{1,2}[-/.]\d{2}"
 _DATE = rf"(?:{_YEAR_FIRST}|{_YEAR_LAST}|{_MONTH_IN_WORDS}|{_CHINESE})"
 _GAP = r"(?:T|:|日 *| *[/,_] *| +(?:- +)?)"
 """The characters between a date and its time of day."""
-_PART = r"(?:[.,]\d+)"
+_PART = r"(?:[.,]\d+|:\d{3})"
 """Fraction of a second."""
 _ZONE = r"(?:Z| ?UTC| ?[+-]\d{2}(?::?\d{2})?)"
 _HALF = r"(?: ?[AaPp][Mm])"
@@ -52,7 +52,7 @@ _REWRITTEN = (
     (r" ?UTC$", "Z"),
     (rf"^({_MINUTES})$", r"0:\1"),
     (_HOURS, r"\1:00"),
-    (r"(:\d{2}),(\d+)", r"\1.\2"),
+    (r"(:\d{2}:\d{2})[,:](\d+)", r"\1.\2"),
     (r"日 *(\d)", r" \1"),
     (r"^(\d{4})年(\d{1,2})月(\d{1,2})日?", r"\1-\2-\3"),
     (rf"^({_DATE}){_GAP}(\d{{1,2}}:)", r"\1 \2"),

@@ -35,7 +35,7 @@ _NUMBER = re.compile(
     r"|0[xX][0-9a-fA-F]+|[+-]?(?:inf|infinity|nan)|true|false",
     re.IGNORECASE,
 )
-is_rule = re.compile(r"[\s|+:=-]*(?:--|==)[\s|+:=-]*").fullmatch
+is_rule = re.compile(r"[\s|+:=_-]*(?:--|==|__)[\s|+:=_-]*").fullmatch
 """Matches a line drawn of signs between the heading and the rows."""
 _MIN_PART = 10
 """The table has at least one row for this many of the longest run of rows alike."""

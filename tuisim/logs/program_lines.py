@@ -14,7 +14,7 @@ from tuisim.engine.core.conditions import NUMBER
 from tuisim.engine.runs.samples import parse_sample
 from tuisim.logs.cells import UNIT
 from tuisim.logs.choices import ReadChoices
-from tuisim.logs.columns import COUNTS, NAMES, parse_time_name
+from tuisim.logs.columns import COUNTS, NAMES, UNITS_S, parse_time_name
 from tuisim.logs.dates import MOMENT, MONTH
 from tuisim.logs.heading import BLANKS, SEPARATORS, parse_kinds, split_cells
 from tuisim.logs.json_rows import ObjectReader, Row
@@ -24,14 +24,15 @@ from tuisim.logs.warnings import Notes
 _LEVEL = r"(?:DEBUG|INFO|WARN(?:ING)?|ERROR|CRITICAL)"
 _STAMPED = re.compile(
     rf"\s*(?:\[?{_LEVEL}\]?:? +|[DEIVW] (?=\())?"
-    rf"(?:(?P<open>[\[(<])\s*)?(?:{MONTH} +\d{{1,2}} )?(?P<stamp>(?>{MOMENT})|(?>{NUMBER}))(?(open)\s*[\])>])"
+    rf"(?:(?P<open>[\[(<])\s*)?(?:{MONTH} +\d{{1,2}} )?(?P<stamp>(?>{MOMENT})|(?>{NUMBER}))"
+    r"(?:\s?(?P<unit>[mu]?s)(?=\]))?(?(open)\s*[\])>])"
     r"(?P<between>\s*(?::(?!\d\d[.;,\t])|->|=>|=|-(?= ))\s*| +|(?<=[\])>]))(?P<rest>\S.*?)\s*"
 )
 _PREFIX = re.compile(
-    rf"\s*(?:>+|\[[^\]=]*\]:?|{_LEVEL}(?=[\s:])\s*:?|-(?=\s)|[\w.]+\s*:(?=\s*[^\W\d][\w.]*\s*[:=])"
+    rf"\s*(?:>+|[^\W\d]\w*\((?=\w+=)|\[[^\]=]*\]:?|{_LEVEL}(?=[\s:])\s*:?|-(?=\s)|[\w.]+\s*:(?=\s*[^\W\d][\w.]*\s*[:=])"
     r"|[\w.]+\s+-(?=\s)|[\w.\-]+ [^\s:\[]+\[\d+\]:)\s*"
 )
-"""A prompt, brackets, a level of Python's `logging`, the name of a logger, or a computer and a process of syslog."""
+"""A prompt, the type of a printed object, brackets, a level of `logging`, a logger's name, or what syslog writes."""
 _VALUE = rf"(?:{NUMBER}|(?i:[+-]?(?:nan|inf(?:inity)?)|none|null|na)\b)"
 """A number, or what is printed where there is none."""
 _ITEM = re.compile(
@@ -39,7 +40,7 @@ _ITEM = re.compile(
     rf"(?:\s*(?i:{UNIT})(?![\w.\-/%°]|\s*[:=]))?"
 )
 """A name with its number, of which a unit may follow."""
-_ITEMS = re.compile(rf"(?:(?>{_ITEM.pattern})(?:[\s,;|]+|$))+")
+_ITEMS = re.compile(rf"(?:(?>{_ITEM.pattern})(?:[\s,;|)]+|$))+")
 _TELEPLOT = re.compile(rf">?([^\W\d]\w*):(\d{{9,}}(?:\.\d+)?):({NUMBER})(?:[|\xa7].*)?")
 """Name, milliseconds and value."""
 _VALUES = re.compile(rf"{_VALUE}(?:(?:\s*[,;]\s*|\s+){_VALUE})*")
@@ -47,7 +48,7 @@ _SEPARATORS = frozenset(SEPARATORS)
 _SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")
 _WORDS = re.compile(r"[\s,;:]+")
 _TUPLE = re.compile(
-    r"\s*(?:[A-Za-z_]*\((?P<tuple>.*)\)|\[(?P<list>[^\[\]{}]*)\]|\|(?P<row>.*)\|)\s*,?"
+    r"\s*(?:[A-Za-z_]*\((?P<tuple>[^=]*)\)|\[(?P<list>[^\[\]{}]*)\]|\|(?P<row>.*)\|)\s*,?"
 )
 _TIME_NAMES = frozenset(NAMES) - {*COUNTS}
 _MAX_CHARACTERS = 4000
@@ -99,7 +100,10 @@ def _split_time(line: str) -> tuple[str | None, str, bool]:
     if match is None:
         return None, line, False
     # If only blanks separate two numbers, they may be cells of a row, so the first is not certainly a time.
-    return match["stamp"], match["rest"], bool(match["open"] or match["between"].strip())
+    stamp = match["stamp"]
+    if match["unit"]:
+        stamp = str(float(stamp) * UNITS_S[match["unit"]])
+    return stamp, match["rest"], bool(match["open"] or match["between"].strip())
 
 
 def _strip_prefixes(text: str, pattern: re.Pattern[str]) -> str:
