@@ -7,7 +7,7 @@ import pytest
 
 from tests.engine.runs.test_recorded_run import stored
 from tuisim.engine.core.tick_record import TICK_FIELDS
-from tuisim.engine.runs.diff import diff_runs, find_first_difference_s
+from tuisim.engine.runs.diff import diff_runs, find_first_difference_s, spell_name
 
 
 def test_the_difference_of_two_runs_is_told() -> None:
@@ -17,13 +17,26 @@ def test_the_difference_of_two_runs_is_told() -> None:
     found = diff_runs(one, two)
     recording = dict(found.describe_recording())
     setup = dict(found.describe_setup())
-    assert "x_mm" in recording["first differing tick"]
+    assert "x mm" in recording["first differing tick"]
     assert "mm apart" in recording["poses"]
     assert setup["settings, seed"] == "1 | 2"
     assert "--- prog.py" in [line for label, line in found.describe_setup() if not label]
     assert list(diff_runs(one, one).describe_recording()) == [
         ("bit-identical", "recording, output, settings")
     ]
+
+
+@pytest.mark.parametrize(
+    "name, words",
+    [
+        ("left_speed_dps", "left speed °/s"),
+        ("world.noise.light", "noise, light"),
+        ("world.obstacles.0.x_mm", "obstacles 1, x mm"),
+        ("robot.color_sensors.1.diameter_mm", "robot, colour sensors 2, diameter mm"),
+    ],
+)
+def test_what_differs_between_two_runs_is_named_in_words(name: str, words: str) -> None:
+    assert spell_name(name) == words
 
 
 @pytest.mark.parametrize(

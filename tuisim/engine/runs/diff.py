@@ -29,6 +29,8 @@ EXCEEDED_MM = (1.0, 10.0, 100.0)
 PARTED_MM, PARTED_DEG = 1.0, 1.0
 """Distance in mm, and difference of heading in degrees, beyond which two robots count as apart."""
 TABLE_ROWS = 10
+_WORDS = {"deg": "°", "dps": "°/s", "pc": "%", "color": "colour"}
+"""Words for parts of names of settings and telemetry, such as units."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +112,7 @@ class RunDiff:
             yield "tick rates differ", "compared by time, no record is the same"
         for what, difference in (("tick", self.tick), ("line", self.line)):
             if difference:
-                how = ", ".join(difference.fields) if difference.fields else "one recording ends"
+                how = ", ".join(map(spell_name, difference.fields)) or "one recording ends"
                 yield (
                     f"first differing {what}",
                     f"tick {difference.tick}, {difference.time_s:.2f} s: {how}",
@@ -139,9 +141,23 @@ class RunDiff:
         The lines of the diff have an empty label.
         """
         for name, left, right in self.setup:
-            yield f"settings, {name}", f"{left} | {right}"
+            yield f"settings, {spell_name(name)}", f"{left} | {right}"
         for line in self.program:
             yield "", line
+
+
+def spell_name(name: str) -> str:
+    """Return the name of a setting or of telemetry in words: `drift, wheel %` for `world.drift.wheel_pc`.
+
+    Members of lists count from 1: `robot, colour sensors 1` for `robot.color_sensors.0`.
+    """
+    words: list[str] = []
+    for part in name.removeprefix("world.").split("."):
+        if part.isdecimal():
+            words[-1] += f" {int(part) + 1}"
+        else:
+            words.append(" ".join(_WORDS.get(word, word) for word in part.split("_")))
+    return ", ".join(words)
 
 
 def diff_runs(
@@ -380,7 +396,7 @@ def _flatten(plain: Any, name: str = "") -> dict[str, Any]:
     elif isinstance(plain, list | tuple) and plain:
         pairs = [(f"{name}.{number}", value) for number, value in enumerate(plain)]
     else:
-        return {name: plain}
+        return {name: "none" if plain in ((), [], {}) else plain}
     return {path: leaf for below, value in pairs for path, leaf in _flatten(value, below).items()}
 
 
