@@ -175,6 +175,8 @@ class WrongUnit:
 
 _MIN_SLEEP = 100
 """A sleep of so many seconds was meant in milliseconds."""
+_MIN_MS = 500
+"""A move of so many seconds was meant in milliseconds."""
 _MIN_SPEED = 15
 _MAX_TIME = 10
 """Equal numbers of at least `_MIN_SPEED` are speeds; a number of at most `_MAX_TIME` before them is a time."""
@@ -208,7 +210,8 @@ def list_wrong_units(tree: ast.Module, remarks: Remarks) -> Iterator[WrongUnit]:
                 text = f"sleep({seconds}) waits {seconds} s, not ms: sleep({seconds / 1000:g}) waits {seconds} ms"
                 yield WrongUnit(node.lineno, text, is_endless=True)
             case ast.Call(func=ast.Attribute(attr="on_for_seconds"), args=[*args], keywords=[]):
-                if text := _describe_order([find_number(arg) for arg in args]):
+                numbers = [find_number(arg) for arg in args]
+                if text := _describe_order(numbers) or _describe_duration(numbers):
                     yield WrongUnit(node.lineno, text, is_endless=True)
 
 
@@ -223,3 +226,11 @@ def _describe_order(numbers: Sequence[float | None]) -> str:
             return ""
     is_time_first = left >= _MIN_SPEED and 0 < seconds <= _MAX_TIME
     return f"on_for_seconds takes the time last: this is {speeds}" if is_time_first else ""
+
+
+def _describe_duration(numbers: Sequence[float | None]) -> str:
+    """Return why the time of `on_for_seconds` is wrong if it was meant in ms; else an empty text."""
+    seconds = numbers[-1] if numbers else None
+    if seconds is None or seconds < _MIN_MS or seconds % 100:
+        return ""
+    return f"on_for_seconds counts seconds, so this takes {seconds / 60:.0f} minutes: {seconds / 1000:g} s are {seconds:g} ms"

@@ -42,6 +42,10 @@ MISSED = {
         f"{BANDS}tank_drive.on(5, 5)\ntime.sleep(1000)\n",
         "line 4: sleep(1000) waits 1000 s, not ms: sleep(1) waits 1000 ms",
     ),
+    "a move of milliseconds": (
+        f"{BANDS}tank_drive.on_for_seconds(5, 5, 2000)\n",
+        "line 3: on_for_seconds counts seconds, so this takes 33 minutes: 2 s are 2000 ms",
+    ),
 }
 
 
@@ -59,6 +63,7 @@ def test_what_a_run_did_otherwise_than_its_words_say_is_told(text: str, words: s
         "the first grey": UNTIL.format(90) + "tank_drive.off()\nprint('grey, not black')\n",
         "the edge of the black": UNTIL.format(50).replace("Grey_bands", "Grey_bands -x 1400")
         + "tank_drive.off()\nprint('I am on black')\n",
+        "a long move": f"{BANDS}tank_drive.on_for_seconds(5, 5, 120)\n",
         "a long pause": f"{BANDS}tank_drive.on_for_seconds(5, 5, 1)\ntime.sleep(1000)\n",
         "a turn": f"{BANDS}# turn right\ntank_drive.on_for_seconds(30, -30, 1)\n",
         "a right angle": f"{BANDS}# turn by a right angle\ntank_turn.on_for_degrees(-100, 30, 289)\n",

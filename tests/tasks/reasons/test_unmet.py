@@ -36,7 +36,8 @@ VAIN = {
     ),
     "equality": (
         f"{DRIVES}while {LIGHT} != 50:\n    pass\n",
-        "colorLeft on in2 to read exactly 50 %: 50.2 at 4.53 s came nearest",
+        "colorLeft on in2 to read exactly 50 %: 50.2 at 4.53 s came nearest; "
+        "it passed without being equal: ask with < or >",
     ),
     "at rest": (
         f"{BANDS}while {LIGHT} > 50:\n    pass\n",
@@ -143,6 +144,18 @@ def test_a_turn_that_ends_at_once_names_the_gyro_that_nobody_reset() -> None:
     )
 
 
+CENTIMETRES = """\
+# %sim_magic -b Empty_Map --obstacles Wall -x 400 -y 600 -a 0
+from pybricks.ev3devices import Motor, UltrasonicSensor
+from pybricks.parameters import Port
+from pybricks.robotics import DriveBase
+robot = DriveBase(Motor(Port.B), Motor(Port.C), 56, 180)
+eyes = UltrasonicSensor(Port.S1)
+# Stop 15 cm before the wall.
+robot.drive(150, 0)
+while eyes.distance() > 15:
+    pass
+"""
 OLD_LIBRARY = """\
 from ev3dev.ev3 import *
 LIMIT = 3
@@ -220,6 +233,10 @@ while left.angle() > -9999:
             "the gyro in the hub to read 90° or more: it went from 0 to -",
         ),
         "a value": (OLD_LIBRARY, "the colour sensor on in2 to read 3 or less: it stayed at 85"),
+        "a comment in cm": (
+            CENTIMETRES,
+            "eyes on in1 to read 15 mm or less: 31 at 7.04 s came nearest; 15 cm are 150 mm",
+        ),
         "turns": (
             TURNS_OF_A_WHEEL,
             "the motor on outB to read 360 rotations or more: it went from 0 to ",
@@ -259,7 +276,8 @@ EARLY = {
     ),
     "a true limit": (
         f"{DRIVES}while {LIGHT} < 20:\n    pass\ntank_drive.off()\n",
-        "the loop ended at once: colorLeft on in2 read 100 %, already 20 % or more",
+        "the loop ended at once: colorLeft on in2 read 100 %, already 20 % or more; "
+        "turn its sign round to wait for less than 20 %",
     ),
 }
 

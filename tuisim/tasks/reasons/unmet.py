@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError
@@ -22,6 +23,8 @@ _MIN_RUN_S = 0.5
 _MIN_WAY_MM = 5.0
 _MIN_TURN_DEG = 5.0
 """A program that is over earlier, with its robot nearer to the start, gave its motors no time."""
+_MAX_ABOVE = 2
+"""A remark that is so many lines above a loop is about it."""
 _NEAR = 1.0
 _AWAY = 5.0
 """Light that came so near to what was waited for, in percent, and went so far away again, was just missed."""
@@ -142,8 +145,17 @@ def _list_met(data: RunData) -> Iterator[Unmet]:
             first = series.values[0]
             if COMPARE[loop.operator](first, loop.limit):
                 goal = name_goal(loop, f"{loop.limit:g}{series.unit}")
-                text = f"{text} {round_value(first)}{series.unit}, already {goal}"
+                text = f"{text} {round_value(first)}{series.unit}, already {goal}{_name_turned(loop, series)}"
                 yield Unmet(series.ticks[0] / data.hz, loop.line, text)
+
+
+def _name_turned(loop: LoopEnd, series: Series) -> str:
+    """Return what to change in a comparison that was met at once, if the opposite was probably meant."""
+    other = {">": "<", "<": ">"}.get(loop.operator[0], "")
+    if not other or isinstance(loop.limit, str):
+        return ""
+    goal = name_goal(replace(loop, operator=other), f"{loop.limit:g}{series.unit}")
+    return f"; turn its sign round to wait for {goal}"
 
 
 def list_stale_angles(data: RunData) -> Iterator[Unmet]:
@@ -262,7 +274,22 @@ def _describe(data: RunData, loop: LoopEnd, stay: tuple[int, int]) -> str:
         return ""
     verb = "change by" if loop.start_line else "read"
     goal = name_goal(loop, f"{loop.limit:g}{series.unit}")
-    return f"{series.device} to {verb} {goal}: {_name_nearest(loop, series, data.hz)}"
+    nearest = _name_nearest(loop, series, data.hz)
+    return f"{series.device} to {verb} {goal}: {nearest}{_name_remedy(data, loop, series)}"
+
+
+def _name_remedy(data: RunData, loop: LoopEnd, series: Series) -> str:
+    """Return what to change in a comparison that never was met; empty if that is not known."""
+    limit = loop.limit
+    if isinstance(limit, str):
+        return ""
+    if loop.operator == "==" and series.values.min() < limit < series.values.max():
+        return "; it passed without being equal: ask with < or >"
+    lines = range(loop.first_line - _MAX_ABOVE, loop.last_line + 1)
+    is_wrong = series.unit == " mm" and any(
+        data.facts.remarks.has_centimetres(line, float(limit)) for line in lines
+    )
+    return f"; {limit:g} cm are {limit * 10:g} mm" if is_wrong else ""
 
 
 def _name_nearest(loop: LoopEnd, series: Series, hz: int) -> str:
