@@ -4,6 +4,7 @@ __all__ = [
     "constants",
     "facts",
     "function",
+    "idle_moves",
     "line_values",
     "moves",
     "names",

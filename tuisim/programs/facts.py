@@ -15,6 +15,7 @@ from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.programs.comparisons import list_constants
 from tuisim.programs.fixed_conditions import list_fixed_conditions
+from tuisim.programs.idle_moves import list_idle_moves
 from tuisim.programs.mistakes import (
     explain_error,
     find_fault,
@@ -236,6 +237,7 @@ class ProgramFacts:
         return (
             *list_slips(self.tree),
             *list_fixed_conditions(self.tree, self.constants),
+            *list_idle_moves(self.tree),
         )
 
     def explain_error(self, error: str, line: int) -> str:

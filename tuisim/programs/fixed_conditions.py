@@ -98,7 +98,7 @@ def find_value(test: ast.expr, constants: Mapping[str, Word]) -> bool | None:
     for limit in (limit for each in limits.values() for limit in each if limit):
         words[limit.value].append(limit.word)
     samples = {value: _list_samples(each) for value, each in words.items() if len(each) > 1}
-    if not samples or prod(map(len, samples.values())) > _MAX_SAMPLES or _has_effect(test):
+    if not samples or prod(map(len, samples.values())) > _MAX_SAMPLES or has_effect(test):
         return None
     values = {
         _evaluate(test, dict(zip(samples, each, strict=True)), limits)
@@ -155,7 +155,7 @@ def _is_pure(call: ast.Call) -> bool:
     return False
 
 
-def _has_effect(test: ast.expr) -> bool:
+def has_effect(test: ast.expr) -> bool:
     """Return whether evaluating a condition may change a value in it."""
     return any(
         isinstance(node, ast.NamedExpr | ast.Await | ast.Yield | ast.YieldFrom)

@@ -233,4 +233,5 @@ def _describe_duration(numbers: Sequence[float | None]) -> str:
     seconds = numbers[-1] if numbers else None
     if seconds is None or seconds < _MIN_MS or seconds % 100:
         return ""
-    return f"on_for_seconds counts seconds, so this takes {seconds / 60:.0f} minutes: {seconds / 1000:g} s are {seconds:g} ms"
+    minutes = f"so this takes {seconds / 60:.0f} minutes"
+    return f"on_for_seconds counts seconds, {minutes}: {seconds / 1000:g} s are {seconds:g} ms"

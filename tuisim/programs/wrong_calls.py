@@ -9,7 +9,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.programs.moves import find_number
 
 _ERRORS = ("TypeError", "AttributeError", "AssertionError", "SpeedInvalid", "DeviceNotDefined")
-_PREDEFINED = {"tank_drive": "MoveTank", "tank_turn": "MoveSteering"}
+PREDEFINED = {"tank_drive": "MoveTank", "tank_turn": "MoveSteering"}
 _SPEEDS: Mapping[str, tuple[str, ...]] = {
     "MoveTank": ("left_speed", "right_speed"),
     "MoveDifferential": ("left_speed", "right_speed"),
@@ -95,7 +95,7 @@ def explain_call(tree: ast.Module, error: str, line: int) -> str:
     """
     if error.partition(":")[0].rpartition(".")[2] not in _ERRORS:
         return ""
-    classes = _find_classes(tree)
+    classes = find_classes(tree)
     for node in ast.walk(tree):
         match node:
             case ast.Call(
@@ -109,9 +109,9 @@ def explain_call(tree: ast.Module, error: str, line: int) -> str:
     return ""
 
 
-def _find_classes(tree: ast.Module) -> dict[str, str]:
+def find_classes(tree: ast.Module) -> dict[str, str]:
     """Return the classes of the variables and attributes for motors and pairs of motors, by name."""
-    classes = dict(_PREDEFINED)
+    classes = dict(PREDEFINED)
     for node in ast.walk(tree):
         match node:
             case ast.Assign(targets=[target], value=value):
@@ -188,8 +188,8 @@ def _describe_speeds(
     if speeds[0] == speeds[1]:
         return f"{text}: {move.format_call('0', speeds[0], *ends)} drives straight on"
     tanks = [name for name, class_name in classes.items() if class_name == "MoveTank"]
-    if move.owner not in _PREDEFINED:
-        tanks = [name for name in tanks if name not in _PREDEFINED]
+    if move.owner not in PREDEFINED:
+        tanks = [name for name in tanks if name not in PREDEFINED]
     call = f"{tanks[0]}.{move.method}({', '.join(words)})" if tanks else "a MoveTank"
     return f"{text}: {call} takes two"
 

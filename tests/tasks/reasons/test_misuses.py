@@ -172,3 +172,16 @@ def test_a_program_that_means_it_is_not_blamed(text: str) -> None:
     run = run_text(text, limit_s=10.0)
     assert find_reasons(run) == ()
     assert not any(describe_end(run).values())
+
+
+def test_a_stop_in_the_loop_that_needs_the_motors_comes_before_the_wait_in_vain() -> None:
+    text = (
+        "# %%sim_magic_preloaded -b Grey_bands\ntank_drive.on(20, 20)\n"
+        "while colorLeft.reflected_light_intensity_pc > 6:\n"
+        "    print(1)\n    tank_drive.off()\n"
+    )
+    first, wait, *_ = find_reasons(run_text(text))
+    assert (
+        "this stops the motors in the first pass of the loop: write tank_drive.off()" in first.words
+    )
+    assert wait.kind is ReasonKind.BLOCKED

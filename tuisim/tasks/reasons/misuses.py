@@ -9,7 +9,7 @@ import numpy as np
 
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.conditions import COMPARE
-from tuisim.programs import uses
+from tuisim.programs import idle_moves, uses
 from tuisim.programs.facts import LoopEnd
 from tuisim.tasks.reasons.run_data import RunData, Series, list_distinct
 from tuisim.tasks.reasons.unmet import Unmet, name_goal, round_value
@@ -192,6 +192,15 @@ def _describe_lone(data: RunData, stop: uses.LoneStop, tick: int) -> str:
         f"{text}; so line {stop.stop_line} did not stop what line {stop.start_line} started: "
         "a while loop asks until it comes"
     )
+
+
+def list_stopping_loops(data: RunData) -> Iterator[Unmet]:
+    """Yield a misuse for each stop in a loop that the run did not leave, as nothing moved the robot any more."""
+    lines = data.records["line"]
+    for line, text, loop in idle_moves.list_stopping_loops(data.facts.tree):
+        is_inside = (lines >= loop.start) & (lines < loop.stop)
+        if is_inside[-1] and not data.is_finished:
+            yield Unmet(int(is_inside.argmax()) / data.hz, line, text)
 
 
 # The following functions find assignments to a name that was not meant.

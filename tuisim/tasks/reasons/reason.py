@@ -152,11 +152,16 @@ _EFFECTS = frozenset({ReasonKind.BLOCKED, ReasonKind.LOST, ReasonKind.MISSED, Re
 
 
 def sort_by_cause(reasons: Sequence[Reason]) -> tuple[Reason, ...]:
-    """Return reasons of a run, sorted by rank, and within a rank by time.
+    """Return reasons of a run, sorted by rank, and within a rank by time, mistakes of the author first.
 
     The rank of a reason is its kind. If it may have caused a more important reason, it gets that reason's rank.
     """
-    return tuple(sorted(reasons, key=lambda reason: (_rank(reason, reasons), reason.time_s)))
+
+    def rank(reason: Reason) -> tuple[ReasonKind, float, bool]:
+        is_mistake = reason.kind is ReasonKind.MISTAKEN
+        return _rank(reason, reasons), reason.time_s, not is_mistake
+
+    return tuple(sorted(reasons, key=rank))
 
 
 def _rank(reason: Reason, reasons: Sequence[Reason]) -> ReasonKind:
@@ -316,6 +321,7 @@ def _find_mistaken(data: RunData) -> Iterator[Reason]:
             list_recounts,
         ),
         *(misuses.list_stale_reads, misuses.list_lone_stops, misuses.list_lost_values),
+        misuses.list_stopping_loops,
         *(named_aims.list_spins, named_aims.list_wrong_sides),
         *(named_aims.list_wrong_bands, named_aims.list_wrong_units),
     ):
@@ -337,8 +343,11 @@ def _find_slips(data: RunData) -> Iterator[Reason]:
         return
     cause = data.facts.explain_error(end.error, end.error_line)
     for line, text in data.facts.slips:
-        _, place = data.facts.find_place(line)
+        function, place = data.facts.find_place(line)
         is_there = (lines >= place.start) & (lines < place.stop)
+        if not (is_there.any() or function):
+            # The line took no time: the next line of the program's own that took some ran after it.
+            is_there = lines > place.start
         time_s = int(is_there.argmax()) / data.hz if is_there.any() else data.run.time_s
         # The error that ended the run may name the slip.
         if text != cause:
