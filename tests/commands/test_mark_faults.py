@@ -133,6 +133,27 @@ def test_the_page_of_marks_is_written_even_if_one_report_fails(
     assert "is without 1 report: zoltan: could not be judged" in capsys.readouterr().err
 
 
+DAMAGING = """\
+import os
+for fd in os.listdir("/proc/self/fd"):
+    try:
+        if os.readlink(f"/proc/self/fd/{fd}").endswith("NAME"):
+            os.pwrite(int(fd), b"\\xff", 8)
+    except OSError:
+        pass
+print("Done: 3")
+"""
+
+
+@pytest.mark.parametrize("name", ["commands.bin", "motors.bin", "readings.bin", ".bin"])
+def test_a_marking_is_no_failure_because_a_program_has_damaged_its_recording(
+    mark: Any, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.setitem(globals(), "GOALS", f"profile = 'ev3'\n{GOALS}")
+    code, rows = mark({**HONEST, "zoltan.py": DAMAGING.replace("NAME", name)}, keep="all")
+    assert code == 0 and rows["zoltan"][2] == "0.0"
+
+
 GRADEBOOKS = {
     "Ben Weiß_4713_assignsubmission_file_/lab/main.py": "open('log.txt', 'w')\nprint('Done: 2')\n",
     "Ben Weiß_4713_assignsubmission_onlinetext_/onlinetext.html": "<p>text</p>",

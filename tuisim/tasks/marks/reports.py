@@ -59,7 +59,8 @@ def write_reports(
 ) -> Iterator[Report]:
     """Write the reports of kept runs; yield each once it is written.
 
-    Runs of a student with equal recordings share one report. Runs that were removed from the store are left out.
+    Runs of a student with equal recordings share one report. Runs that were removed from the store, or whose recording
+    is damaged, are left out.
     Reports of an earlier page of this name are replaced. If a report cannot be made, its `fault` says why.
 
     Args:
@@ -102,6 +103,9 @@ def write_reports(
                 path = written[recorded]
             except ExportError:
                 raise
+            except LogError:
+                # The program has damaged its recording, which is no failure of the marking.
+                continue
             except Exception as error:  # Any error concerns this report only.
                 path = ""
                 fault = describe_fault(error)
