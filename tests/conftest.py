@@ -18,6 +18,7 @@ from hypothesis import HealthCheck, settings
 from tests.running import PATIENCE_S, Done, Run, Start, over
 from tuisim.base.atomic import make_private_folder
 from tuisim.base.folders import cache_folder
+from tuisim.base.memory import return_freed_blocks
 from tuisim.base.source import Program
 from tuisim.cli import run_command
 from tuisim.engine import mat_cache
@@ -72,6 +73,12 @@ def pytest_collection_finish() -> None:
     gc.freeze()
     gc.set_threshold(50_000, 20, 20)
     gc.enable()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _memory_of_earlier_tests_is_given_back() -> None:
+    """Keep as little freed memory as an app does: hundreds of them would keep gigabytes."""
+    return_freed_blocks()
 
 
 @pytest.fixture(scope="session", autouse=True)

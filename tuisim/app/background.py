@@ -20,6 +20,7 @@ from textual.worker import get_current_worker
 
 from tuisim.base.atomic import drop_unfinished, unfinished
 from tuisim.base.errors import TuisimError
+from tuisim.base.memory import return_freed_blocks
 from tuisim.terminal.textual_internals import is_leaving
 
 Made = TypeVar("Made")
@@ -119,9 +120,13 @@ def start(work: Callable[[], object]) -> None:
 
 
 def enter() -> None:
-    """Prepare Python's garbage collector for an app: existing objects are never collected, and collections are rare."""
+    """Prepare Python's memory for an app: existing objects are never collected, and collections are rare.
+
+    Large freed blocks are given back to the system; see `return_freed_blocks`.
+    """
     gc.freeze()
     gc.set_threshold(COLLECT_EVERY)
+    return_freed_blocks()
 
 
 def leave(code: int) -> int:
