@@ -125,6 +125,25 @@ TABLES: dict[str, Case] = {
         _OSCILLOSCOPE.encode(),
         Read(3, ("CH1 [Volt]", "CH2 [Volt]"), check=lambda log: times(log, "CH1 [Volt]")[0] == 0.5),
     ),
+    "settings beside the names": (
+        "a.csv",
+        b"X,CH1,Start,Increment,\nSequence,Volt,-6e-03,1e-06\n0,5,,\n1,6,,\n2,7,,\n",
+        Read(3, ("X [Sequence]", "CH1 [Volt]", "Start", "Increment")),
+    ),
+    "settings beside the first rows": (
+        "a.csv",
+        b"Length,3,,-1,5\n,,,0,6\n,,,1,7\n,,,2,8\n",
+        Read(
+            4,
+            ("column 2", "column 3", "column 5"),
+            check=lambda log: times(log, "column 5") == [-1, 0, 1, 2],
+        ),
+    ),
+    "names and units in comments": (
+        "a.csv",
+        b"#time,red\n#(s),(V)\n0,5\n1,6\n",
+        Read(2, ("red [V]",), check=lambda log: times(log, "red [V]") == [0, 1]),
+    ),
     "three lines of names, units and kinds": (
         "a.dat",
         _LOGGER.encode(),

@@ -29,7 +29,20 @@ UNIT = (
 """Regular expression of a unit as it stands in cells and below names, in lower case."""
 is_unit = re.compile(UNIT, re.IGNORECASE).fullmatch
 UNIT_WORDS = frozenset(
-    ("second", "volt", "volts", "amp", "ampere", "watt", "deg c", "degc", "ts", "rn", "units")
+    (
+        "second",
+        "volt",
+        "volts",
+        "amp",
+        "ampere",
+        "watt",
+        "deg c",
+        "degc",
+        "ts",
+        "rn",
+        "units",
+        "sequence",
+    )
 )
 """Further units in a row below names, such as an oscilloscope or a data logger writes it."""
 _UNIT = r"^(?P<number>.*\d\.?)(?P<gap>\s*)(?P<unit>%|°\w?|[€$£¥]|[A-Za-zµΩ][A-Za-z0-9µΩ²/]{0,7})$"

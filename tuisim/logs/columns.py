@@ -133,7 +133,7 @@ def find_epoch_unit_s(column: pa.ChunkedArray, unit_s: float | None) -> float | 
         column: The numbers.
         unit_s: The unit in seconds; None to guess it from the size of the numbers.
     """
-    numbers = convert_to_floats(column[:_JUDGED_TIMES])
+    numbers = convert_to_floats(column[:JUDGED_TIMES])
     first = next(iter(numbers[np.isfinite(numbers)]), 0.0)
     units: tuple[float, ...] = (1.0, 1e-3, 1e-6, 1e-9) if unit_s is None else (unit_s,)
     return next(
@@ -141,11 +141,11 @@ def find_epoch_unit_s(column: pa.ChunkedArray, unit_s: float | None) -> float | 
     )
 
 
-_JUDGED_TIMES = 1000
+JUDGED_TIMES = 1000
 _DAY_S = 86400.0
 _COUNTER = 2.0**32
 """After as many milliseconds or microseconds the counter of a microcontroller begins again."""
-_NO_ROWS: IntArray = np.empty(0, np.int64)
+NO_ROWS: IntArray = np.empty(0, np.int64)
 
 
 class Times(NamedTuple):
@@ -153,7 +153,7 @@ class Times(NamedTuple):
 
     seconds: FloatArray
     """Shape (n,); NaN where there is no time."""
-    wraps: IntArray = _NO_ROWS
+    wraps: IntArray = NO_ROWS
     """Rows, from 0, in which a clock or a counter began again at 0; from there on its period is added."""
     period: str = ""
     """The period in words, if there are wraps."""
@@ -437,10 +437,17 @@ def time_in_words(layout: Layout) -> str:
 
 
 def _find_rising(table: pa.Table) -> str:
-    """Return the name of the first column if its numbers rise and the table has no headings; else `ROW`."""
+    """Return the name of the first full column if its numbers rise and the table has no headings; else `ROW`."""
     names = table.column_names
     nameless = all(name == f"column {number}" for number, name in enumerate(names, 1))
-    return names[0] if nameless and len(names) > 1 and _is_rising(table, names[0]) else ROW
+    full = (name for name in names if not _has_empty_cells(table.column(name)))
+    first = next(full, names[0])
+    return first if nameless and len(names) > 1 and _is_rising(table, first) else ROW
+
+
+def _has_empty_cells(column: pa.ChunkedArray) -> bool:
+    is_empty_text = is_text(column.type) and pc.any(pc.equal(column.cast(pa.string()), "")).as_py()
+    return column.null_count > 0 or bool(is_empty_text)
 
 
 def is_text(kind: pa.DataType) -> bool:

@@ -151,8 +151,7 @@ def find_heading(
         row = header_row
         _tell_unread(table[1:start], "below the heading", notes)
     else:
-        if comments and (heading := _read_comment(comments[-1], table[0], separator)):
-            table = [heading, *table]
+        table = [*_read_comments(comments, table[0], separator), *table]
         run = _find_table(table)
         start = _find_first_row(table, run)
         names, above, start = _find_names(table, table[:start], start, run)
@@ -216,6 +215,19 @@ def _read_comment(comment: tuple[int, str], below: _Line, separator: str) -> _Li
     kinds = parse_kinds(names)
     is_heading = len(names) == len(below.cells) and is_words(kinds)
     return _Line(row, names, kinds, below.row) if is_heading else None
+
+
+def _read_comments(
+    comments: Sequence[tuple[int, str]], below: _Line, separator: str
+) -> list[_Line]:
+    """Return the last comment as `_read_comment` does; if it has units, after the comment above it with the names."""
+    headings = [_read_comment(comment, below, separator) for comment in comments[-2:]]
+    match headings:
+        case [_Line() as names, _Line() as units] if _has_units(units.cells, names):
+            return [names, units]
+        case [*_, _Line() as names]:
+            return [names]
+    return []
 
 
 def _tell_unread(lines: Sequence[_Line], where: str, notes: Notes) -> None:
@@ -410,6 +422,7 @@ def _find_names(
         run: The table's typical rows.
     """
     width = len(run.kinds)
+    above = [_leave_out_settings(line, run.kinds) for line in above]
     if above:
         *before, last = above
         if before and _has_gaps(last, before[-1]):
@@ -431,6 +444,23 @@ def _find_names(
     if _has_names(rows):
         return rows[0].cells, above, start + 1
     return None, above, start
+
+
+def _leave_out_settings(line: _Line, usual: str) -> _Line:
+    """Return a line above a table without numbers in columns that are empty in the table, such as a sampling period.
+
+    Empty cells beyond the width of the table are left out, too.
+
+    Args:
+        line: The line.
+        usual: The kinds of the table's typical rows.
+    """
+    width = len(usual)
+    if len(line.kinds) < width or set(line.kinds[width:]) - {"-"}:
+        return line
+    triples = zip(line.cells, line.kinds, usual, strict=False)
+    cells = ["" if (kind, below) == ("n", "-") else cell for cell, kind, below in triples]
+    return line._replace(cells=cells, kinds=parse_kinds(cells))
 
 
 def _join_unit(name: str, unit: str) -> str:

@@ -16,15 +16,13 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import convert_to_floats, read_numbers, wrap_int64
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
-from tuisim.logs.columns import ROW, Layout, read_times
+from tuisim.logs.columns import NO_ROWS, ROW, Layout, read_times
 from tuisim.logs.export import read_spec
 from tuisim.logs.time_order import keep_timed_rows
 from tuisim.logs.units import drop_run
 from tuisim.logs.warnings import Notes
 
 LogTable = pa.Table
-
-_NO_ROWS: IntArray = np.empty(0, np.int64)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +41,7 @@ class Member:
 
 def list_members(table: pa.Table, layout: Layout) -> list[Member]:
     """Return the variables of each run in a table, in order of first appearance."""
-    runs, codes = _encode_column(table.column(layout.run)) if layout.run else ([0], _NO_ROWS)
+    runs, codes = _encode_column(table.column(layout.run)) if layout.run else ([0], NO_ROWS)
     several = len(runs) > 1
     names: Sequence[Any] = [None]
     groups: Sequence[int] = range(len(runs))
@@ -68,7 +66,7 @@ def _build_member(name: object, run: Any, rows: IntArray | None, several: bool) 
     # Rows without a variable or a run belong to no series.
     number = int(run) if run is not None and isfinite(run) else 0
     if name is None or (several and number != run):
-        rows = _NO_ROWS
+        rows = NO_ROWS
     return Member(f"{name} #{number}" if several else str(name), str(name), number, rows)
 
 

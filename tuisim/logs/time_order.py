@@ -15,6 +15,7 @@ from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import convert_to_floats, make_names_unique, wrap_int64
 from tuisim.logs.columns import (
     COUNTS,
+    JUDGED_TIMES,
     ROW,
     UNITS_S,
     Layout,
@@ -33,7 +34,6 @@ _UNIT_NAME = re.compile(r"(.*?)[._ ]?([^\W_]+)")
 _RESTART_PART = 0.1
 """A time begins again if it goes back to this part of what had passed."""
 _MAX_RUNS = 1000
-_JUDGED_TIMES = 1000
 _MIN_STEPS = {1e-9: 1e7, 1e-6: 1e4, 1e-3: 5.0}
 """Smallest usual step of whole numbers by the unit in seconds: a robot samples every 5 ms to 10 s."""
 
@@ -95,7 +95,7 @@ def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
     ):
         return None
     times = convert_to_floats(table.column(layout.time))
-    times = times[np.isfinite(times)][:_JUDGED_TIMES]
+    times = times[np.isfinite(times)][:JUDGED_TIMES]
     if len(times) < 3 or (times != np.floor(times)).any():
         return None
     # A line with several samples gives as many rows with the same time.
