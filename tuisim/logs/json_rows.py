@@ -60,16 +60,18 @@ class ObjectReader:
             if not rows:
                 others.append(number)
         self._notes.add(f"line is not {self._singular}", f"lines are not {self._plural}", others)
-        return self.build_table(numbered_rows) if numbered_rows else None
+        return self.build_table(numbered_rows)
 
-    def build_table(self, numbered_rows: Sequence[tuple[int, Row]]) -> pa.Table:
-        """Return objects as a table.
+    def build_table(self, numbered_rows: Sequence[tuple[int, Row]]) -> pa.Table | None:
+        """Return objects as a table; None if they have no cells.
 
         Args:
             numbered_rows: The objects, each with its row in the file.
         """
         numbered_rows = [(number, dict(_list_cells(row, ""))) for number, row in numbered_rows]
         names = dict.fromkeys(name for _, cells in numbered_rows for name in cells)
+        if not names:
+            return None
         texts = {
             _escape_surrogates(str(name)) or _NAMELESS: pa.array(
                 [_format_cell(cells.get(name)) for _, cells in numbered_rows], pa.string()
@@ -194,7 +196,7 @@ class DocumentReader:
         self._notes.add(
             "value is not a row and was skipped", "values are not rows and were skipped", others
         )
-        return build_json_reader(self._notes).build_table(objects) if any(objects[0][1]) else None
+        return build_json_reader(self._notes).build_table(objects)
 
     def _build_from_lists(self, rows: Sequence[Any]) -> pa.Table | None:
         """Return a table of rows that are lists or single values; the first list may be the column names.
