@@ -6,6 +6,8 @@ import csv
 import re
 from typing import TYPE_CHECKING, Any
 
+from tuisim.engine.core.conditions import NUMBER
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -17,7 +19,7 @@ WRITTEN = f"^'({_RISKY})"
 """The beginning of a risky cell in a file; the group is its beginning once it is read."""
 
 _is_risky = re.compile(_RISKY).match
-_is_number = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?").fullmatch
+_is_number = re.compile(NUMBER).fullmatch
 
 
 def escape_formula(text: str) -> str:

@@ -89,7 +89,7 @@ class CsvReader:
             # In the usual, fast case every cell has the known type of its column.
             kinds = self._columns.list_plain()
             columns = self._parse_block(block.text, kinds) if kinds else None
-            if columns is None or any(map(_has_infinite, columns)):
+            if columns is None:
                 block, rest = self._cut_table(block)
                 if rest is not None and self._tables_left:
                     self._tables_left -= 1
@@ -252,10 +252,6 @@ class CsvReader:
 
 def _are_both_numbers(kind: str, other: str) -> bool:
     return kind == other and has_numbers(kind)
-
-
-def _has_infinite(cells: pa.Array) -> bool:
-    return is_floating(cells.type) and bool(pc.any(pc.is_inf(cells)).as_py())
 
 
 def _list_rows(block: Block) -> list[int]:
