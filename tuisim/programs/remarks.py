@@ -12,6 +12,7 @@ from tuisim.base.source import source_lines
 from tuisim.programs.moves import ANY_MOVE, STARTS, find_call, find_number
 from tuisim.programs.robot.words import is_forwards
 from tuisim.programs.waits import list_blocks
+from tuisim.programs.wrong_calls import find_classes
 
 _MAGIC = "sim_magic"
 """Lines with this set up the run: their names, such as those of mats, say nothing about the program."""
@@ -26,6 +27,7 @@ _OTHERS = re.compile(
 """Words with which a remark is not, or not only, about a black or white band."""
 _STRAIGHT = re.compile(r"\bstraight\b", re.IGNORECASE)
 _TURNS = re.compile(r"turn|spin|rotat|dance|circle|dreh|kreis|around", re.IGNORECASE)
+_CURVES = re.compile(r"curve|arc|bend|kurve|bogen|left|right|links|rechts|follow", re.IGNORECASE)
 _SIDES = {
     "left": re.compile(r"left|links", re.IGNORECASE),
     "right": re.compile(r"(?<!b)right|rechts", re.IGNORECASE),
@@ -76,9 +78,19 @@ class Remarks:
 
     def find_side(self, line: int) -> str:
         """Return the side to which a comment on a line, or one above it, says that the robot turns; empty for none."""
+        return _find_side(self._read_comment(line))
+
+    def has_straight_comment(self, line: int) -> bool:
+        """Return whether a comment on a line, or one above it, says that the robot drives straight on, and no more."""
+        text = self._read_comment(line).replace("rotations", "")
+        is_straight = is_forwards(text) or bool(_STRAIGHT.search(text))
+        return is_straight and not (_TURNS.search(text) or _CURVES.search(text))
+
+    def _read_comment(self, line: int) -> str:
+        """Return the comment on a line or, if there is none, the one above it; empty for none."""
         above = self._read_lines(line - 1, line - 1).strip()
         _, _, comment = self._read_lines(line, line).partition("#")
-        return _find_side(comment or (above if above.startswith("#") else ""))
+        return comment or (above if above.startswith("#") else "")
 
     def has_centimetres(self, line: int, number: float | None) -> bool:
         """Return whether a line, or the line above it, contains a number with the unit cm, such as `20 cm`."""
@@ -99,7 +111,7 @@ class NamedAim:
     aim: str
     """`straight`, `left` or `right`."""
     words: str
-    """The two speeds, which turn the wheels in opposite directions; of a turn, what says the side."""
+    """The two speeds, which turn the wheels in opposite directions; of a turn, what says the side; of a curve, why."""
 
 
 def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
@@ -119,6 +131,28 @@ def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
             if is_spin and (first in forwards or remarks.goes_straight(first.lineno)):
                 words = f"{speeds[0]:g} and {speeds[1]:g}"
                 yield NamedAim(first.lineno, last.end_lineno or last.lineno, "straight", words)
+
+
+def list_curves(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
+    """Yield moves whose first value is a steering, or lacks one, although a comment says that they drive straight."""
+    classes = find_classes(tree)
+    for node in ast.walk(tree):
+        match node:
+            case ast.Expr(value=ast.Call(func=ast.Attribute(value=owner), args=[_, _, *_])) if (
+                speeds := _list_speeds(node)
+            ):
+                words = _describe_curve(classes.get(ast.unparse(owner), ""), *speeds)
+                if words and remarks.has_straight_comment(node.lineno):
+                    yield NamedAim(node.lineno, node.end_lineno or node.lineno, "straight", words)
+
+
+def _describe_curve(class_name: str, first: float, second: float = 0.0) -> str:
+    """Return why a move with two numbers is no straight one; empty if it is, or if that is not known."""
+    if class_name == "MoveSteering" and first and second:
+        return "a MoveSteering takes the steering first, and 0 drives straight on"
+    if class_name == "MoveTank" and first != second and 0 in (first, second):
+        return "a MoveTank takes a speed for each wheel, and equal ones drive straight on"
+    return ""
 
 
 def _find_side(text: str) -> str:

@@ -26,6 +26,14 @@ MISSED = {
         f"{BANDS}# straight on\ntank_drive.on_for_seconds(30, -30, 1)\n",
         "line 4: the robot turned on the spot here, by 80°",
     ),
+    "two speeds for a steering": (
+        f"{BANDS}# straight on for 3 rotations\ntank_turn.on_for_rotations(30, 30, 3)\n",
+        "line 4: the robot turned by 101° here: a MoveSteering takes the steering first, and 0 drives",
+    ),
+    "a steering for two speeds": (
+        f"{BANDS}tank_drive.on_for_rotations(0, 30, 1)  # forward\n",
+        "here: a MoveTank takes a speed for each wheel, and equal ones drive straight on",
+    ),
     "the function turns to the other side": (
         f"{BANDS}def turn_left():\n    tank_drive.on_for_degrees(30, -30, 289)\n\nturn_left()\n",
         "line 3: turn_left says left, but the robot turned right here, by 90°: swap the signs",
@@ -65,6 +73,10 @@ def test_what_a_run_did_otherwise_than_its_words_say_is_told(text: str, words: s
         + "tank_drive.off()\nprint('I am on black')\n",
         "a long move": f"{BANDS}tank_drive.on_for_seconds(5, 5, 120)\n",
         "a long pause": f"{BANDS}tank_drive.on_for_seconds(5, 5, 1)\ntime.sleep(1000)\n",
+        "a curve": f"{BANDS}# forward in a curve\ntank_turn.on_for_rotations(30, 30, 3)\n",
+        "to the left": f"{BANDS}# straight to the left\ntank_turn.on_for_rotations(30, 30, 3)\n",
+        "no comment": f"{BANDS}tank_turn.on_for_rotations(30, 30, 3)\n",
+        "a correction": f"{BANDS}# straight on\ntank_turn.on_for_rotations(2, 30, 3)\n",
         "a turn": f"{BANDS}# turn right\ntank_drive.on_for_seconds(30, -30, 1)\n",
         "a right angle": f"{BANDS}# turn by a right angle\ntank_turn.on_for_degrees(-100, 30, 289)\n",
         "a turn back": f"{BANDS}def turn_left(deg):\n    tank_turn.on_for_degrees(-100, 30, deg)\n\nturn_left(-289)\n",

@@ -112,6 +112,19 @@ def list_spins(data: RunData) -> Iterator[Unmet]:
                 yield Unmet(start / data.hz, spin.first_line, text)
 
 
+def list_curves(data: RunData) -> Iterator[Unmet]:
+    """Yield a fault for each move in a curve at a place where a comment says that the robot drives straight on."""
+    lines = data.records["line"]
+    for curve in remarks.list_curves(data.facts.tree, data.facts.remarks):
+        for start, end in find_spans(
+            (lines >= curve.first_line) & (lines <= curve.last_line + 1)
+        ).tolist():
+            turned_deg = float(np.ptp(data.records["heading_deg"][start:end]))
+            if turned_deg >= _MIN_TURN_DEG:
+                text = f"the robot turned by {turned_deg:.0f}° here: {curve.words}"
+                yield Unmet(start / data.hz, curve.first_line, text)
+
+
 def list_wrong_sides(data: RunData) -> Iterator[Unmet]:
     """Yield a fault for each part of the program that turns the robot to the wrong side whenever it runs.
 

@@ -322,7 +322,7 @@ def _find_mistaken(data: RunData) -> Iterator[Reason]:
         ),
         *(misuses.list_stale_reads, misuses.list_lone_stops, misuses.list_lost_values),
         misuses.list_stopping_loops,
-        *(named_aims.list_spins, named_aims.list_wrong_sides),
+        *(named_aims.list_spins, named_aims.list_curves, named_aims.list_wrong_sides),
         *(named_aims.list_wrong_bands, named_aims.list_wrong_units),
     ):
         if mistake := find_first(search, data):
