@@ -215,18 +215,27 @@ class LessonController:
             finally:
                 self._follow(change)
 
+    def describe_missing_step(self) -> str:
+        """Return in words why there is no step now, and which key helps."""
+        return (
+            "The lesson is done: {lesson-menu} opens another"
+            if self.lesson
+            else "No lesson is open: {lesson-menu} opens one"
+        )
+
     def show_hint(self) -> None:
         """Show the next hint for the step of the lesson."""
         session = self.session
         step = self.step
         if session is None or step is None:
+            self._app.say(self.describe_missing_step())
             return
         if session.hints < len(step.hints):
             session.show_hint()
             self._follow(Change.SHOW)
         else:
             self._app.say(
-                "There are no more hints. M skips the step"
+                "There are no more hints. {lesson-menu} skips the step"
                 if session.hints
                 else "This step has no hints"
             )

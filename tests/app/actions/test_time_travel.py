@@ -333,3 +333,13 @@ async def test_a_line_that_another_follows_in_its_tick_is_not_said_to_wait_for_i
         await pilot.press("comma", "full_stop")
         await until(pilot, lambda: app.debugger.current_line == 2)
         assert "outB" in app.debugger.view.inspected.waiting
+
+
+async def test_keys_that_go_back_at_the_first_line_say_that_it_is_the_first() -> None:
+    async with open_lab("import time\ntime.sleep(1)\n", speed=0.0) as (pilot, app):
+        await pilot.press("n")
+        await until_state(pilot, RunPhase.PAUSED)
+        await pilot.press("home")
+        assert "This is the start of the run" in notices(app)
+        await pilot.press("N")
+        await until(pilot, lambda: "This is the first line of the run" in notices(app))

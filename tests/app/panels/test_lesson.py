@@ -380,3 +380,9 @@ async def test_arrow_keys_move_the_robot_when_another_lesson_begins(tmp_path: Pa
         assert code is not None and code.has_focus_within
         app.lesson.open("sensor-eyes")
         await until(pilot, lambda: app.focused is app.panel_area.world)
+
+
+async def test_the_key_for_a_hint_says_that_no_lesson_is_open() -> None:
+    async with open_lab("pass\n") as (pilot, app):
+        await pilot.press("Y")
+        assert "No lesson is open: M opens one" in notices(app)

@@ -330,9 +330,7 @@ def _build_travel_actions() -> list[LabAction]:
             _can_ask_why,
             "wrong?",
         ),
-        Action(
-            "start-of-run", "home", "Start of the run", TIME, partial(go.go_to_tick, tick=0), back
-        ),
+        Action("start-of-run", "home", "Start of the run", TIME, go.go_to_start, back),
     ]
 
 

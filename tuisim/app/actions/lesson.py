@@ -28,13 +28,10 @@ def answer(context: ActionContext) -> None:
     lesson = context.lesson
     step = lesson.step
     if step is None or not isinstance(step.check, LessonQuestion):
-        words = (
-            "The lesson is done: {lesson-menu} opens another"
-            if lesson.lesson
-            else "No lesson is open: {lesson-menu} opens one"
-        )
         context.app.say(
-            "This step has no question: the lesson panel says what it waits for" if step else words
+            "This step has no question: the lesson panel says what it waits for"
+            if step
+            else lesson.describe_missing_step()
         )
         return
     forms = [(f"{number}", choice) for number, choice in enumerate(step.check.choices, start=1)]

@@ -91,9 +91,17 @@ def skip_ticks(context: ActionContext, ticks: int) -> None:
     timeline = context.runs.timeline
     tick = timeline.tick
     if ticks < 0 and tick <= 0:
-        context.app.say("This is the start of the run")
+        go_to_start(context)
         return
     go_to_tick(context, tick + ticks if tick + ticks < timeline.newest else None)
+
+
+def go_to_start(context: ActionContext) -> None:
+    """Go to the first instant of the run; if it is in view already, show a notice."""
+    if context.runs.timeline.tick <= 0 and not context.debugger.is_away:
+        context.app.say("This is the start of the run")
+    else:
+        go_to_tick(context, 0)
 
 
 def step_tick(context: ActionContext) -> None:

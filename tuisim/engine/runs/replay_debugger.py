@@ -280,6 +280,7 @@ class ReplayDebugger:
             self._back = 0
             assert self.run is not None
             self.run.send(self._request)
+            self._failed("This is the first line of the run")
             return
         self._back = 0
         # If lines are traced from the same tick on as before, each has the same ordinal again.
