@@ -9,7 +9,6 @@ from functools import cache
 from importlib import import_module
 
 from tuisim.base.errors import closest
-from tuisim.base.source import PRELUDE_TEXTS
 
 _MAX_NAMES = 3
 _MIN_LETTERS = 3
@@ -19,6 +18,23 @@ _ON = frozenset({"backward", "drive", "forward", "forwards", "go", "move", "stra
 """Wrong names of a method for which `on` may be meant: what a motor does while it is on."""
 _WELL_KNOWN = ("time", "random", "math", "statistics", "threading", "datetime")
 """Modules of the standard library that programs for robots use, in the order in which a name is looked for."""
+_EV3DEV2 = {
+    "ev3dev2.motor": "LargeMotor MediumMotor Motor MoveDifferential MoveJoystick MoveSteering MoveTank "
+    "OUTPUT_A OUTPUT_B OUTPUT_C OUTPUT_D "
+    "SpeedDPM SpeedDPS SpeedNativeUnits SpeedPercent SpeedRPM SpeedRPS",
+    "ev3dev2.sensor": "INPUT_1 INPUT_2 INPUT_3 INPUT_4",
+    "ev3dev2.sensor.lego": "ColorSensor GyroSensor InfraredSensor LightSensor SoundSensor TouchSensor "
+    "UltrasonicSensor",
+    "ev3dev2.button": "Button",
+    "ev3dev2.console": "Console",
+    "ev3dev2.display": "Display",
+    "ev3dev2.led": "Leds",
+    "ev3dev2.power": "PowerSupply",
+    "ev3dev2.sound": "Sound",
+    "ev3dev2.wheel": "EV3EducationSetRim EV3EducationSetTire EV3Rim EV3Tire",
+    "ev3dev2_glue": "get_clock",
+}
+"""Names of the library by their modules."""
 
 
 def find_meant_names(wrong: str, names: Set[str]) -> list[str]:
@@ -51,13 +67,8 @@ def _find_shortest(names: Sequence[str]) -> list[str]:
 
 @cache
 def map_modules() -> Mapping[str, str]:
-    """Return the names that the prelude `imports` imports for a program, each with its module.
-
-    A prelude is a text that runs before a program and defines names for it.
-    """
-    lines = PRELUDE_TEXTS["imports"].removeprefix("from ").split("\nfrom ")
-    imports = (line.strip().split(" import ") for line in lines)
-    return {name: module for module, names in imports for name in names.split(", ")}
+    """Return the names of `ev3dev2` that programs use, each with its module."""
+    return {name: module for module, names in _EV3DEV2.items() for name in names.split()}
 
 
 @cache

@@ -45,6 +45,19 @@ HINTS = {
         "class Mine:\n    light_left = 1\nMine().light",
         "'Mine' object has no attribute 'light'",
     ),
+    "a text for a number of rotations": (
+        "n = ' 2 '\ntank_drive.on_for_rotations(20, 20, n)",
+        "can't multiply sequence by non-int of type 'float'. n is a text: float(n) is its number",
+    ),
+    "a text for a speed, in a function": (
+        "def go(speed):\n    tank_drive.on(SpeedPercent(speed), 20)\ngo('-3.5')",
+        "'<' not supported between instances of 'str' and 'int'. "
+        "speed is a text: float(speed) is its number",
+    ),
+    "a text that is no number, for a speed": (
+        "speed = 'fast'\ntank_drive.on(SpeedPercent(speed), 20)",
+        "'<' not supported between instances of 'str' and 'int'",
+    ),
     "text and a list": ("'a' + []", 'can only concatenate str (not "list") to str'),
 }
 
@@ -63,6 +76,10 @@ IMPORTS = {
     "a class of ev3dev2": (
         "MoveTank",
         "Did you forget `from ev3dev2.motor import MoveTank`?",
+    ),
+    "a class that the predefined names lack": (
+        "LargeMotor",
+        "Did you forget `from ev3dev2.motor import LargeMotor`?",
     ),
     "a name like one of the program": (
         "MoveTonk = 1\nMoveTank",

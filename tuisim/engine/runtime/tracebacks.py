@@ -64,11 +64,11 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
             )
         if alone:
             trace.__cause__ = trace.__context__ = trace.__notes__ = None
-        else:
-            if sys.version_info < (3, 12):
-                _add_suggestions(trace, error)
-            add_hint(trace, error)
+        elif sys.version_info < (3, 12):
+            _add_suggestions(trace, error)
         chain = _keep_program_frames(trace, own_files(file))
+        if not alone:
+            _add_hint(trace, error)
         text = _format_chain(chain)
         summary = _summarize(trace)
     except Exception as problem:
@@ -294,6 +294,8 @@ _TEXT_AND_NUMBER = re.compile(
     r"|unsupported operand type\(s\) for \+: '(?:int|float)' and 'str'"
 )
 
+_MAY_BE_TEXT = re.compile("'str'|by non-int")
+_NUMBER = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)\s*")
 _NO_FUNCTION = re.compile(r"'(?:int|float|str|bool)' object is not callable")
 _EMPTY_CALL = re.compile(r"\.(\w+)\(\)")
 """A call of an attribute without arguments."""
@@ -301,11 +303,11 @@ _MAX_MEMBERS = 12
 """An enumeration with more members is not listed."""
 
 
-def add_hint(trace: Any, error: BaseException) -> None:
+def _add_hint(trace: Any, error: BaseException) -> None:
     """Add a hint to the message of an error, unless Python has already suggested something.
 
     Args:
-        trace: The error as a `traceback.TracebackException`.
+        trace: The error as a `traceback.TracebackException`, with the program's frames only.
         error: The error itself.
     """
     hint = ""
@@ -318,9 +320,28 @@ def add_hint(trace: Any, error: BaseException) -> None:
     elif type(error) is TypeError and _NO_FUNCTION.fullmatch(str(trace._str)) and trace.stack:
         names = _EMPTY_CALL.findall(trace.stack[-1].line or "")
         hint = f"{names[0]} is a value: leave out the ()" if len(names) == 1 else ""
+    elif type(error) is TypeError and _MAY_BE_TEXT.search(str(trace._str)) and trace.stack:
+        hint = _find_text(error, trace.stack[-1])
     if hint:
         words = str(trace._str)
         trace._str = f"{words}{'' if words.endswith('?') else '.'} {hint}"
+
+
+def _find_text(error: BaseException, last: traceback.FrameSummary) -> str:
+    """Return which variable in the line of an error is a text with a number, as `input` returns it; empty if none.
+
+    Args:
+        error: The error.
+        last: The frame that raised it, of the program.
+    """
+    for frame, line in traceback.walk_tb(error.__traceback__):
+        if (frame.f_code.co_filename, line) == (last.filename, last.lineno):
+            values = frame.f_globals | frame.f_locals
+            for name in re.findall(r"\w+", last.line or ""):
+                value = values.get(name)
+                if type(value) is str and _NUMBER.fullmatch(value):
+                    return f"{name} is a text: float({name}) is its number"
+    return ""
 
 
 def _find_meant(error: AttributeError) -> str:
