@@ -101,6 +101,17 @@ def test_the_last_line_says_that_the_robot_left_the_field(tmp_path: Path, here: 
     assert not near["left_field"]
 
 
+def test_the_last_line_says_that_the_robot_is_off_a_mat_whose_walls_it_passes(
+    tmp_path: Path, here: Command
+) -> None:
+    (tmp_path / "push.py").write_text(PUSHES)
+    ends = [
+        here("run", "push.py", "--profile", "robolab", "-x", x_mm).stderr.splitlines()[-1]
+        for x_mm in ("2200", "1000")
+    ]
+    assert [" · off the mat · " in end for end in ends] == [True, False]
+
+
 def test_program_that_raises_shows_its_own_lines_only_and_keeps_its_rows(
     tmp_path: Path, here: Command
 ) -> None:
