@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from math import isfinite
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pyarrow as pa
@@ -22,7 +22,7 @@ from tuisim.logs.time_order import keep_timed_rows
 from tuisim.logs.units import drop_run
 from tuisim.logs.warnings import Notes
 
-LogTable = pa.Table
+LogTable: TypeAlias = pa.Table
 
 
 @dataclass(frozen=True, slots=True)
