@@ -68,7 +68,6 @@ class ObjectReader:
         Args:
             numbered_rows: The objects, each with its row in the file.
         """
-        numbered_rows = [(number, dict(_list_cells(row, ""))) for number, row in numbered_rows]
         names = dict.fromkeys(name for _, cells in numbered_rows for name in cells)
         if not names:
             return None
@@ -126,7 +125,8 @@ def _parse_rows(line: str) -> list[dict[str, Any]]:
     """Return the object in a line, or the objects in its list; empty for other lines."""
     value = _parse_value(line)
     rows = value if isinstance(value, list) else [value]
-    return rows if all(isinstance(row, dict) for row in rows) else []
+    are_objects = all(isinstance(row, dict) for row in rows)
+    return [dict(_list_cells(row, "")) for row in rows] if are_objects else []
 
 
 def is_json_start(lines: Sequence[str]) -> bool:
@@ -189,7 +189,11 @@ class DocumentReader:
             raise LogError(
                 f"is a single JSON value, {shortened(json.dumps(value), 40)}, not a table", _ALLOWED
             )
-        objects = [(number, row) for number, row in enumerate(value, 1) if isinstance(row, dict)]
+        objects = [
+            (number, dict(_list_cells(row, "")))
+            for number, row in enumerate(value, 1)
+            if isinstance(row, dict)
+        ]
         if not objects:
             return self._build_from_lists(value)
         others = [number for number, row in enumerate(value, 1) if not isinstance(row, dict)]
