@@ -144,6 +144,11 @@ TABLES: dict[str, Case] = {
         b"#time,red\n#(s),(V)\n0,5\n1,6\n",
         Read(2, ("red [V]",), check=lambda log: times(log, "red [V]") == [0, 1]),
     ),
+    "a time that is missing among the samples": (
+        "a.txt",
+        b"t=None,red=4\nt=1,red=5\nt=2,red=6\n",
+        Read(2, note="1 row has no time", check=lambda log: times(log) == [1, 2]),
+    ),
     "three lines of names, units and kinds": (
         "a.dat",
         _LOGGER.encode(),

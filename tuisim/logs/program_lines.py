@@ -5,9 +5,11 @@ The printed lines of a run become samples in `engine/runs/samples.py`, which rea
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 from tuisim.engine.core.conditions import NUMBER
@@ -24,8 +26,8 @@ from tuisim.logs.warnings import Notes
 _LEVEL = r"(?:DEBUG|INFO|WARN(?:ING)?|ERROR|CRITICAL)"
 _STAMPED = re.compile(
     rf"\s*(?:\[?{_LEVEL}\]?:? +|[DEIVW] (?=\())?"
-    rf"(?:(?P<open>[\[(<])\s*)?(?:{MONTH} +\d{{1,2}} )?(?P<stamp>(?>{MOMENT})|(?>{NUMBER}))"
-    r"(?:\s?(?P<unit>[mu]?s)(?=\]))?(?(open)\s*[\])>])"
+    rf"(?:(?P<open>[\[(<])\s*)?(?:{MONTH} +\d{{1,2}} )?(?P<stamp>(?>{MOMENT})|(?>{NUMBER})"
+    r"(?:\s?(?P<unit>[mu]?s)(?=\]))?)(?(open)\s*[\])>])"
     r"(?P<between>\s*(?::(?!\d\d[.;,\t])|->|=>|=|-(?= ))\s*| +|(?<=[\])>]))(?P<rest>\S.*?)\s*"
 )
 _PREFIX = re.compile(
@@ -81,14 +83,22 @@ def parse_line(line: str) -> ProgramLine | None:
         return ProgramLine(float(teleplot[2]) / 1000, ((teleplot[1], teleplot[3]),))
     time, rest, certain = _split_time(line.strip())
     if samples := _ITEM.findall(_strip_prefixes(rest, _ITEMS)):
-        first, unit_s = parse_time_name(samples[0][0])
-        if time is None and len(samples) > 1 and first in _TIME_NAMES:
-            seconds = float(samples[0][1]) * (unit_s or 1.0)
+        unit_s = _find_time_unit_s(samples[0][0]) if time is None and len(samples) > 1 else None
+        if unit_s is not None:
+            number = samples[0][1]
+            seconds = float(number) * unit_s if re.fullmatch(NUMBER, number) else math.nan
             return ProgramLine(seconds, samples[1:])
         return ProgramLine(time, samples)
     # If it is not certain that the first number is a time, it may be a value: numbers are then not read.
     numbers = _strip_prefixes(rest, _VALUES) if certain else ""
     return ProgramLine(time, (), numbers) if numbers else None
+
+
+@lru_cache(maxsize=100)
+def _find_time_unit_s(name: str) -> float | None:
+    """Return the unit in seconds if the name of a sample means a time; else None."""
+    base, unit_s = parse_time_name(name)
+    return unit_s or 1.0 if base in _TIME_NAMES else None
 
 
 def _split_time(line: str) -> tuple[str | None, str, bool]:
@@ -102,7 +112,7 @@ def _split_time(line: str) -> tuple[str | None, str, bool]:
     # If only blanks separate two numbers, they may be cells of a row, so the first is not certainly a time.
     stamp = match["stamp"]
     if match["unit"]:
-        stamp = str(float(stamp) * UNITS_S[match["unit"]])
+        stamp = str(float(stamp.removesuffix(match["unit"])) * UNITS_S[match["unit"]])
     return stamp, match["rest"], bool(match["open"] or match["between"].strip())
 
 
