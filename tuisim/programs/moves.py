@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from math import copysign
 from typing import TypeGuard
@@ -176,18 +176,25 @@ _PAIRS = re.compile("Move[A-Z]|DriveBase|tank_|steering_")
 """How the names begin of what moves both wheels with one call."""
 
 
-def list_parted_moves(tree: ast.Module) -> Iterator[PartedMove]:
-    """Yield each two successive calls in a loop that move two motors equally, if the first call waits for its end.
+def list_parted_moves(tree: ast.Module, is_straight: Callable[[int], bool]) -> Iterator[PartedMove]:
+    """Yield each two successive calls that move two motors equally, if the first call waits for its end.
 
-    Programs that also move both wheels by one call, and loops with no other statements, are left out: they probably
-    move one wheel alone on purpose.
+    They are in a loop with other statements, or a comment says that they drive straight on. Programs that also move
+    both wheels by one call are left out: they probably move one wheel alone on purpose.
+
+    Args:
+        tree: The program.
+        is_straight: Returns whether a comment says of a line that the robot drives straight on.
     """
     nodes = [*ast.walk(tree)]
     if any(isinstance(node, ast.Name) and _PAIRS.match(node.id) for node in nodes):
         return
-    loops = [node.body for node in nodes if isinstance(node, ast.For | ast.While)]
-    for block in loops:
-        for first, second in pairwise(block if len(block) > 2 else ()):
+    loops = {id(node.body) for node in nodes if isinstance(node, ast.For | ast.While)}
+    for block in list_blocks(tree):
+        is_loop = len(block) > 2 and id(block) in loops
+        for first, second in pairwise(block):
+            if not (is_loop or is_straight(first.lineno)):
+                continue
             match first, second:
                 case (
                     ast.Expr(value=ast.Call(func=ast.Attribute(value=motor, attr=method)) as move),

@@ -103,6 +103,10 @@ PARTED = {
         f"{MOTORS}{LOOP}left.on_for_degrees(30, 360)\n    right.on_for_degrees(30, 360)\n",
         "line 8: on_for_degrees waits until this wheel is done before line 9 moves the other one: block=False",
     ),
+    "a comment": (
+        f"{MOTORS}# straight for 2 rotations\nleft.on_for_rotations(30, 1)\nright.on_for_rotations(30, 1)\n",
+        "on_for_rotations waits until this wheel is done before line",
+    ),
 }
 
 
@@ -114,6 +118,8 @@ def test_a_straight_way_that_is_driven_wheel_after_wheel_is_named(text: str, wor
 @cases(
     "text",
     {
+        "a comment on something else": "# test each motor\nleft.on_for_degrees(30, 360)\n"
+        "right.on_for_degrees(30, 360)\n",
         "a test of each": "left.on_for_degrees(30, 360)\nright.on_for_degrees(30, 360)\n",
         "together": f"{LOOP}left.on_for_degrees(30, 360, block=False)\n    right.on_for_degrees(30, 360)\n",
         "different angles": f"{LOOP}left.on_for_degrees(30, 360)\n    right.on_for_degrees(30, 180)\n",

@@ -98,7 +98,8 @@ def list_parted_moves(data: RunData) -> Iterator[Unmet]:
     Args:
         data: The run.
     """
-    for pair in moves.list_parted_moves(data.facts.tree):
+    is_straight = data.facts.remarks.has_straight_comment
+    for pair in moves.list_parted_moves(data.facts.tree, is_straight):
         stays, next_stays = (
             find_spans(data.records["line"] == line) for line in (pair.first_line, pair.next_line)
         )
