@@ -232,3 +232,30 @@ def test_a_function_that_is_named_but_not_called_is_told(
     text: str, uncalled: tuple[int, str] | None
 ) -> None:
     assert find_slip(text) == uncalled
+
+
+@cases(
+    "text, slip",
+    {
+        "in capitals": (
+            "eye = ColorSensor(Port.S2)\nwhile eye.color() != 'BLACK':\n    go()\n",
+            (2, "a text equals no colour: write Color.BLACK"),
+        ),
+        "a number": (
+            "if colorLeft.color == 'Red':\n    go()\n",
+            (1, "color is a number: color_name is the word"),
+        ),
+        "a wait": ("while colorLeft.color != 'Red':\n    go()\n", None),
+        "a name": ("if colorLeft.color_name == 'Red':\n    go()\n", None),
+        "of something else": ("card = Card('red')\nif card.color == 'red':\n    go()\n", None),
+        "an own sensor": (
+            "class ColorSensor:\n    color = 'Red'\neye = ColorSensor()\nif eye.color == 'Red':\n    go()\n",
+            None,
+        ),
+        "an own name": ("colorLeft = Card('red')\nif colorLeft.color == 'red':\n    go()\n", None),
+    },
+)  # fmt: skip
+def test_a_colour_that_is_compared_with_a_text_is_told(
+    text: str, slip: tuple[int, str] | None
+) -> None:
+    assert find_slip(text) == slip

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from tuisim.base.source import PYBRICKS, find_encoding
 from tuisim.programs.comparisons import is_set
 from tuisim.programs.moves import ANY_MOVE, STOPS
+from tuisim.programs.questions import COLOR_WORDS
 from tuisim.programs.wrong_calls import explain_call
 
 
@@ -40,6 +41,7 @@ def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
         _find_idle_comparison,
         _find_missing_return,
         _find_short_wait,
+        _find_colour_text,
     ):
         if slip := find_slip(tree):
             yield slip
@@ -372,6 +374,43 @@ def _find_short_wait(tree: ast.Module) -> tuple[int, str] | None:
                     text = f"wait({ms}) waits only {ms} ms: wait({ms * 1000:g}) waits {ms} s"
                     return wait.lineno, text
     return None
+
+
+def _find_colour_text(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first comparison of a colour that is no text with a text, and a description; None if there is none.
+
+    A `while` that compares so is left out, unless the text is in capitals: the run shows what it waited for.
+    """
+    nodes = [*ast.walk(tree)]
+    waits = [node.test for node in nodes if isinstance(node, ast.While)]
+    stored = {node.id for node in nodes if isinstance(node, ast.Name) and is_set(node)}
+    eyes = {"colorLeft", "colorRight"} - stored
+    for node in nodes:
+        match node:
+            case ast.Assign(targets=[target], value=ast.Call(func=func)) if (
+                _name_function(func) == "ColorSensor"
+            ):
+                eyes.add(ast.unparse(target))
+    lines: list[tuple[int, str]] = []
+    for node in nodes:
+        match node:
+            case ast.ClassDef(name="ColorSensor"):
+                return None
+            case ast.Compare(
+                left=ast.Attribute(value=eye, attr="color")
+                | ast.Call(func=ast.Attribute(value=eye, attr="color"), args=[]) as color,
+                ops=[ast.Eq() | ast.NotEq()],
+                comparators=[ast.Constant(value=str() as text)],
+            ) if (
+                ast.unparse(eye) in eyes
+                and text.lower() in COLOR_WORDS.values()
+                and (node not in waits or text.isupper())
+            ):
+                words = "color is a number: color_name is the word"
+                if isinstance(color, ast.Call):
+                    words = f"a text equals no colour: write Color.{text.upper()}"
+                lines.append((node.lineno, words))
+    return min(lines, default=None)
 
 
 def _is_print(call: ast.expr | None) -> bool:
