@@ -147,3 +147,34 @@ def test_a_condition_of_thousands_of_parts_takes_no_time() -> None:
     tests = " or ".join(f"x == {number}" for number in range(1000))
     branches = "".join(f"elif x == {number}:\n    b{number}()\n" for number in range(1000))
     assert list_texts(f"if {tests}:\n    a()\n{branches}") == []
+
+
+READS = (
+    "left = colorLeft.reflected_light_intensity_pc\n"
+    "right = colorRight.reflected_light_intensity_pc\n"
+)
+
+
+@cases(
+    "text, words",
+    {
+        "a reading": (
+            f"{READS}while left and right > 6:\n    go()\n",
+            ["left alone is no comparison, and mostly true: write left > 6"],
+        ),
+        "a sensor": (
+            "while colorLeft and colorRight.color > 6:\n    go()\n",
+            ["colorLeft alone is no comparison, and mostly true: write colorLeft.color > 6"],
+        ),
+        "a sensor that may be missing": (
+            "eye = None\neye = ColorSensor()\nif eye and gyro.angle > 6:\n    go()\n",
+            [],
+        ),
+        "the same sensor": ("eye = ColorSensor()\nif eye and eye.color > 6:\n    go()\n", []),
+        "a flag": (f"{READS}left = True\nif left and right > 6:\n    go()\n", []),
+        "another kind": (f"{READS}deg = gyro.angle\nif deg and right > 6:\n    go()\n", []),
+        "a parameter": ("def f(gyro):\n    if gyro and colorLeft.color > 6:\n        go()\n", []),
+    },
+)  # fmt: skip
+def test_a_sensor_beside_the_comparison_of_another_one_is_told(text: str, words: list[str]) -> None:
+    assert list_texts(text) == words

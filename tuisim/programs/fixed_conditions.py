@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import ast
-from collections import defaultdict
+import re
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations, islice, pairwise, product
 from math import prod
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.conditions import COMPARE
-from tuisim.programs.comparisons import find_constant
+from tuisim.programs.comparisons import find_constant, is_set
 from tuisim.programs.mistakes import READ_METHODS
 from tuisim.programs.questions import Word
 from tuisim.programs.robot.source import SIGNS, TURNED
@@ -57,6 +58,7 @@ def list_fixed_conditions(
     nodes = [*ast.walk(tree)]
     for lines in (
         _list_lone_words(nodes),
+        _list_lone_names(nodes),
         _list_fixed(nodes, constants),
         _list_unreached(nodes, constants),
     ):
@@ -293,6 +295,56 @@ def _list_lone(test: ast.expr) -> Iterator[tuple[int, str]]:
                         word.lineno,
                         f"{ast.unparse(word)} alone is true, {always}: write {name} {question}",
                     )
+
+
+_NUMBERS = re.compile(r"reflect|distance|angle|ambient|heading")
+_SENSORS = ("colorLeft", "colorRight", "ultrasonic", "gyro")
+
+
+def _list_lone_names(nodes: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
+    """Yield the lines with a sensor or reading beside the comparison of another one, such as `left and right < 9`."""
+    sources = _find_sources(nodes)
+    for node in nodes:
+        match node:
+            case ast.BoolOp(values=[ast.Name(id=name), *parts]) if sources.get(name):
+                for part in parts:
+                    match part:
+                        case ast.Compare(
+                            left=ast.Name(id=other) | ast.Attribute(value=ast.Name(id=other))
+                        ) if other != name and sources.get(other) == sources[name]:
+                            question = re.sub(rf"\b{other}\b", name, ast.unparse(part), count=1)
+                            text = (
+                                f"{name} alone is no comparison, and mostly true: write {question}"
+                            )
+                            yield node.lineno, text
+
+
+def _find_sources(nodes: Sequence[ast.AST]) -> dict[str, str]:
+    """Return what each variable always holds, by name: a sensor of a class, or numbers read by a method or property.
+
+    Variables that may hold anything else are left out, or have an empty text.
+    """
+    sources = dict.fromkeys(_SENSORS, "Sensor")
+    values: dict[str, list[str]] = defaultdict(list)
+    stores = Counter(
+        [
+            *(node.id for node in nodes if isinstance(node, ast.Name) and is_set(node)),
+            *(node.arg for node in nodes if isinstance(node, ast.arg)),
+        ]
+    )
+    for node in nodes:
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                call = value.func if isinstance(value, ast.Call) else value
+                word = ast.unparse(call).rpartition(".")[2]
+                is_sensor = call is not value and word.endswith("Sensor")
+                is_number = isinstance(call, ast.Attribute) and _NUMBERS.search(word)
+                values[name].append("Sensor" if is_sensor else word if is_number else "")
+    for name, count in stores.items():
+        words = {*values[name]}
+        is_known = len(values[name]) == count and len(words) == 1
+        sources[name] = words.pop() if is_known else ""
+    return sources
 
 
 def _get_kind(node: ast.expr) -> str:
