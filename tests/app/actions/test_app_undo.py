@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from tests.app.app_help import LOGS, notices, open_lab, screen_text, until, until_shown
+from tests.app.app_help import (
+    LOGS,
+    notices,
+    open_lab,
+    screen_text,
+    until,
+    until_shown,
+    until_typing,
+)
 from tuisim.engine.protocol import End
 
 
@@ -46,4 +54,12 @@ async def test_a_cleared_log_and_a_cleared_trace_come_back() -> None:
 async def test_undo_without_a_change_says_that_there_is_nothing_to_undo() -> None:
     async with open_lab(LOGS) as (pilot, app):
         await pilot.press("backspace")
+        await until(pilot, lambda: "Nothing to undo" in notices(app))
+
+
+async def test_undo_works_while_the_code_has_the_focus() -> None:
+    async with open_lab(LOGS) as (pilot, app):
+        await pilot.press("d")
+        await until_typing(pilot)
+        await pilot.press("escape", "backspace")
         await until(pilot, lambda: "Nothing to undo" in notices(app))

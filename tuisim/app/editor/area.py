@@ -636,6 +636,7 @@ _TYPING_ACTIONS = frozenset(
         "cursor_line_end",
         "select_line",
         "select_all",
+        "delete_left",
     }
 )
 
