@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from textual.widgets import OptionList
 
-from tests.app.app_help import LOGS, ready, settings, until
+from tests.app.app_help import LOGS, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.cells import CellsCard
 from tuisim.settings.user_config import CELL_SET, UserConfig
@@ -57,3 +57,10 @@ async def test_the_dialog_for_glyph_sets_shows_each_set_and_stores_the_chosen_on
     assert started(None).cells is CellSet.OCTANT
     assert started("half").cells is CellSet.HALF
     assert started("auto").cells is CellSet.SEXTANT
+
+
+async def test_a_narrow_dialog_for_glyph_sets_says_what_each_set_is() -> None:
+    async with LabApp(settings(LOGS), started(None)).run_test(size=(65, 58)) as pilot:
+        await ready(pilot)
+        await pilot.press("V")
+        await until(pilot, lambda: "2 × 4 points, Unicode 16" in screen_text(pilot.app))

@@ -12,7 +12,7 @@ from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim.app.dialogs.chooser import ListDialog
-from tuisim.app.dialogs.dialog import name_and_title
+from tuisim.app.dialogs.dialog import WIDTHS, name_and_title
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.picture_options import AUTO, CellSet
 from tuisim.terminal.pixels import Pixels
@@ -105,6 +105,7 @@ class CellsCard(ListDialog):
 
     TITLE_TEXT: str = "Glyphs of the world"
     HINT: str = "Enter selects · Escape closes"
+    HORIZONTAL_BREAKPOINTS: list[tuple[int, str]] | None = WIDTHS
 
     def __init__(self, current: str, best: CellSet) -> None:
         super().__init__()

@@ -34,6 +34,9 @@ Result = TypeVar("Result")
 _HEIGHTS = [(0, "-low"), (18, "-high"), (34, "-roomy")]
 """Classes of a dialog by the rows of the terminal."""
 
+WIDTHS = [(0, "-narrow"), (80, "-broad")]
+"""Classes by the columns of the terminal, of dialogs in which a picture is beside a list, but below it if narrow."""
+
 _ENTER = re.compile(r"\bEnter\b(?: (\w+))?")
 _IMPERATIVES = {"applies": "apply", "goes": "go"}
 

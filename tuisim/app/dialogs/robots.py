@@ -14,6 +14,7 @@ from textual.containers import Horizontal, Vertical
 from textual.widgets import OptionList
 
 from tuisim.app.dialogs.chooser import MAX_NAME_COLUMNS, TABLES, ChoiceGroup, Chooser, list_files
+from tuisim.app.dialogs.dialog import WIDTHS
 from tuisim.base import palette
 from tuisim.base.errors import TuisimError
 from tuisim.engine.core.spec import ColorSensorSpec, RobotSpec, SensorSpec
@@ -54,10 +55,6 @@ def build_robot_picker(plan: NextRun) -> RobotPicker:
     return RobotPicker(groups, current, robots)
 
 
-_WIDTHS = [(0, "-narrow"), (80, "-broad")]
-"""In a narrow terminal, parts stand below the list: beside it their places would be cut off."""
-
-
 class RobotPicker(Chooser):
     """The dialog that returns the name or the path of a robot, or `PROGRAM_ROBOT`.
 
@@ -67,7 +64,7 @@ class RobotPicker(Chooser):
         robots: The robots of the list that are not in files, by the value of their entry.
     """
 
-    HORIZONTAL_BREAKPOINTS: list[tuple[int, str]] | None = _WIDTHS
+    HORIZONTAL_BREAKPOINTS: list[tuple[int, str]] | None = WIDTHS
 
     def __init__(
         self, groups: Sequence[ChoiceGroup], current: str, robots: Mapping[str, RobotSpec]
