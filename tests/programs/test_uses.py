@@ -28,6 +28,24 @@ def read(text: str) -> ProgramFacts:
             f"def go():\n    {READ}    while True:\n        tank.on(light, 20)\n",
             [(4, "")],
         ),
+        "an answer": ("near = us.distance < 20\nwhile not near:\n    pass\n", [(2, "")]),
+        "an answer that is compared": (
+            "near = us.distance < 20\nwhile near == False:\n    pass\n",
+            [(2, "")],
+        ),
+        "an answer that chooses": (
+            "near = us.distance < 20\nwhile us.distance < 90:\n    if near:\n        go()\n",
+            [],
+        ),
+        "an answer in a loop with an end": (
+            "near = us.distance < 20\nwhile near:\n    if go():\n        break\n",
+            [],
+        ),
+        "an answer asked again": (
+            "near = us.distance < 20\nwhile not near:\n    near = us.distance < 20\n",
+            [],
+        ),
+        "a setting": ("fast = MODE == 1\nwhile fast:\n    go()\n", []),
         "read again": (f"{READ}while light > 20:\n    {READ}", []),
         "a start value": ("start = gyro.angle\nwhile gyro.angle - start < 90:\n    pass\n", []),
         "a start value to steer by": (

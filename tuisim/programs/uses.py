@@ -78,8 +78,36 @@ def _list_reads_before(loop: _Loop, nodes: list[ast.AST]) -> dict[str, ast.Assig
     return {
         name: node
         for name, node in reads.items()
-        if name not in renewed and find_attribute(node.value) and not _BEFORE.search(name)
+        if name not in renewed and not _BEFORE.search(name) and _find_read(node.value, loop, name)
     }
+
+
+def _find_read(value: ast.expr, loop: _Loop, name: str) -> str:
+    """Return the attribute that an assignment before a loop reads; empty if it reads none.
+
+    An answer such as `near = us.distance < 20` counts only if the loop cannot end without another one.
+
+    Args:
+        value: The assigned expression.
+        loop: The loop.
+        name: The variable.
+    """
+    match value, loop:
+        case ast.Compare(left=left, comparators=[right]), ast.While(test=test) if _is_truth(
+            test, name
+        ) and not any(map(_is_leave, ast.walk(loop))):
+            return find_attribute(left) or find_attribute(right)
+    return find_attribute(value)
+
+
+def _is_leave(node: ast.AST) -> bool:
+    """Return whether a node may leave a loop."""
+    match node:
+        case ast.Break() | ast.Return() | ast.Raise():
+            return True
+        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
+            return name.endswith(("exit", "quit"))
+    return False
 
 
 def _is_reaction(node: ast.AST) -> bool:
@@ -112,7 +140,7 @@ def _list_uses(
     last_line = loop.end_lineno or loop.lineno
 
     def build_use(line: int, operator: str, limit: Word) -> LoopEnd:
-        attribute = find_attribute(read.value)
+        attribute = _find_read(read.value, loop, name)
         place = line, loop.lineno, last_line
         return LoopEnd(*place, operator, limit, attribute, read.lineno, name, read.lineno)
 
@@ -131,8 +159,14 @@ def _list_uses(
 
 
 def _is_truth(test: ast.expr, name: str) -> bool:
-    """Return whether a test is a name alone, or `not` and the name."""
+    """Return whether a test is a name alone, `not` and the name, or compares the name with True or False."""
     match test:
+        case ast.Compare(
+            left=left,
+            ops=[ast.Eq() | ast.NotEq() | ast.Is()],
+            comparators=[ast.Constant(value=bool())],
+        ):
+            return _is_truth(left, name)
         case ast.Name(id=asked) | ast.UnaryOp(op=ast.Not(), operand=ast.Name(id=asked)):
             return asked == name
     return False
