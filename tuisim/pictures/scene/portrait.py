@@ -48,9 +48,10 @@ def draw_portrait(
         )
     pose = Pose(0.0, 0.0, 90.0)
     if mono:
-        draw_mono_robot(picture, view, pose, outline, MONO)
+        draw_mono_robot(picture, view, pose, outline, replace(MONO, nose_cells=0.0))
     else:
-        draw_robot(picture, view, pose, outline, GREY if grey else COLORED)
+        # It always heads up, and a nose would cover the sensors at its front.
+        draw_robot(picture, view, pose, outline, replace(GREY if grey else COLORED, nose_cells=0.0))
     return picture
 
 

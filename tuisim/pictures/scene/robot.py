@@ -64,17 +64,22 @@ class RobotColors:
     edge_mm: float = 12.0
     """Largest width of the edge."""
     has_marker: bool = True
+    nose_cells: float = _NOSE_CELLS
+    """Cells by which the marker of a crisp robot that is no disc projects beyond its front."""
     has_small_edge: bool = False
     """Whether a robot of few pixels has an edge too: one without colours would not be seen without."""
     is_outline: bool = False
     """Whether only edge and marker are drawn, in a line without gaps, so that what is below is seen."""
 
-    def choose_edge_mm(self, cell_mm: float) -> float:
+    def choose_edge_mm(self, cell_mm: float, is_crisp: bool) -> float:
         """Return the width of the robot's edge in mm: `edge_cells` of a cell's width, at most `edge_mm`.
 
         Args:
             cell_mm: Width of a cell.
+            is_crisp: Whether the robot is so small that it has an edge only if `has_small_edge` is true.
         """
+        if is_crisp and not self.has_small_edge:
+            return 0.0
         return min(self.edge_cells * cell_mm, self.edge_mm)
 
     def choose_parts(self, outline: RobotOutline) -> RobotOutline:
@@ -175,7 +180,7 @@ def draw_robot(
     if is_crisp:
         col, row = math.floor(col) + 0.5, math.floor(row) + 0.5
     cell_mm = step_mm * view.cell.cols
-    nose_mm = is_crisp * _NOSE_CELLS * cell_mm
+    nose_mm = is_crisp * colors.nose_cells * cell_mm
     reach_mm = measure_reach_mm(outline) + nose_mm
     left, right = _find_range(col, reach_mm / step_mm + 2, view.width_px)
     top, bottom = _find_range(row, reach_mm / row_mm + 2, view.height_px)
@@ -187,7 +192,7 @@ def draw_robot(
     east = (_sample_places(left, right, across) - col)[None, :] * step_mm
     north = (row - _sample_places(top, bottom, down))[:, None] * row_mm
     side, ahead = _turn_places(east, north, pose.heading_deg)
-    edge_mm = (colors.has_small_edge or not is_crisp) * colors.choose_edge_mm(cell_mm)
+    edge_mm = colors.choose_edge_mm(cell_mm, is_crisp)
     if is_crisp and 2 * outline.half_width_mm < _DISC_CELLS * cell_mm:
         parts = _classify_disc(outline, side, ahead, cell_mm, edge_mm, colors)
     else:
