@@ -174,7 +174,10 @@ def short_log(seed: int) -> NDArray[np.float64]:
 @pytest.mark.parametrize(
     "make, sums",
     [
-        (lambda seed: made_log(seed).values, [706, 91169, 114753, 36064.081, 298.694, 216.12, 268]),
+        (
+            lambda seed: made_log(seed).values,
+            [704, 91154, 114718, 35960.508, 298.415, 215.703, 268],
+        ),
         (short_log, [842, 20738.0, 25302.0, 36491.039, 227.9, 77.06, 61.0]),
     ],
     ids=["made", "short"],

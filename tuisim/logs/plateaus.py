@@ -1,6 +1,6 @@
 """Plateaus of a log, separated from the samples on their edges and from strays.
 
-The search takes six steps.
+The search takes seven steps.
 
 1. Samples that repeat a measurement are left out: a program may read faster than the sensor measures.
 2. The noise is estimated from the differences of neighbours (Rice 1984), which levels leave alone.
@@ -12,6 +12,7 @@ The search takes six steps.
    this joined a level with an edge, only pieces of equal levels are joined.
 5. Pieces without a level are dropped: those that move (`stillness`), and the steps of edges (`edges`).
 6. What is left grows to its ends.
+7. Parts of curves are dropped (`curves`).
 
 Binary segmentation would be simpler, but it misses a short level between two long ones that are alike.
 """
@@ -29,6 +30,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from tuisim.base.errors import LogError
 from tuisim.engine.runs.arrays import FloatArray, IntArray, number_members
+from tuisim.logs.curves import find_curves
 from tuisim.logs.edges import EDGE_SAMPLES, find_edges, find_hidden_edges, find_ramps
 from tuisim.logs.pieces import (
     CERTAINTY,
@@ -176,7 +178,8 @@ def _search(values: FloatArray) -> tuple[Signal, PlateauArray]:
     if has_strays:
         # With noise, a level needs one sample more than `MIN_SAMPLES`, except at the ends of a log.
         plateaus = _drop_short(signal, plateaus, MIN_SAMPLES + has_noise)
-    plateaus = _add_ends(signal, add_apart(_settle(signal, plateaus), parts))
+    plateaus = add_apart(_settle(signal, plateaus), parts)
+    plateaus = _add_ends(signal, plateaus[~find_curves(signal, plateaus)])
     return signal, plateaus[~find_edges(plateaus)] if has_strays else plateaus
 
 

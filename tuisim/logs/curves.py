@@ -1,0 +1,128 @@
+"""Which plateaus are only parts of a curve, such as the steepest part of a sine or the steps of its readings.
+
+A level has an edge on either side, which a curve has not. So the samples beside a plateau tell: if one smooth line
+explains them and the plateau better than a level between two edges does, the plateau is a part of a curve. The same is
+so if each sample follows from the one before it, as in a random walk.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tuisim.engine.runs.arrays import FloatArray, IntArray
+from tuisim.logs.pieces import BoolArray, Signal, count_samples
+from tuisim.logs.stillness import PlateauArray, read_spans
+
+_BLOCKS = 16
+"""A longer plateau is looked at in so many parts: then edges are as steep for a slow robot as for a fast one."""
+
+_MIN_BESIDE = 3
+"""Fewest samples on either side of a plateau that are looked at."""
+
+_BETTER = 0.8
+"""A curve explains samples better if the variance that it leaves is below this fraction of what a level leaves."""
+
+_REACH = 3.0
+"""Samples of a plateau are clipped at this multiple of its spread from its level."""
+
+_MAX_TREAD = 0.02
+"""Largest step of the scale of readings, as a fraction of the range, of which a curve is made."""
+
+_MIN_TREADS = 3
+"""Fewest steps in a row that are a curve."""
+
+_TREAD_RISE = 2.5
+"""In its own length, a curve rises by fewer steps of the scale than this."""
+
+
+def find_curves(signal: Signal, plateaus: PlateauArray) -> BoolArray:
+    """Return for each plateau whether it is a part of a curve."""
+    curves = _find_treads(signal, plateaus)
+    spans = read_spans(plateaus)
+    lengths = count_samples(spans)
+    judged = np.flatnonzero((lengths >= _MIN_BESIDE) & (plateaus["spread"] > 0.0))
+    beside = np.maximum(lengths, _MIN_BESIDE)
+    count = len(signal.values)
+    left = np.minimum(beside, spans[:, 0])
+    right = np.minimum(beside, count - spans[:, 1])
+    shapes = np.stack((left, lengths, right), axis=1)[judged]
+    kinds, members = np.unique(shapes, axis=0, return_inverse=True)
+    for kind, shape in enumerate(kinds):
+        some = judged[members.ravel() == kind]
+        starts = spans[some, 0] - shape[0]
+        windows = signal.values[starts[:, None] + np.arange(shape.sum())]
+        # Strays are no part of a level.
+        inside = windows[:, shape[0] : shape[0] + shape[1]]
+        level = plateaus["level"][some, None]
+        reach = _REACH * plateaus["spread"][some, None]
+        np.clip(inside, level - reach, level + reach, out=inside)
+        curves[some] |= _go_on(windows, shape)
+    return curves
+
+
+def _go_on(windows: FloatArray, shape: IntArray) -> BoolArray:
+    """Return for each row of samples whether a curve explains it better than a level between two edges.
+
+    Args:
+        windows: The samples before, of and after m plateaus of one length, shape (m, n).
+        shape: The number of samples before, of and after each plateau, shape (3,).
+    """
+    before, inside, after = (
+        _compute_block_means(part, max(1, int(shape[1]) // _BLOCKS))
+        for part in np.split(windows, np.cumsum(shape)[:-1], axis=1)
+    )
+    blocks = np.concatenate((before, inside, after), axis=1)
+    count = blocks.shape[1]
+    if before.shape[1] + after.shape[1] < _MIN_BESIDE or count < 2 * _MIN_BESIDE:
+        return np.zeros(len(windows), bool)
+    level = _measure_misfit(inside, 0) / (inside.shape[1] - 1)
+    smooth = _measure_misfit(blocks, 2) / (count - 3)
+    walk = (np.diff(blocks, axis=1) ** 2).mean(axis=1)
+    goes_on: BoolArray = np.minimum(smooth, walk) < _BETTER * level
+    return goes_on
+
+
+def _compute_block_means(part: FloatArray, size: int) -> FloatArray:
+    """Return the means of blocks of `size` samples of each row; samples that fill no block are left out."""
+    count = part.shape[1] // size
+    means: FloatArray = part[:, : count * size].reshape(len(part), count, size).mean(axis=2)
+    return means
+
+
+def _measure_misfit(part: FloatArray, degree: int) -> FloatArray:
+    """Return for each row of samples the sum of squares that a polynomial of the degree leaves, shape (m,)."""
+    count = part.shape[1]
+    if count <= degree + 1:
+        return np.zeros(len(part))
+    base, _ = np.linalg.qr(np.vander(np.linspace(-1.0, 1.0, count), degree + 1))
+    centred = part - part.mean(axis=1, keepdims=True)
+    rest = centred - centred @ base @ base.T
+    misfit: FloatArray = (rest**2).sum(axis=1)
+    return misfit
+
+
+def _find_treads(signal: Signal, plateaus: PlateauArray) -> BoolArray:
+    """Return for each plateau whether it is one of several steps of the scale, by which a slow curve is read."""
+    steps = np.abs(np.diff(signal.values))
+    tread = steps[steps > 1e-9 * np.abs(signal.values).max()].min(initial=np.inf)
+    treads = np.zeros(len(plateaus), bool)
+    if tread > _MAX_TREAD * signal.range:
+        return treads
+    spans = read_spans(plateaus)
+    lengths = count_samples(spans)
+    last = len(signal.values) - 1
+    rises = np.stack(
+        [
+            side * (signal.values[np.clip(place, 0, last)] - plateaus["level"])
+            for side, place in ((-1, spans[:, 0] - lengths), (1, spans[:, 1] + lengths - 1))
+        ]
+    )
+    is_flat = plateaus["spread"] < tread / 2.0
+    gentle = is_flat & (np.abs(rises).max(axis=0) < _TREAD_RISE * tread)
+    inner = gentle & (rises[0] * rises[1] > 0.0)
+    padded = np.concatenate(([False], inner, [False]))
+    bounds = np.flatnonzero(np.diff(padded))
+    for start, stop in zip(bounds[::2].tolist(), bounds[1::2].tolist(), strict=True):
+        if stop - start >= _MIN_TREADS:
+            treads[max(start - 1, 0) : stop + 1] = gentle[max(start - 1, 0) : stop + 1]
+    return treads
