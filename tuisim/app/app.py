@@ -60,6 +60,7 @@ from tuisim.app.snapshot import (
     AppState,
     RunPhase,
     Situation,
+    Snapshot,
     end_words,
 )
 from tuisim.app.speech import Voice
@@ -514,19 +515,18 @@ class LabApp(PanelMessages):
         Args:
             force: Whether to draw the panels even if nothing has changed.
         """
-        state = self.state()
-        run = state.run
+        run = self.run_controller.build_snapshot()
         now = (
             (run.state, run.instant, run.line, run.speed, run.pen_down, run.stalled),
             (run.spec, run.next_spec, run.past, run.now_tick),
             (run.face, run.pressed),
         )
-        self.feed.name_output()
         if now == self._drawn and not force and not self.feed.is_behind:
             return False
         self._drawn = now
         self.feed.show()
         self.panel_area.show(run)
+        state = self._build_state(run)
         if force or self._footed != _list_footer_state(state):
             self._show_footer(state)
         self.pacer.drawn()
@@ -558,7 +558,7 @@ class LabApp(PanelMessages):
         If the run has just stopped, draw the panels together with the footer.
         """
         self._wake()
-        state = self.state()
+        state = self._build_state(self.run_controller.build_snapshot())
         has_stopped = state.run.state in AT_REST and self._drawn[0][0] not in (
             None,
             state.run.state,
@@ -599,11 +599,10 @@ class LabApp(PanelMessages):
     def action_target(self) -> ActionContext:
         return self.context
 
-    def state(self) -> AppState:
+    def _build_state(self, run: Snapshot) -> AppState:
         """Return everything that the panels and the footer show, at the instant in view."""
-        run = self.run_controller.build_snapshot()
         playing = self.run_controller.timeline.playing
-        return AppState(run, self._build_situation(run.state), self._looks_back, playing)
+        return AppState(run, self._build_situation(run.state), self.debugger.looks_back, playing)
 
     def _show_footer(self, state: AppState) -> None:
         self._footed = _list_footer_state(state)

@@ -297,7 +297,7 @@ class PanelFeed:
             self._charted_s = now_s
             self._append(feed.chart_series(mat), logged=False)
 
-    def name_output(self) -> None:
+    def _name_output(self) -> None:
         """Give the output panel the name of the program that has printed; before the first run, of the open program."""
         if output := self._panel_area.output:
             program = (self._runs.timeline.recording or self._runs).program
@@ -305,6 +305,7 @@ class PanelFeed:
 
     def show(self) -> None:
         """Pass on the telemetry since the last call; show trace and output up to the instant in view."""
+        self._name_output()
         self._send_rows()
         if self._feed is not None:
             if self._feed.begin_again() and self._panel_area.chart:
