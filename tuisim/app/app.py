@@ -391,7 +391,7 @@ class LabApp(PanelMessages):
             if (
                 self.debugger.view is not None
                 or self.debugger.replay.run is not None
-                or self._looks_back
+                or self.debugger.looks_back
             ):
                 self.debugger.poll()
             if self.goals.file is not None:
@@ -575,26 +575,17 @@ class LabApp(PanelMessages):
         code = self.panel_area.code
         timeline = runs.timeline
         facts = runs.program is not None, timeline.recording is not None, timeline.at is not None
-        is_away = self._looks_back or self.debugger.replay.busy
         reads_code = code is not None and code.is_read
         return Situation(
             phase,
             *facts,
-            is_away,
+            self.debugger.is_away,
             reads_code,
             self.has_pixels,
             self.context.reasons.has_gone_wrong(runs),
             self.undo is not None,
             self.lesson.step_actions,
         )
-
-    @property
-    def _looks_back(self) -> bool:
-        """Whether an instant before the newest one is in view.
-
-        This can also be a line of the program in the newest tick, before the last line that has run.
-        """
-        return self.run_controller.timeline.at is not None or self.debugger.position is not None
 
     def action_target(self) -> ActionContext:
         return self.context
