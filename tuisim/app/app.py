@@ -329,7 +329,6 @@ class LabApp(PanelMessages):
         """Show the changed plan of the next run in the panels."""
         self._show_program()
         self.panel_area.show_next_run(self.run_controller.next_run)
-        self.handle_situation_change()
         self.draw(force=True)
 
     # A run

@@ -460,7 +460,6 @@ class DebugController:
             else:
                 self._run_controller.chosen_line = None
         self._set_paused(PauseView(self._set_tick_time(paused), inspected, True))
-        self._app.handle_situation_change()
         self._take_step()
 
     def _is_past(self, at: Position) -> bool:

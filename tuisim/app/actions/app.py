@@ -188,7 +188,6 @@ def change_setting(context: ActionContext, setting: Setting, value: Scalar | Non
     setting.save(value)
     if apply := _APPLY.get(setting.path):
         apply(context, UserConfig.load().values.get(setting.path, setting.default))
-        context.app.handle_situation_change()
         context.app.draw(force=True)
 
 

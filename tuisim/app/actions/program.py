@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from tuisim.app.actions.time_travel import propose_branch, refresh
+from tuisim.app.actions.time_travel import propose_branch
 from tuisim.app.snapshot import RunPhase, speed_label
 from tuisim.engine import protocol
 
@@ -34,10 +34,10 @@ def pause(context: ActionContext) -> None:
     timeline = context.runs.timeline
     if timeline.playing:
         timeline.stop_playback()
-        refresh(context)
+        context.app.draw(force=True)
     elif context.runs.in_past:
         timeline.play(time.monotonic())
-        refresh(context)
+        context.app.draw(force=True)
     elif context.runs.state == RunPhase.PAUSED:
         context.runs.send(protocol.Resume())
     else:

@@ -45,7 +45,7 @@ def go_to_tick(context: ActionContext, tick: int | None) -> None:
         context.debugger.go_to_now()
         context.reasons.restart()
     context.runs.timeline.go(tick)
-    refresh(context)
+    context.app.draw(force=True)
 
 
 def _is_laid_out(context: ActionContext, recording: Recording) -> bool:
@@ -57,12 +57,6 @@ def _is_laid_out(context: ActionContext, recording: Recording) -> bool:
         f"The mat has changed since this run: {{runs}} opens {recording.name} with its mat"
     )
     return False
-
-
-def refresh(context: ActionContext) -> None:
-    """Redraw the panels and the footer after the instant in view has changed."""
-    context.app.handle_situation_change()
-    context.app.draw(force=True)
 
 
 def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -> None:
@@ -153,7 +147,7 @@ def advance_playback(context: ActionContext) -> None:
             context.runs.send(protocol.Resume())
         elif context.runs.state == RunPhase.ENDED:
             context.app.say("Playback has reached the end of the recording")
-        refresh(context)
+        context.app.draw(force=True)
 
 
 def ask_instant(context: ActionContext) -> None:
