@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -22,11 +23,13 @@ from tests.app.app_help import (
     until_state,
 )
 from tests.running import PATIENCE_S
+from tuisim.app.action import KeyFooter
 from tuisim.app.actions.time_travel import go_to_now, go_to_tick
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.question import BranchQuestion
 from tuisim.app.form import Slider
 from tuisim.app.panels.chart import Chart
+from tuisim.app.run_controller import RunController
 from tuisim.app.setup.next_run import change_obstacles
 from tuisim.app.snapshot import RunPhase
 from tuisim.commands.rerun import rerun, same
@@ -34,6 +37,7 @@ from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import NoiseSpec, Obstacle
 from tuisim.engine.protocol import Answer, LineStep, Resume, SetNoise
 from tuisim.engine.runs.store import RunStore
+from tuisim.pictures.scene.painter import ScenePainter
 
 STEPS = """\
 import time
@@ -305,6 +309,32 @@ async def test_the_arrow_is_on_the_line_that_go_to_names() -> None:
         app.debugger.choose_line(5, 3)
         go_to_tick(app.context, 5)
         await until(pilot, lambda: app.debugger.current_line == 4)
+
+
+async def test_a_tick_back_builds_the_state_and_paints_world_and_footer_only_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    calls: Counter[str] = Counter()
+
+    def count(owner: type, name: str) -> None:
+        do = getattr(owner, name)
+
+        def do_counted(*words: Any, **options: Any) -> Any:
+            calls[name] += 1
+            return do(*words, **options)
+
+        monkeypatch.setattr(owner, name, do_counted)
+
+    text = "import time\ntank_drive.on(20, 20)\ntime.sleep(0.2)\n"
+    async with open_lab(text, speed=0.0) as (pilot, app):
+        await pilot.press("R")
+        await until_state(pilot, RunPhase.ENDED)
+        await pilot.press("comma")
+        for owner, name in ((RunController, "build_snapshot"), (ScenePainter, "paint")):
+            count(owner, name)
+        count(KeyFooter, "show")
+        go_to_tick(app.context, 5)
+        assert calls == {"build_snapshot": 1, "paint": 1, "show": 1}
 
 
 async def test_go_to_a_line_of_the_newest_instant_names_the_instant_and_marks_the_line() -> None:

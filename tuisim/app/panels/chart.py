@@ -128,14 +128,14 @@ class Chart(LinesPanel, can_focus=True):
             self._throttle.ask()
 
     def show_printed(self, time_s: float) -> None:
-        """Include the samples up to `time_s` in the values at the cursor.
+        """Let the next `show` include the samples up to `time_s` in the values at the cursor.
 
         At this time, the newest visible line of the output was printed, so that the chart and the output show the same
         values.
         """
         if time_s != self._printed_s:
             self._printed_s = time_s
-            self._schedule_drawing()
+            self._dirty = True
 
     def show_lag(self, words: str) -> None:
         """Show in the border a text about how far the printed values are drawn; an empty text removes it."""

@@ -198,10 +198,10 @@ class World(Widget, can_focus=True):
     def show_past_trace(
         self, points_mm: tuple[Sequence[float], Sequence[float]] | None, pen: PenSpec = _ANY_PEN
     ) -> None:
-        """Show the pen trace up to a past instant, in place of the whole trace.
+        """Let the next `show` draw the pen trace up to a past instant, in place of the whole trace.
 
         Args:
-            points_mm: x and y of the points; None shows the whole trace again.
+            points_mm: x and y of the points; None stands for the whole trace again.
             pen: The pen that has drawn the trace.
         """
         past = None
@@ -209,7 +209,7 @@ class World(Widget, can_focus=True):
             past = PenTrace()
             past.add(Piece.from_points(np.array(points_mm[0]), np.array(points_mm[1]), pen))
         self._view.past_trace = past
-        self._view.repaint_scene()
+        self._view._scene = None
 
     def copy_text(self) -> Copied | None:
         """Return the picture as characters, and the readings below it; None before the picture is drawn."""
