@@ -103,7 +103,9 @@ _START_GAP_S = 0.004
 """Seconds between two polls of a starting run, for at most `_STARTING_S`, so that its first tick is drawn without a
 delay."""
 _AWAKE_S = 1.0
-"""Seconds for which the run is polled at the full frame rate after something has happened."""
+"""Seconds for which a run that goes on is polled at the full frame rate after something has happened."""
+_SETTLE_S = 0.1
+"""The same without such a run: what the user changes is changed by then."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -443,8 +445,10 @@ class LabApp(PanelMessages):
         return time.monotonic() < self._awake_until_s
 
     def _wake(self) -> None:
-        """Poll the run at the full frame rate for the next `_AWAKE_S` seconds, since something has happened."""
-        self._awake_until_s = time.monotonic() + _AWAKE_S
+        """Poll the run at the full frame rate for a time, since something has happened."""
+        runs = self.run_controller
+        goes_on = runs.in_run or runs.timeline.playing
+        self._awake_until_s = time.monotonic() + (_AWAKE_S if goes_on else _SETTLE_S)
         if self._frame_timer:
             self._frame_timer.resume()
 
