@@ -83,8 +83,7 @@ async def test_a_past_instant_shows_the_robot_and_readings_of_then() -> None:
     async with a_run(size=(200, 60)) as (pilot, app):
         recording = app.run_controller.timeline.recording
         mat = app.run_controller.mat
-        assert recording is not None
-        assert mat is not None
+        assert recording and mat
         await pilot.press("g")
         app.screen.query_one(Input).value = "2 s"
         await pilot.press("enter")
@@ -93,7 +92,7 @@ async def test_a_past_instant_shows_the_robot_and_readings_of_then() -> None:
         assert app.debugger.view is not None
         record = recording.telemetry.record(200)
         line = app.debugger.view.paused.line
-        then = recording.instant(record, recording.spec, recording.spec.world.noise)
+        then, _ = recording.read_instant(record, recording.spec, recording.spec.world.noise)
         expected = Snapshot(
             RunPhase.ENDED,
             End.FINISHED,

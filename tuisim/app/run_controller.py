@@ -165,7 +165,7 @@ class RunController:
             state=state,
             end=self._end if state == RunPhase.ENDED else None,
             spec=spec,
-            field=self._field(record),
+            field=self._find_field(spec, record),
             instant=instant,
             line=line,
             speed=self.speed,
@@ -228,13 +228,12 @@ class RunController:
         if record is None or recording is None:
             return self._still, 0, self.next_run.spec.robot.pen.down
         noise = recording.find_noise(record) if self._is_of_run else self.next_run.spec.world.noise
-        # Before a run, the pen is up or down as at the start of the next run.
-        down = (
-            recording.is_pen_down(record) if self._is_of_run else self.next_run.spec.robot.pen.down
-        )
+        instant, down = recording.read_instant(record, self.spec, noise)
+        if not self._is_of_run:
+            # Before a run, the pen is up or down as at the start of the next run.
+            down = self.next_run.spec.robot.pen.down
         paused_line = self.shown_pause and self.shown_pause.line
         exact = dict(known for known in (paused_line, self.chosen_line) if known)
-        instant = recording.instant(record, self.spec, noise)
         if present := self._find_present(record):
             instant, down = present.apply(instant), present.pen_down
         line = exact.get(record.tick, record.line)
@@ -262,9 +261,9 @@ class RunController:
             return frozenset()
         return (not self.in_past and self.pressed) or recording.pressed_at(record.tick)
 
-    def _field(self, record: TickRecord | None) -> Field | None:
+    def _find_field(self, spec: RunSpec, record: TickRecord | None) -> Field | None:
         """Return the mat as the sensors saw it at the tick of a record; None while the mat is not prepared."""
-        mat = self.find_mat(self.spec)
+        mat = self.find_mat(spec)
         recording = self.timeline.recording
         return (
             mat
@@ -582,7 +581,7 @@ class RunController:
             )
         rows = recording.take_rows(ROWS_A_POLL)
         remarks += self._near_samples.look(recording, rows)
-        prompt = self.run.waiting_for_input if self.run and self.in_run else None
+        prompt = self.run.waiting_for_input if self.run else None
         return RunUpdate(
             rows, ended, stood, tuple(spoken), prompt, branched, tuple(pauses), tuple(remarks)
         )

@@ -52,7 +52,7 @@ def open_end(run: Run, text: str, profile: str) -> tuple[Recording, Instant]:
     recording.commands.read_all()
     record = recording.telemetry.last()
     assert record is not None
-    return recording, recording.instant(record, stored.spec, stored.spec.world.noise)
+    return recording, recording.read_instant(record, stored.spec, stored.spec.world.noise)[0]
 
 
 @cases("text, profile, turns, words", ENDS)

@@ -135,11 +135,14 @@ class Recording:
             self._marks = _TimedMarks(mat, self)
         return self._marks.at(tick)
 
-    def instant(self, record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
-        """Return the run's values at a tick, including what commands in that tick changed after its record was made.
+    def read_instant(
+        self, record: TickRecord, spec: RunSpec, noise: NoiseSpec
+    ) -> tuple[Instant, bool]:
+        """Return the run's values at a tick, and whether the pen is down.
 
-        Such a command is a reset of the gyro. The values include those of the motors' drivers, unless their file is
-        damaged, and for each motor how many degrees the program counts while it turns by one degree.
+        They include what commands in that tick changed after its record was made, such as a reset of the gyro. They
+        also include the values of the motors' drivers, unless their file is damaged, and for each motor how many
+        degrees the program counts while it turns by one degree.
 
         Args:
             record: The record of the tick.
@@ -155,12 +158,10 @@ class Recording:
             motors=motors,
             scales=tuple(scales.get(motor.port, 1.0) for motor in self.spec.robot.motors),
         )
-        commands = self.commands.list_changes(record.tick)
-        return apply_commands(instant, record.running, commands, self.spec.profile.motor_law)
-
-    def is_pen_down(self, record: TickRecord) -> bool:
-        """Return whether the pen is down after the commands in the tick of a record."""
-        return find_pen(self.commands.list_changes(record.tick), is_down=record.is_pen_down)
+        changes = self.commands.list_changes(record.tick)
+        return apply_commands(
+            instant, record.running, changes, self.spec.profile.motor_law
+        ), find_pen(changes, is_down=record.is_pen_down)
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
         """Return for the left and the right wheel's motor whether it was running but did not turn.
