@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import field
+from functools import lru_cache
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.spec import RobotSpec, TouchSpec, UltrasonicSpec
@@ -57,6 +58,7 @@ class RobotOutline:
         )
 
 
+@lru_cache(maxsize=16)
 def build_outline(robot: RobotSpec) -> RobotOutline:
     """Return the outline of a robot seen from above, with the places of its sensors."""
     sensors = [sensor.y_mm for sensor in robot.color_sensors]

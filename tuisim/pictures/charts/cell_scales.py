@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from rich.style import Style
@@ -27,7 +28,7 @@ _PARTS = 2000
 """Last values are rounded to about such a part of their scale."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class CellScales:
     """The vertical scales of a chart in characters: the labels left, and the last values right of the canvas."""
 
@@ -91,17 +92,17 @@ class CellScales:
         """The limits of the left scale, to which all curves are drawn."""
         return self.scales.left.limits
 
-    @property
+    @cached_property
     def left_width(self) -> int:
         """The number of columns on the left of the canvas."""
         return max(_measure_width(self.labels[0]), self.margins[0])
 
-    @property
+    @cached_property
     def right_width(self) -> int:
         """The number of columns on the right of the canvas."""
         return max(self._right_used, self.margins[1])
 
-    @property
+    @cached_property
     def _right_used(self) -> int:
         return self.ends_width + sum(map(_measure_width, self.labels[1:]))
 

@@ -12,7 +12,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.core.field import find_floor_rgb
 from tuisim.engine.core.geometry import Pose, world_point
-from tuisim.engine.core.outline import RobotOutline, build_outline
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.remote_spec import BeaconSpec
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, RobotSpec
 from tuisim.pictures.scene.mat import MatPictures
@@ -167,16 +167,11 @@ class ScenePainter:
         self._ground: Pixels | None = None
         self._ground_key: object = None
         self._pieces_drawn = 0
-        self._robot: RobotSpec | None = None
-        self._outline: RobotOutline | None = None
-        """The outline of `_robot`."""
 
     def paint(self, view: Viewport, scene: SceneState) -> Pixels:
         """Return the picture of the field in a view, shape (view.height_px, view.width_px, 3)."""
         picture = self._draw_ground(view, scene).copy()
-        if self._outline is None or scene.robot is not self._robot:
-            self._robot, self._outline = scene.robot, build_outline(scene.robot)
-        outline = self._outline
+        outline = build_outline(scene.robot)
         if scene.rays and scene.robot.ultrasonic is not None:
             ultrasonic = scene.robot.ultrasonic
             x_mm, y_mm = world_point(
