@@ -278,9 +278,10 @@ class RunController:
         """
         recording = self.timeline.recording
         mats = (self.mat, self._mat_of_run)
-        if recording and self.mat and self.mat.serves(recording.spec):
-            self._mat_of_run = self.mat
-        return next((mat.field for mat in mats if mat and mat.serves(spec)), None)
+        mat = next((mat for mat in mats if mat and mat.serves(spec)), None)
+        if recording and spec is recording.spec:
+            self._mat_of_run = mat
+        return mat.field if mat else None
 
     # The following methods do what the user wants.
 
