@@ -29,7 +29,6 @@ from tuisim.logs.heading import (
     find_heading,
     has_numbers,
     is_rule,
-    is_words,
     parse_kinds,
     split_cells,
     split_rows,
@@ -188,10 +187,7 @@ class CsvReader:
             return []
         names = [cell.strip() for cell in split_cells(lines[0], self._separator)]
         kinds = parse_kinds(names)
-        if len(names) < 2 or not is_words(kinds) or "-" in kinds:
-            return []
-        usual = self._heading.kinds
-        if len(kinds) == len(usual) and any(map(_are_both_numbers, kinds, usual)):
+        if len(names) < 2 or set(kinds) != {"w"}:
             return []
         below = [line for line in lines[1:] if line.strip()][:_MIN_ROWS]
         rows = [parse_kinds(split_cells(line, self._separator)) for line in below]
@@ -215,7 +211,7 @@ class CsvReader:
             return None
         if '"' in text and table.num_rows != len(list(Block(1, text).lines())):
             return None
-        return [c.chunk(0) if c.num_chunks == 1 else c.combine_chunks() for c in table.columns]
+        return [column.combine_chunks() for column in table.columns]
 
     def _parse_lines(self, block: Block) -> tuple[list[pa.Array], list[int]]:
         """Return the columns of rows that are parsed line by line, and the number of each row in the file.
@@ -248,10 +244,6 @@ class CsvReader:
         return [
             pa.array([cells[index] for cells in rows], pa.string()) for index in range(width)
         ], numbers
-
-
-def _are_both_numbers(kind: str, other: str) -> bool:
-    return kind == other and has_numbers(kind)
 
 
 def _list_rows(block: Block) -> list[int]:
