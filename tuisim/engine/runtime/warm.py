@@ -35,6 +35,7 @@ _NEEDED_LATER = (
     "tuisim.engine.runtime.patches.threads",
     "tuisim.engine.runtime.program",
     "tuisim.engine.runtime.scheduler",
+    "tuisim.engine.shim.ev3dev.modules",
     "tuisim.engine.shim.install",
 )
 """Modules that a child imports only after it has begun."""
