@@ -6,8 +6,10 @@ import gc
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Generator, Iterator
+from collections import Counter, OrderedDict
+from collections.abc import Callable, Generator, Hashable, Iterator
 from contextlib import suppress
+from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -25,12 +27,19 @@ from tuisim.engine import mat_cache
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import NoiseSpec, PenSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.mat_cache import FieldFiles
+from tuisim.engine.runs import handle as run_handle
 from tuisim.engine.runs.child import process
+from tuisim.engine.runs.child.warm import Template
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 
 ROOT = Path(__file__).resolve().parent.parent
 MATS = {name: getattr(mat_cache, name) for name in ("_in_use", "_store")}
 """How mats are looked for and stored by users."""
+TEMPLATES = process.MAX_TEMPLATES, run_handle._build_template_key
+"""How many templates users have, and for which runs."""
+ALONE = 2
+"""Runs of a robot and world before a template pays."""
 
 LONGEST = {
     "test_app_monkey.py",
@@ -139,6 +148,36 @@ def _forked_children() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session", autouse=True)
+def _runs_alike_are_forked_from_a_template() -> Iterator[None]:
+    """Fork the third run of a robot and world, and all later ones, from a template, as batches, marking and apps do.
+
+    The files of the mat may lie in any home, because all homes have the same ones.
+    """
+    counts: Counter[Hashable] = Counter()
+    build_key = TEMPLATES[1]
+
+    def build_key_for_all_homes(program: Program, spec: RunSpec, field: FieldFiles) -> Hashable:
+        files = [path.stat() for path in (field.pixels, *(path for _, path in field.sums))]
+        somewhere = replace(field, pixels=Path(), sums=())
+        return build_key(program, spec, somewhere), *(
+            (file.st_ino, file.st_mtime_ns) for file in files
+        )
+
+    def start_child_of_many(
+        folder: Path, lock_fd: int, cwd: str, run: Any, key: Hashable, of_many: bool, needs: Any
+    ) -> Any:
+        counts[key] += 1
+        of_many = of_many or counts[key] > ALONE
+        return process.start_child(folder, lock_fd, cwd, run, key, of_many, needs)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(process, "MAX_TEMPLATES", 12)
+        patch.setattr(run_handle, "_build_template_key", build_key_for_all_homes)
+        patch.setattr(run_handle, "start_child", start_child_of_many)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
 def _mats_are_prepared_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Lay the same prepared mats into every home: to prepare one costs more than most tests."""
     kept = tmp_path_factory.mktemp("mats")
@@ -179,6 +218,19 @@ def real_mats(monkeypatch: pytest.MonkeyPatch) -> None:
     """Prepare mats as users do."""
     for name, real in MATS.items():
         monkeypatch.setattr(mat_cache, name, real)
+
+
+@pytest.fixture
+def real_forks(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Make templates only as users do, and set those of other tests aside."""
+    templates: OrderedDict[Hashable, Template] = OrderedDict()
+    monkeypatch.setattr(process._Starts, "templates", templates)
+    monkeypatch.setattr(process, "MAX_TEMPLATES", TEMPLATES[0])
+    monkeypatch.setattr(run_handle, "_build_template_key", TEMPLATES[1])
+    monkeypatch.setattr(run_handle, "start_child", process.start_child)
+    yield
+    for template in templates.values():
+        template.close()
 
 
 @pytest.fixture

@@ -14,6 +14,8 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 
+pytestmark = pytest.mark.usefixtures("real_forks")
+
 SURROUNDINGS = {
     "modules": "print(sorted(sys.modules))",
     "environment": "print(sorted(os.environ.items()))",

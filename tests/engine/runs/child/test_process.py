@@ -21,6 +21,8 @@ from tuisim.engine.runs.side_files import STACK_FILE
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 
+pytestmark = pytest.mark.usefixtures("real_forks")
+
 
 @pytest.mark.slow
 def test_runs_of_many_threads_share_one_warm_process(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -23,6 +23,8 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 
+pytestmark = pytest.mark.usefixtures("real_forks")
+
 
 def printed(text: str, of_many: bool = False, prelude: str = "none") -> list[str]:
     spec = build_run_spec(Settings({"seed": 3, "noise.light": 10}))
