@@ -9,6 +9,7 @@ import os
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pyarrow as pa
@@ -207,7 +208,9 @@ CASES: dict[str, Case] = {
         lambda: b"x" * (100 << 20),
         "line 1 is longer than 1 MiB",
     ),
-    "a picture": ("a.csv", b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 40, Read(-1, (), note="")),
+    "a picture": ("a.csv", b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 40, "is a PNG picture"),
+    "random bytes": ("a.csv", Random(1).randbytes(5000), "is not a text"),
+    "a picture in a compressed file": ("a.csv.gz", gzip.compress(b"\x89PNG\r\n"), "only text"),
     "compressed": ("a.csv.gz", gzip.compress(CSV.encode()), SOUND),
     "compressed and cut off": (
         "a.csv.gz",

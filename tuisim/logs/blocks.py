@@ -30,6 +30,14 @@ _IN_WORDS = re.compile(rb"[a-z][\x92\xa0-\xff]{1,2}|[\x92\xa0-\xff]{1,2}[a-z]")
 """Bytes of western letters, which stand beside others."""
 
 
+_find_control_characters = re.compile(r"[\x01-\x08\x0e-\x1a\x1c-\x1f\x7f]").findall
+_MAX_CONTROL_CHARACTERS = 8
+_CONTROL_OF_TEXT = 0.04
+"""A text has fewer control characters than these, or they are a smaller fraction of it: random bytes have 0.11."""
+_JUDGED_CHARACTERS = 20_000
+"""Characters of the beginning that show whether a file is a text."""
+_KINDS = "a log is CSV, Parquet, JSONL, Arrow or text"
+
 _COLOURS = re.compile(r"\x1b\[[\d;]*m")
 """What a program writes to colour its lines in a terminal."""
 
@@ -111,6 +119,8 @@ class LineCutter:
             lines = lines.replace("\0", "")
         if "\x1b" in lines:
             lines = _COLOURS.sub("", lines)
+        if self._row == 1:
+            _refuse_control_characters(lines[:_JUDGED_CHARACTERS])
         block = Block(self._row, lines)
         self._row += block.text.count("\n")
         return block
@@ -148,6 +158,17 @@ class LineCutter:
         self._notes.say(f"not UTF-8: read as {_GUESSES[encoding]} (--encoding selects another)")
         self._choose(encoding)
         return self._decoder.decode(data)
+
+
+def _refuse_control_characters(text: str) -> None:
+    """Check that the beginning of a file is a text.
+
+    Raises:
+        LogError: too many of its characters are control characters.
+    """
+    count = len(_find_control_characters(text))
+    if count > max(_MAX_CONTROL_CHARACTERS, _CONTROL_OF_TEXT * len(text)):
+        raise LogError("is not a text, and of no format that can be read", _KINDS)
 
 
 def _guess_encoding(data: bytes) -> str:
@@ -194,6 +215,15 @@ _REFUSED = {
     b"SQLite format 3": "an SQLite database",
     b"\x1f\x9d": "a compress (.Z) file",
     b"#separator \\x": "a Zeek log",
+    b"\x89PNG": "a PNG picture",
+    b"\xff\xd8\xff": "a JPEG picture",
+    b"GIF8": "a GIF picture",
+    b"II*\0": "a TIFF picture",
+    b"MM\0*": "a TIFF picture",
+    b"RIFF": "a sound or a picture",
+    b"OggS": "a sound",
+    b"%PDF-": "a PDF document",
+    b"\x7fELF": "a program",
 }
 """Formats that cannot be read, by their first bytes."""
 
@@ -217,7 +247,7 @@ def unpack(head: bytes, handle: Any, notes: Notes) -> Readable | None:
     if refused:
         raise LogError(
             f"is {refused}, which cannot be read",
-            "a log is CSV, Parquet, JSONL, Arrow or text",
+            _KINDS,
         )
     codec = next((codec for magic, codec in _CODECS.items() if head.startswith(magic)), "")
     return _Unpacked(handle, codec, notes) if codec else None
