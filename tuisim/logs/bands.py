@@ -48,7 +48,7 @@ class Band:
     level: float
     """Mean without strays."""
     spread: float
-    """Standard deviation of its samples without strays."""
+    """Standard deviation of its samples without strays (divided by n - 1), 0 for a single sample."""
     strays: int
     """Samples that lie far off."""
     grey: str

@@ -115,7 +115,7 @@ def _find_steps(differences: FloatArray) -> BoolArray:
 def find_plateaus(values: FloatArray) -> PlateauArray:
     """Return the plateaus of a log in order; the samples between plateaus are edges.
 
-    Samples that are not finite belong to no plateau.
+    Samples that are not finite belong to no plateau. A spread is the standard deviation of a sample (divided by n - 1).
 
     Args:
         values: Samples at a fixed period, shape (n,).
@@ -129,6 +129,9 @@ def find_plateaus(values: FloatArray) -> PlateauArray:
     if len(starts) < len(clean):
         spans = np.append(starts, len(clean))[read_spans(plateaus)]
         plateaus = measure(signal._replace(values=clean), spans)
+    # The search divides by n, so that short pieces do not count as uneven; people compare with pandas.
+    counts = count_samples(read_spans(plateaus)) - plateaus["strays"]
+    plateaus["spread"] *= np.sqrt(counts / np.maximum(counts - 1, 1))
     plateaus["start"] = places[plateaus["start"]]
     plateaus["stop"] = places[plateaus["stop"] - 1] + 1
     return plateaus
