@@ -25,10 +25,12 @@ def find_spans(is_so: NDArray[np.bool_]) -> IntArray:
 
 
 def number_members(sizes: IntArray) -> tuple[IntArray, IntArray]:
-    """Return for each member of groups, in order, the index of its group, and its number in the group from 0.
+    """Return two arrays with a number for each member of several groups: the index of its group, and its place in it.
+
+    The sizes 2, 0 and 1 give 0, 0, 2 for the groups, and 0, 1, 0 for the places.
 
     Args:
-        sizes: The number of members of each group, such as 2, 0, 1 for members of the groups 0, 0 and 2.
+        sizes: The number of members of each group.
     """
     groups = np.repeat(np.arange(len(sizes)), sizes)
     return groups, np.arange(len(groups)) - (np.cumsum(sizes) - sizes)[groups]

@@ -231,6 +231,7 @@ def _is_screen(screen: TextScreen) -> bool:
 def _unpack_picture(text: str) -> bytes:
     """Return the picture that the text of a row stores, in the format of `BrickState.picture`.
 
-    It is cut off one byte after the length of a valid picture, because an invalid one may be of any length.
+    A program can write a false row whose picture is huge. So a picture that is too long is cut off one byte after the
+    length of a valid picture: it is still found to be too long.
     """
     return zlib.decompressobj().decompress(base64.b85decode(text), len(BLANK) + 1)

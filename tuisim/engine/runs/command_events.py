@@ -157,7 +157,7 @@ class CommandIndex:
         return bool(len(rows))
 
     def read_scale_changes(self) -> list[ScaleChange]:
-        """Read all further commands for changes of motors' scales; return all changes so far, also those known before.
+        """Return all changes of motors' scales that are recorded so far, after reading the commands that are new.
 
         A scale is the number of degrees that the program counts while a motor turns by one degree.
         """
@@ -207,7 +207,7 @@ class CommandIndex:
             self._add(*event)
 
     def _note_changes(self, rows: Array, times: Array) -> None:
-        """Store those commands whose effect the program can read immediately, before the next tick.
+        """Store those commands that change what the program reads before the next tick, such as a reset of the gyro.
 
         Args:
             rows: Rows of recorded commands.
@@ -221,9 +221,9 @@ class CommandIndex:
         self._change_ticks.extend((times[changes] * self._hz // NS_PER_S).tolist())
 
     def _note_wheels(self, rows: Array) -> None:
-        """Store what the last command to each wheel makes it do: one of the texts in `WHEEL_WORDS`.
+        """Store for each wheel what its last command makes it do, as one of `WHEEL_WORDS` such as `stopping`.
 
-        Such a command is one to the wheel's motor or to a drive base.
+        Commands to a drive base count for both wheels.
 
         Args:
             rows: Rows of recorded commands; those that do not move or stop a wheel are ignored.
@@ -266,9 +266,9 @@ class CommandIndex:
                 self.scale_changes.append((self._find_tick(time_ns), port, scale))
 
     def _read_codes(self, rows: Array) -> Array:
-        """Return a number for each command; it is the same for commands with the same robot, call and part.
+        """Return a number for each command. Commands have the same number if their robot, kind and part are the same.
 
-        A command that plugs parts in changes the robot: the new robot is added to the known ones.
+        If a command adds parts to the robot, the robot with these parts is stored for the commands after it.
 
         Args:
             rows: Rows of recorded commands.
@@ -476,9 +476,10 @@ def _name_call(code: int) -> str:
 
 
 def _find_mains() -> Array:
-    """Return for each kind of command the index of its main value, of which repeated commands show the range.
+    """Return for each kind of command the index of its main value.
 
-    The index in the result is the number of the kind of command, a `Call`.
+    If a command is repeated with other values, the range of this value is shown. The index in the result is the number
+    of the kind of command, a `Call`.
     """
     import numpy as np
 

@@ -167,7 +167,7 @@ def diff_runs(
 
     Args:
         first, second: The runs.
-        prefix: Whether the first run was cut off: anything in the second after its last record is ignored.
+        prefix: Whether the first run was cut off. If so, ticks and rows that only the second run has are ignored.
         until: Last tick to compare; None for all.
 
     Raises:
@@ -226,12 +226,12 @@ def find_first_tick(
 def measure_divergence(
     left: np.ndarray[Any, Any], right: np.ndarray[Any, Any], tick_hz: tuple[int, int]
 ) -> Divergence:
-    """Return the distance between two robots at the ticks of the first run that both runs cover.
+    """Return how far the robots of two runs were apart, over the time that both runs cover.
 
     Args:
-        left: Records of the first run, at least one.
-        right: Records of the second, at least one; if the tick rates differ, its poses are interpolated.
-        tick_hz: Ticks per second of each.
+        left: Records of the first run, at least one. The distance is measured at their ticks.
+        right: Records of the second run, at least one. If the tick rates differ, its poses are interpolated.
+        tick_hz: Ticks per second of the first and of the second run.
     """
     import numpy as np
 
@@ -258,12 +258,13 @@ def find_first_difference_s(
 ) -> float | None:
     """Return the time in s at which the robots were first more than 1 mm or 1 degree apart; None if they never were.
 
-    None does not mean that the runs are equal: one may have ended earlier, and only the time of both is compared.
+    Only the time that both runs cover is compared. So the runs may differ although the result is None: one of the two
+    may have gone on longer.
 
     Args:
-        left: Records of the first run, at least one.
-        right: Records of the second, at least one; if the tick rates differ, its poses are interpolated.
-        tick_hz: Ticks per second of each.
+        left: Records of the first run, at least one. The distance is measured at their ticks.
+        right: Records of the second run, at least one. If the tick rates differ, its poses are interpolated.
+        tick_hz: Ticks per second of the first and of the second run.
     """
     times, distance, turned = _measure_apart(left, right, tick_hz)
     is_apart = (distance > PARTED_MM) | (abs(turned) > PARTED_DEG)
@@ -273,12 +274,12 @@ def find_first_difference_s(
 def _measure_apart(
     left: np.ndarray[Any, Any], right: np.ndarray[Any, Any], tick_hz: tuple[int, int]
 ) -> tuple[_Series, ...]:
-    """Return how far two robots are apart: times in s, distances in mm, differences of heading in degrees.
+    """Return how far two robots are apart, as arrays: times in s, distances in mm, differences of heading in degrees.
 
     Args:
-        left: Records of the first run, at least one.
-        right: Records of the second, at least one; if the tick rates differ, its poses are interpolated.
-        tick_hz: Ticks per second of each.
+        left: Records of the first run, at least one. The times are those of its ticks, as far as both runs go.
+        right: Records of the second run, at least one. If the tick rates differ, its poses are interpolated.
+        tick_hz: Ticks per second of the first and of the second run.
     """
     import numpy as np
 

@@ -63,14 +63,15 @@ class DeadReckoning:
 def compute_dead_reckoning(
     left_position_deg: FloatArray, right_position_deg: FloatArray, start: Pose, robot: RobotSpec
 ) -> DeadReckoning:
-    """Return the poses that the robot would have if its wheels did not slip.
+    """Return the poses that follow from the motors' positions alone, as if the wheels always gripped the floor.
 
-    Between two counts the robot drives an arc, whose chord points halfway between the headings at both ends.
+    Between two ticks the robot drives an arc. The straight line from its start to its end points halfway between the
+    headings at both.
 
     Args:
-        left_position_deg: Position of the left wheel's motor since the start, shape (n,).
-        right_position_deg: Position of the right wheel's motor.
-        start: Pose at the first count.
+        left_position_deg: Position of the left wheel's motor at each tick, shape (n,).
+        right_position_deg: Position of the right wheel's motor at each tick, shape (n,).
+        start: Pose at the first tick.
         robot: The robot, with the sizes of its wheels.
     """
     import numpy as np

@@ -436,7 +436,9 @@ class RunHandle:
             os.close(self._lock_fd)
 
     def stored(self) -> StoredRun:
-        """Return the stored run. If its end could not be written to its folder, add the end that is known here.
+        """Return the run as it is stored.
+
+        The result has the run's end, even if the end could not be written to the run folder.
 
         Raises:
             LogError: it no longer exists, or is damaged.
@@ -498,7 +500,7 @@ class RunHandle:
         """Send a command to the child; after the end of the run it is ignored.
 
         Raises:
-            ConfigError: a breakpoint in it is invalid.
+            ConfigError: the command sets a breakpoint that is invalid.
         """
         if isinstance(command, SetBreaks):
             # Invalid breakpoints are rejected here, because the child could not report them to the user.
@@ -550,7 +552,7 @@ class RunHandle:
                 self.pump()
 
     def _repeat_stop(self) -> None:
-        """Repeat a request to stop that had no effect yet; if that takes too long, kill the child.
+        """Send the request to stop again if the program has not stopped; if that takes too long, kill the child.
 
         If the run folder was deleted, request the stop.
         """

@@ -37,7 +37,9 @@ MAX_MOTORS = 2 + len(OUTPUT_PORTS)
 
 
 class MotorsWriter(MappedWriter):
-    """A writer of the records of all motors. Until it is closed, only the telemetry says how many ticks are complete.
+    """A writer of the records of all motors, one record for each motor and tick.
+
+    The number of ticks is written to the file only when it is closed. Until then, readers take it from the telemetry.
 
     Args:
         folder: The run folder.

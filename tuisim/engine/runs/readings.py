@@ -116,7 +116,7 @@ class ReadingsWriter(MappedWriter):
         self._count = self._length[0] = count + 1
 
     def has(self, code: int) -> bool:
-        """Return whether a reading with this code is already recorded for the newest time."""
+        """Return whether a reading with this code is already recorded at the simulated time of the newest reading."""
         for index in range(min(self._count, self._room) - 1, -1, -1):
             time_ns, _, other = _PACKED.unpack_from(self._map, HEADER_BYTES + (index << 4))
             if time_ns != self.newest_ns:

@@ -164,9 +164,10 @@ class Recording:
         ), find_pen(changes, is_down=record.is_pen_down)
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
-        """Return for the left and the right wheel's motor whether it was running but did not turn.
+        """Return for the left and the right wheel's motor whether it is stalled: it was running, but did not turn.
 
-        A motor of the Pybricks firmware also runs at a speed of 0: it stalls only where the robot touches something.
+        Under Pybricks a motor may also be running at a speed of 0. So there it is stalled only if the robot touches a
+        wall or an obstacle.
         """
         ticks = self._stall_ticks
         if record.tick < ticks:

@@ -139,7 +139,7 @@ class ReplayedTicks:
 
 
 class _Motors:
-    """The records of motors in memory, instead of in the file of a `MotorsWriter`."""
+    """The records of motors in memory, used by `replay` in place of a `MotorsWriter`, which writes them to a file."""
 
     def __init__(self, robot: RobotSpec) -> None:
         self.tick_bytes = MOTOR_RECORD.size * len(name_motors(robot))

@@ -428,7 +428,10 @@ def field_files(spec: RunSpec) -> FieldFiles:
 
 
 def find_diameters(spec: RunSpec) -> frozenset[int]:
-    """Return the diameters of the discs that a run's colour sensors see, including sensors that may be plugged in."""
+    """Return the diameters in mm of the discs of the mat that a run's colour sensors see.
+
+    Sensors that may be plugged in during the run are included.
+    """
     sensors = spec.robot.color_sensors
     return frozenset({PLUGGED_DIAMETER_MM, *(sensor.diameter_mm for sensor in sensors)})
 

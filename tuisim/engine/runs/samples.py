@@ -145,10 +145,10 @@ def find_samples(rows: Iterable[OutputRow]) -> list[tuple[int, Sample]]:
 
 
 def build_value_reader(condition: ValueCondition) -> Callable[[str], float | None]:
-    """Return a function that returns the value in a printed line that a condition tests.
+    """Return a function that takes a printed line, and returns the number in it that a condition tests.
 
-    The value is the number of a sample with the condition's name, or 1 for a line that matches its pattern. The
-    function returns None for any other line.
+    This is the number of a sample with the condition's name, or 1 for a line that matches its pattern. The function
+    returns None for any other line.
     """
     if condition.source is ValueSource.PRINT:
         pattern = re.compile(condition.value)

@@ -74,7 +74,7 @@ def measure_quiet_color(
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
         sensor: The sensor.
         run: The specification of the run.
-        field: The mat; it must have sums of the sensor's diameter.
+        field: The mat, prepared for the diameter of the disc that the sensor sees.
     """
     x_mm, y_mm = compute_world_points_mm(records, sensor.x_mm, sensor.y_mm)
     diameter = sensor.diameter_mm

@@ -176,7 +176,7 @@ def _append(path: Path, row: Mapping[str, object]) -> None:
 
 
 def write_stop_tick(folder: Path, tick: int) -> None:
-    """Record the tick before which the user's stop reached the program.
+    """Record the last tick before the user's stop reached the program.
 
     Raises:
         OSError: it cannot be written.
@@ -189,7 +189,7 @@ def write_stop_tick(folder: Path, tick: int) -> None:
 
 
 def read_stop_tick(folder: Path) -> int | None:
-    """Return the tick before which the user's stop reached the program; None if the file is missing.
+    """Return the last tick before the user's stop reached the program; None if the file is missing.
 
     Raises:
         LogError: the file is damaged.

@@ -106,8 +106,7 @@ class SteppedRun:
     def order(self, ticks: int, commands: Iterable[SimulationCommand]) -> list[SimulationCommand]:
         """Return commands in the order of their times, after checking that they lie within the next `ticks` ticks.
 
-        They can then be passed to `advance` with the same number of ticks. A command may also be given at the tick at
-        which this step ends.
+        They can then be passed to `advance` with the same number of ticks. The last of these ticks is allowed, too.
 
         Raises:
             ConfigError: a command lies before the present tick, or after the last one.

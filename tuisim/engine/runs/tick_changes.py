@@ -38,7 +38,7 @@ def apply_commands(
 
     Args:
         instant: The values that the record of the tick has.
-        running: Whether the left and the right wheel's motor had a command when the record was made.
+        running: Whether the motors of the left and the right wheel were running when the record was made.
         commands: The commands in the tick, in order.
         law: How the motors of the run move.
     """

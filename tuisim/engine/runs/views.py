@@ -162,7 +162,7 @@ class _View(ABC):
 
     @property
     def damage(self) -> str:
-        """Why the file is not a valid recording, or not up to its end; empty if it is valid."""
+        """A text that says why the file, or a part of it, is not a valid recording; empty if all of it is valid."""
         return self._damage if self.holds else self.read_new()
 
     @property
@@ -194,7 +194,7 @@ class _View(ABC):
 
     @property
     def _done(self) -> int:
-        """Number of records that have been checked and need no further check."""
+        """Number of records or bytes at the start of the recording that are known to be valid for good."""
         return self._there
 
     def _look(self) -> tuple[memoryview, int]:
@@ -221,9 +221,9 @@ class _View(ABC):
         return damage
 
     def _get_known(self, count: int) -> memoryview | None:
-        """Return the copy of the recording if it has more than `count` records, else None.
+        """Return a read-only view of the copy, in which at least the first `count` records will not change any more.
 
-        In a copy that is returned, the first `count` records are final.
+        Return None if the copy has at most `count` records.
         """
         return memoryview(self._copy).toreadonly() if count < self._there else None
 

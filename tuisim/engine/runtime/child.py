@@ -77,7 +77,7 @@ SPARE_FRAMES = 100
 
 
 class KnownPrograms:
-    """The compiled code of programs that are run more than once.
+    """A cache of the compiled code of programs, for programs that are run more than once.
 
     It has no code for a program that runs for the first time, or whose compilation gives an error or a warning: then
     the process of the run compiles the program itself, and reports the error.
@@ -151,12 +151,12 @@ def die_with_host(lifeline_fd: int) -> None:
 
 
 class Interrupts:
-    """The signal handlers of one run.
+    """The signal handlers of one run, through which the host reaches a program that is computing, such as to stop it.
 
     Args:
         session: The run.
-        soft_codes: Code objects of the runtime in which a handler may raise an exception. A handler must not raise one
-            anywhere else in the runtime.
+        soft_codes: The functions of tuisim, as code objects, in which a signal handler may raise an exception. In all
+            other functions of tuisim it must not.
     """
 
     def __init__(self, session: Session, soft_codes: frozenset[types.CodeType]) -> None:
@@ -328,7 +328,7 @@ class Child:
         self._known_programs = KnownPrograms()
 
     def expect(self, folder: Path, changes: Mapping[str, Any]) -> None:
-        """Set the configuration of the run that comes next, and compile its program if it was run before.
+        """Set the configuration of the next run, and compile its program if an earlier run had the same one.
 
         Args:
             folder: The run folder.
@@ -445,7 +445,11 @@ class Child:
         self._output.drain = self._runner.raw.drain
 
     def _record_commands(self) -> None:
-        """Record the commands that were given when the predefined names were made, and later those of the program."""
+        """Begin to record the commands that the robot gets.
+
+        The record begins with those that were given earlier, while the predefined names such as `tank_drive` were
+        created.
+        """
         self._commands = CommandsWriter(self._config.folder)
         for command in self._early_commands:
             self._commands.add(*command)

@@ -328,9 +328,9 @@ class RunControl:
         self._raise_here(session, before_tick=moment.ordinal == BEFORE_NEXT_TICK)
 
     def _raise_here(self, session: ControlledRun, before_tick: bool = False) -> None:
-        """Raise `StopProgram` in this thread, which has waited for commands, if a stop is requested.
+        """Raise `StopProgram` in this thread if a stop is requested.
 
-        Without this call, the main thread would raise it.
+        This thread has waited for commands of the host. Without this call, the main thread would raise the exception.
 
         Args:
             session: The run.
@@ -342,9 +342,9 @@ class RunControl:
             self.holding = False
 
     def replay_next(self, session: ControlledRun, kind: type[Answer | Reply]) -> bool:
-        """Apply the next known user action if it is the answer to the question that the program asks now.
+        """Apply the next known user action if it answers the question that the program asks now.
 
-        An answer is not applied here if it came only after some simulated time.
+        An answer that was given only after some simulated time is not applied here, but at its tick.
 
         Args:
             session: The run.
@@ -453,7 +453,7 @@ class RunControl:
             )
 
     def write_down_stop(self, tick: int) -> None:
-        """Record that the user's stop reached the program right before the tick after `tick`."""
+        """Record that `tick` was the last tick before the user's stop reached the program."""
         # If it cannot be written, a re-run is compared only as far as both runs go.
         with suppress(OSError):
             write_stop_tick(self._folder, tick)

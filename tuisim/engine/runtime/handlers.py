@@ -14,10 +14,10 @@ from tuisim.engine.runtime.tracebacks import own_files
 
 
 def is_caught(error: type[Exception], frame: FrameType | None, program_file: str) -> bool:
-    """Return whether the program would catch an error that is raised in a frame.
+    """Return whether the program would catch an error with `try` if the error were raised in a frame.
 
-    A handler for any `Exception` is considered only in the function that calls the library: around a whole program, it
-    does not mean that the program expects this error.
+    A `try` that catches every `Exception` counts only in the function that calls the library. Around a whole program,
+    it does not mean that the program expects this error.
 
     Args:
         error: The class of the error.

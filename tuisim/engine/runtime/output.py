@@ -159,10 +159,10 @@ class Addresses:
 
 
 def _is_meant(one: object, before: str) -> bool:
-    """Return whether the text before an address can refer to an object: it has the name of the object's class.
+    """Return whether a printed address is that of an object, by the name of a class in the text before the address.
 
-    If not, it refers to an earlier object at the same address. An object of the program's own class always fits,
-    because its `__repr__` can write any text.
+    If it is the name of another class, an earlier object at the same address was printed. For an object of the
+    program's own class, the result is always True, because its `__repr__` can write any text.
     """
     kind = type(one)
     # The `__repr__` of a program's own class need not contain the name of the class.

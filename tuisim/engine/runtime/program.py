@@ -143,7 +143,12 @@ def finish_moves(session: Session) -> str:
 
 
 def _let_rest(session: Session, motors: Collection[SimulatedMotor]) -> None:
-    """Run until all wheels have come to rest, at most for `MAX_REST_NS` or until the time limit."""
+    """Run until all wheels have come to rest, at most for `MAX_REST_NS` or until the time limit.
+
+    Args:
+        session: The run.
+        motors: The motors whose wheels must come to rest.
+    """
     if all(motor.axle.stands for motor in motors):
         return
     end_ns = min(session.now + MAX_REST_NS, session.limits.time_ns or 1 << 62)

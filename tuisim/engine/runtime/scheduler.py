@@ -169,16 +169,16 @@ class Scheduler:
         self.wait(until, on_change)
 
     def wait(self, until: int, on_change: bool = False, queue: Queue | None = None) -> bool:
-        """Block the current thread.
+        """Block the current thread until a time, or until something else ends the wait.
 
         Args:
-            until: Simulated ns, or FOREVER.
+            until: The simulated time in ns, or FOREVER.
             on_change: Whether a motor that ends a move ends the wait.
-            queue: Holds the thread while it waits, so that another one can wake it. Such a wait also ends after an
-                interrupt has run in the thread: what the thread waits for may be available by then.
+            queue: The queue of a lock, for example, in which another thread finds this thread and wakes it. An
+                interrupt that was handled in this thread then ends the wait, too: the lock may be free by now.
 
         Returns:
-            Whether another thread (or a motor) ended the wait before its time.
+            Whether another thread or a motor ended the wait before its time.
         """
         me = self.current
         self._check_stop(me)

@@ -181,7 +181,7 @@ class Session:
         return self._pen.field
 
     def spend(self, duration_ns: int, code: int = -1) -> None:
-        """Let simulated time pass, even while other calls take no time, as during the program's preparation.
+        """Let simulated time pass; unlike `charge`, do so even in phases in which the program's calls take no time.
 
         Args:
             duration_ns: How long.
@@ -291,7 +291,7 @@ class Session:
     def is_tried(self, error: type[Exception]) -> bool:
         """Return whether the program would catch an error that is raised now.
 
-        If it would, the program only tries which devices there are.
+        If it would, the program probably only tries whether a device is connected.
         """
         # Imported on demand: few programs look for a device that is missing.
         from tuisim.engine.runtime.handlers import is_caught
@@ -445,8 +445,8 @@ class Session:
         """Process commands of the host, and raise an exception if the program has to stop.
 
         Args:
-            before_tick: Whether a tick is about to run, and no code of the program comes before it. A re-run can stop
-                at the same tick then.
+            before_tick: Whether a tick is about to run, and no code of the program comes before it. The tick is then
+                recorded, so that a re-run can stop at the same instant.
 
         Raises:
             StopProgram: when a stop is requested, and again once the time for cleanup is over.

@@ -147,7 +147,7 @@ class Quota:
     """The limits of an isolated program: its threads, its sockets, and what it may add to its folders.
 
     Args:
-        pid: The program's process, before the program begins.
+        pid: The process that runs the program. The program must not have begun yet.
         folders: The folders that the program may change; empty names are ignored.
     """
 
@@ -372,7 +372,7 @@ _X32 = 0x40000000
 
 @dataclass(frozen=True, slots=True)
 class _Machine:
-    """The numbers of those system calls that the filter needs, on one kind of processor, from the tables of Linux."""
+    """The numbers that Linux gives to the system calls in the filter of `build_filter`, on one kind of processor."""
 
     architecture: int
     """`AUDIT_ARCH_…`"""
@@ -397,7 +397,10 @@ _MACHINES = {
 
 
 def build_filter() -> bytes | None:
-    """Return the filter of system calls in the form that bubblewrap needs; None on an unknown processor."""
+    """Return the filter that forbids a program some system calls, such as `fork`, in the form that bubblewrap needs.
+
+    Return None on an unknown kind of processor.
+    """
     machine = _MACHINES.get(platform.machine())
     if machine is None:
         return None
@@ -443,7 +446,7 @@ def _pack_instruction(code: int, operand: int, if_true: int = 0, if_false: int =
 
 
 def filter_descriptor() -> int | None:
-    """Return a descriptor from which the filter of system calls can be read once; None if there is no filter.
+    """Return a descriptor from which the filter of `build_filter` can be read once; None if there is no filter.
 
     Raises:
         OSError: this process can open no more files.

@@ -356,9 +356,9 @@ def end_descendants(pid: int, marked: int) -> None:
 
 
 def _list_younger(pid: int) -> set[int]:
-    """Return the ids of all processes that started after the process `pid`, and possibly other ids.
+    """Return a set with the ids of all processes that started after the process `pid`.
 
-    The other ids belong to no process, or to one that started earlier.
+    The set may also have ids of older processes, and ids that belong to no process.
     """
     last = int(Path("/proc/loadavg").read_text("ascii").split()[-1])
     # Process ids increase, and wrap around when they are used up.
@@ -447,7 +447,15 @@ def find_stuck_line(folder: Path, program_file: str) -> int:
 
 
 def describe_end(exit_status: int, folder: Path, line: int) -> str:
-    """Return the reason why a child ended without an event: a signal and a line, or exit status and error text."""
+    """Return a text that says why a child ended without telling the host, for example after a crash.
+
+    The text names the signal that killed the child, or else the exit status and the last line of the error output.
+
+    Args:
+        exit_status: The exit status; negative for a signal.
+        folder: The run folder, with the error output of the child.
+        line: The program's line at which the child was killed; 0 if it is unknown.
+    """
     if exit_status < 0:
         where = f" in line {line}" if line else ""
         return f"the program's process was killed by {_name_signal(-exit_status)}{where}"

@@ -294,7 +294,8 @@ class WarmProcess(ForkClient):
 
         Args:
             folder: The folder of a run.
-            run: The contents of its `run.json`: the program could change the file.
+            run: The contents of its `run.json` when the run started. The file is not read, as the program could have
+                changed it.
 
         Raises:
             OSError: it cannot be forked, or the warm process has ended.

@@ -178,7 +178,7 @@ class FileWaits:
     def _build_noting(
         self, look: Callable[[], Found], descriptors: Iterable[int]
     ) -> Callable[[], Found]:
-        """Return a function that polls sockets as `look` does, and records a reading if no new connection is ready.
+        """Return a function that calls `look` to poll sockets, and notes in the run's readings if no socket is ready.
 
         Return `look` itself if none of the descriptors is a socket that listens for connections.
         """
@@ -214,7 +214,7 @@ class FileWaits:
         Args:
             socket: The socket.
             writes: Whether it must be ready for writing; otherwise for reading.
-            code: A reading to record at each poll that finds it not ready; None for none.
+            code: The number that is added to the run's readings each time the socket is not ready yet; None for none.
 
         Raises:
             TimeoutError: the timeout is over.
