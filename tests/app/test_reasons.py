@@ -251,6 +251,14 @@ brick = Button()
 while not brick.any():
     pass
 """
+NEVER = """\
+import time
+while True:
+    x = time.time()
+    if x < 1 and x > 2:
+        break
+    time.sleep(0.1)
+"""
 SLEEPS = "import time\nwhile True:\n    time.sleep(9)\n"
 
 
@@ -263,6 +271,7 @@ SLEEPS = "import time\nwhile True:\n    time.sleep(9)\n"
             "So far: 0.00 s, line 3: from here on it waits: read the brick's buttons",
         ),
         "it sleeps": (SLEEPS, "the robot stands still in line"),
+        "its condition is never true": (NEVER, "x < 1 and x > 2"),
     },
 )
 async def test_a_program_that_goes_on_is_paused_and_it_says_what_that_waits_for(

@@ -337,11 +337,10 @@ def _find_slips(data: RunData) -> Iterator[Reason]:
     """Yield a reason for each line of the program that has no effect or always the same, such as a stop without `()`.
 
     The time of the reason is when the line, or the loop around it, first ran; if neither did, it is the end of the run.
+    While a run goes on, lines that have not run yet are left out.
     """
     lines, end = data.records["line"], data.run.end
-    if end is None:
-        return
-    cause = data.facts.explain_error(end.error, end.error_line)
+    cause = data.facts.explain_error(end.error, end.error_line) if end else ""
     for line, text in data.facts.slips:
         function, place = data.facts.find_place(line)
         is_there = (lines >= place.start) & (lines < place.stop)
@@ -350,7 +349,7 @@ def _find_slips(data: RunData) -> Iterator[Reason]:
             is_there = lines > place.start
         time_s = int(is_there.argmax()) / data.hz if is_there.any() else data.run.time_s
         # The error that ended the run may name the slip.
-        if text != cause:
+        if text != cause and (end or is_there.any()):
             yield Reason(ReasonKind.MISTAKEN, time_s, line, text)
 
 
