@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
     from tuisim.engine.runs.recorded_run import Recording
 
+_IS_START = "This is the start of the run"
 MANY_TICKS = 10
 """Ticks that `:` runs."""
 
@@ -85,15 +86,15 @@ def skip_ticks(context: ActionContext, ticks: int) -> None:
     timeline = context.runs.timeline
     tick = timeline.tick
     if ticks < 0 and tick <= 0:
-        go_to_start(context)
+        context.app.say(_IS_START)
         return
     go_to_tick(context, tick + ticks if tick + ticks < timeline.newest else None)
 
 
 def go_to_start(context: ActionContext) -> None:
     """Go to the first instant of the run; if it is in view already, show a notice."""
-    if context.runs.timeline.tick <= 0 and not context.debugger.is_away:
-        context.app.say("This is the start of the run")
+    if context.runs.timeline.tick <= 0 and context.debugger.position is None:
+        context.app.say(_IS_START)
     else:
         go_to_tick(context, 0)
 
