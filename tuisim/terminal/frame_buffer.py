@@ -532,6 +532,9 @@ _SIGNS = {
     "▏": "|",
     "▕": "|",
     "⌷": "#",
+    "€": "E",
+    "£": "L",
+    "¥": "Y",
 }
 _ELLIPSIS = re.compile(r" … |…  |[A-Za-z0-9]{2}…")
 """An ellipsis with the blanks beside it, or the end of a word that was cut, which three dots replace."""
