@@ -94,6 +94,10 @@ WIDTHS = {
     "edges between samples": ([1.0] * 6 + [9.0] * 6 + [1.0] * 6, [NAN, 6.0, NAN]),
     "edge on a sample": ([1.0] * 6 + [5.0] + [9.0] * 6 + [1.0] * 6, [NAN, 6.5, NAN]),
     "gap in the samples": ([1.0] * 6 + [NAN] * 3 + [9.0] * 6 + [1.0] * 6, [NAN, 7.5, NAN]),
+    "slope beside it": (
+        [1.0] * 30 + [9.0] * 30 + np.linspace(9.0, 90.0, 300).tolist() + [90.0] * 30 + [1.0] * 30,
+        [NAN, NAN, NAN, NAN],
+    ),
     "thin line beside it": (
         [9.0] * 6 + [1.0] * 6 + [5.0, 9.0, 5.0] + [1.0] * 6 + [9.0] * 6,
         [NAN, NAN, NAN, NAN],

@@ -262,6 +262,10 @@ def _group_levels(report: BandReport) -> list[list[_Level]]:
     return list(groups.values())
 
 
+_MAX_EDGE_MM = 100.0
+_MAX_EDGE_STEPS = 8
+"""A passage between two levels of more mm and more steps of the log is a slope: the spot of a sensor is far smaller."""
+
 _FAR_OF_STEP, _FAR_OF_SPREAD = 0.75, 4.0
 """A sample between two levels is of a third one, farther from their middle than these parts of step and spread."""
 
@@ -271,7 +275,7 @@ def measure_widths(values: FloatArray, driven_mm: FloatArray, levels: Levels) ->
     """Return the widths of levels in mm, shape (n,): each from the edge before the level to the edge after it.
 
     A width is NaN where an edge is not known: before the first level, after the last level, and between two levels with
-    samples of another level between them.
+    samples of another level, or a slope, between them.
 
     Args:
         values: Samples, shape (m,).
@@ -283,7 +287,12 @@ def measure_widths(values: FloatArray, driven_mm: FloatArray, levels: Levels) ->
     last, first = np.searchsorted(rows, np.stack((levels.stop[:-1] - 1, levels.start[1:])))
     level, number = number_members(first - last)
     row = last[level] + number
-    edges_mm = _find_edges(values[rows], driven_mm[rows], levels, level, row)
+    places_mm = driven_mm[rows]
+    edges_mm = _find_edges(values[rows], places_mm, levels, level, row)
+    is_slope = (places_mm[first] - places_mm[last] > _MAX_EDGE_MM) & (
+        first - last > _MAX_EDGE_STEPS
+    )
+    edges_mm[is_slope] = np.nan
     return np.diff(edges_mm, prepend=np.nan, append=np.nan)[: len(levels.start)]
 
 
