@@ -240,7 +240,10 @@ class BuiltBrick:
             self._heard.remove(sensor)
 
     def take_wheels(self) -> None:
-        """Set `wheel_registers` of the session to the registers of the motors that are now the wheels."""
+        """Set `wheel_registers` of the session for the motors that drive the wheels now.
+
+        The value is the method `registers` of each: it returns what the program has last written to the motor.
+        """
         session = self.session
         wheels = zip(
             session.sim.spec.robot.wheel_motors, (session.sim.left, session.sim.right), strict=True

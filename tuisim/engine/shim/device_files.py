@@ -38,7 +38,7 @@ class _Writers(dict[str, Writer]):
 class _NumberWriters(dict[str, NumberWriter]):
     """Functions that write whole numbers to attributes of a device, by name.
 
-    For a missing name, the function for text gets the number as text.
+    An attribute without such a function gets the number as text, through its function in `_Writers`.
     """
 
     def __init__(
@@ -61,10 +61,10 @@ class SimDevice:
         writers: Functions that accept the written text, by attribute.
         costs: Cost of a read in ns, by attribute, if it differs from the default.
         number_writers: Functions that accept a written integer, by attribute.
-        notifying: Attributes whose changes end a `poll` of their files, each with a function whose result differs after
-            a change.
-        temporary: Attributes that do not always exist: there is no file for one while its reader raises ENOENT.
-        codes: What is recorded of a read, by attribute; see `DeviceSession.note_reading`.
+        notifying: For attributes whose file a program can `poll`, a function each. When its result changes, the `poll`
+            ends.
+        temporary: Attributes that do not always exist. If the reader of one raises ENOENT, there is no file for it.
+        codes: The code with which a read is recorded, by attribute; see `DeviceSession.note_reading`.
     """
 
     def __init__(

@@ -176,7 +176,7 @@ def dark_pixels(grey: Picture) -> bytes:
 
 
 def draw_with_the_bricks_font(screen_class: Any) -> None:
-    """Patch a class so that its objects draw text without a named font in the default font of the brick's Pillow.
+    """Patch a class so that its objects draw text in the brick's default font, unless the program names another.
 
     Args:
         screen_class: A class of the library; its objects have an `ImageDraw` in `draw`.

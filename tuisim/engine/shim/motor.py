@@ -172,7 +172,10 @@ class SignedTacho(Tacho):
 
 
 class TachoMotor(SignedTacho):
-    """The driver of one motor under the rules of the course: set points take effect with the next command."""
+    """The driver of one motor under the profiles of the course.
+
+    A value that a program writes, such as `speed_sp`, takes effect with the next command.
+    """
 
     _motor: BrickMotor
 
@@ -302,9 +305,9 @@ class TachoMotor(SignedTacho):
         self._begun()
 
     def _begun(self) -> None:
-        """Complete the start of a move: apply the ramps, except to `run-direct`.
+        """Limit the acceleration of a move that has just begun by the ramp attributes, unless it is `run-direct`.
 
-        If the target speed is 0, note the tick at which the motor will stand still.
+        If the target speed is 0, also store the tick at which the motor will stand still.
         """
         if self._ramps and not self._direct:
             self._ramp()
@@ -389,7 +392,10 @@ WITHOUT_EFFECT = (
 
 
 class BrowserTacho(Tacho):
-    """The driver of one motor of the browser simulator, in which written set points take effect immediately."""
+    """The driver of one motor as in the browser simulator.
+
+    A value that a program writes, such as `speed_sp`, takes effect immediately.
+    """
 
     _motor: BrowserMotor
 

@@ -206,7 +206,7 @@ class Plugs:
         return port not in shown and not self._built.files.by_path[path].is_opened
 
     def _keep_wheels(self, without: Sequence[str]) -> list[PluggedPart]:
-        """Return the motors of the wheels that the program uses, described as motors that drive no wheel.
+        """Return those wheel motors that the program uses, described as motors that drive no wheel from now on.
 
         Args:
             without: Ports whose motors are left out.

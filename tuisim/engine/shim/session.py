@@ -41,7 +41,7 @@ class DeviceSession(Protocol):
         """The mat in its present state, with pen marks if sensors can see them."""
 
     def spend(self, duration_ns: int, code: int = -1) -> None:
-        """Let simulated time pass, even while calls are free of charge.
+        """Let simulated time pass; unlike `charge`, do so even while calls are free of charge.
 
         Args:
             duration_ns: How long.
@@ -108,7 +108,10 @@ class DeviceSession(Protocol):
         """
 
     def is_tried(self, error: type[Exception]) -> bool:
-        """Return whether the program would catch an error raised now, so that it only tests which devices there are."""
+        """Return whether the program would catch an error that is raised now.
+
+        If it would, the program probably only tries whether a device is connected.
+        """
 
     def spawn_daemon(self, work: Callable[[], None]) -> None:
         """Start a background thread of the program that calls `work`; do not wait for it."""

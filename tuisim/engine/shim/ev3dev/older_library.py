@@ -24,9 +24,9 @@ INSTALL = "pip install 'tuisim[ev3dev]'"
 
 
 class MissingLibrary:
-    """Module finder that raises an error for the library `ev3dev`, which says how to install it.
+    """Module finder that raises an error if `ev3dev` is not installed: the error says how to install it.
 
-    It is the last finder, so it is only asked if `ev3dev` is not installed.
+    It is the last finder, so it is only asked if no other finder has found `ev3dev`.
     """
 
     def find_spec(self, fullname: str, *_: object) -> importlib.machinery.ModuleSpec | None:
@@ -78,8 +78,8 @@ def finish_core(
 ) -> None:
     """Patch `ev3dev.core` after its import.
 
-    Then it draws with the brick's font, runs motors by their duty cycle, and its errors about missing devices have
-    hints.
+    The library then draws with the brick's font and runs motors by their duty cycle. Its errors about missing devices
+    say which devices the robot has.
 
     Args:
         session: The run.
@@ -121,7 +121,12 @@ def finish_core(
 
 
 def _look_up(look_up: Callable[..., None], plugs: Plugs) -> Callable[..., None]:
-    """Return a constructor of a device that plugs in a missing device; `look_up` is the library's own constructor."""
+    """Return a constructor for the library's devices: if the robot lacks the device, it is plugged in.
+
+    Args:
+        look_up: The library's own constructor, which searches for the device.
+        plugs: Adds a missing device to the robot.
+    """
 
     @wraps(look_up)
     def __init__(self: Any, class_name: str, *args: Any, **kwargs: Any) -> None:  # noqa: N807

@@ -104,7 +104,8 @@ def _name_later(owner: str, name: str) -> str:
 def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Names:
     """Return the names and values that each module of the library has in a run: a dictionary for each module.
 
-    It also sets the hints for names of other versions of the library, and the version of the interpreter.
+    Also prepare the run for this version of the library: set its version of MicroPython, and the function that gives
+    hints on names of other versions.
 
     Args:
         brick: The brick.

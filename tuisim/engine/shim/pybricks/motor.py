@@ -283,7 +283,7 @@ class Motor(DCMotor):
 
         Args:
             setting: The number of the setting.
-            value: Its new value, in counts.
+            value: Its new value, in the units of the controller, which are called counts.
         """
         self.tell(Call.SET_CONTROL, setting, value)
 
@@ -346,7 +346,10 @@ class Control(Connected):
 
     @property
     def scale(self) -> float:
-        """Number of the controller's counts per degree or, for the distance of a drive base, per mm."""
+        """How many counts, the units in which the controller measures, there are in a degree.
+
+        For the distance of a drive base, it is the number of counts in a mm.
+        """
         return self._control.settings.counts_per_unit
 
     def _access(self, **values: float | None) -> tuple[int, ...] | None:
@@ -380,9 +383,10 @@ class Control(Connected):
         acceleration: float | None = None,
         actuation: float | None = None,
     ) -> tuple[int, ...] | None:
-        """Set the highest speed, acceleration and power, and return None; without arguments, return them.
+        """Set the highest speed, acceleration and power, and return None; without arguments, return all three.
 
-        Speeds are in °/s and accelerations in °/s² (for a drive base's distance mm/s and mm/s²), powers in percent.
+        The speed is in °/s, the acceleration in °/s², the power in percent. For the distance of a drive base, the speed
+        is in mm/s, and the acceleration in mm/s².
         """
         if any(
             value is not None and whole(value) < 1 for value in (speed, acceleration, actuation)
@@ -412,27 +416,30 @@ class Control(Connected):
     def target_tolerances(
         self, speed: float | None = None, position: float | None = None
     ) -> tuple[int, ...] | None:
-        """Set how near to its target speed and position a move is done; without arguments, return these two.
+        """Set by how much speed and position may differ from their targets at the end of a move, and return None.
 
-        They are in degrees per second and degrees; for the distance of a drive base, in mm/s and mm.
+        Without arguments, return the two differences. They are in degrees per second and degrees; for the distance of a
+        drive base, in mm/s and mm.
         """
         return self._access(speed_tolerance=speed, position_tolerance=position)
 
     def stall_tolerances(
         self, speed: float | None = None, time: float | None = None
     ) -> tuple[int, ...] | None:
-        """Set below which speed, and after which time in ms, a motor is stalled; without arguments, return both.
+        """Set when a motor counts as stalled, and return None; without arguments, return the two settings.
 
-        The speed is in degrees per second; for the distance of a drive base, in mm/s.
+        Args:
+            speed: The motor must be slower than this, in degrees per second; for the distance of a drive base, in mm/s.
+            time: It must be so slow for this time, in ms.
         """
         return self._access(stall_speed=speed, stall_time_ms=time)
 
     def trajectory(self) -> tuple[int, ...] | None:
-        """Return the present trajectory as eleven numbers; None if there is no trajectory.
+        """Return the planned course of the present motion as eleven numbers; None if there is none.
 
-        They are the times in ms, then the positions, of four points: the start, the begin and the end of the constant
-        speed, and the end. The speed, the acceleration and the deceleration follow. Positions are in the controller's
-        counts, the speed in counts/s, the two accelerations in counts/s².
+        It has four points: the start, the beginning of the constant speed, the end of the constant speed, and the end.
+        The numbers are the times of the points in ms, then their positions in counts (the controller's units), then the
+        speed in counts/s, then the acceleration and the deceleration in counts/s².
         """
         trajectory = self._control.trajectory
         if trajectory is None:

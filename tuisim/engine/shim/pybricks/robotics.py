@@ -189,7 +189,7 @@ class DriveBase(Connected):
         Args:
             control: The controller.
             setting: The number of the setting.
-            value: Its new value, in counts.
+            value: Its new value, in the units of the controller, which are called counts.
         """
         self.tell(Call.SET_BASE_CONTROL, control is self._base.heading, setting, value)
 

@@ -28,9 +28,9 @@ def wait(time: float) -> None:
 
 
 def wait_until(end_us: int) -> Waiting[None]:
-    """Yield the time `end_us`, in microseconds, until the simulation has reached it: the caller has to wait until then.
+    """Yield the time `end_us`, in microseconds, again and again until the simulation has reached it.
 
-    It is yielded more than once if the caller goes on too early, because a motor has ended a move.
+    After each yield the caller waits until this time. It may go on too early, because a motor has ended a move.
     """
     if Connected.brick.command() == end_us:
         yield end_us

@@ -170,10 +170,11 @@ class Control(motor.Control):
     def limits(
         self, speed: float | None = None, acceleration: Any = None, torque: float | None = None
     ) -> tuple[int, ...] | None:
-        """Set the highest speed, acceleration and torque, and return None; without arguments, return them.
+        """Set the highest speed, acceleration and torque, and return None; without arguments, return all three.
 
-        Speeds are in °/s and accelerations in °/s² (for a drive base's distance mm/s and mm/s²), torques in mNm. Of a
-        pair of accelerations, only the first is used.
+        The speed is in °/s, the acceleration in °/s², the torque in mNm. For the distance of a drive base, the speed is
+        in mm/s, and the acceleration in mm/s². If the program gives a pair of accelerations, only the first one is
+        used.
         """
         if isinstance(acceleration, tuple):
             acceleration = acceleration[0]
@@ -190,10 +191,13 @@ class Control(motor.Control):
         integral_deadzone: float | None = None,
         integral_rate: float | None = None,
     ) -> tuple[int, ...] | None:
-        """Set the gains `kp`, `ki` and `kd`, and the dead zone and the rate of the integral.
+        """Set the constants of the PID controller, and return None; without arguments, return all five.
 
-        Without arguments, return all five. The gains are in micro-Nm per degree, per degree and second, and per degree
-        per second.
+        Args:
+            kp: The proportional gain, in µNm per degree.
+            ki: The integral gain, in µNm per degree and second.
+            kd: The derivative gain, in µNm per degree per second.
+            integral_deadzone, integral_rate: The dead zone of the integral, and the highest rate at which it grows.
         """
         gains = super().pid(kp, ki, kd, integral_deadzone, integral_rate)
         return gains and gains[:5]

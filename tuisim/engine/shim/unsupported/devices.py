@@ -154,7 +154,7 @@ def _told(where: str, kind: Hardware, name: str) -> tuple[str, str]:
 
 
 def foreign_mode(mode: str, port: str, plugged: str) -> NotSimulated | None:
-    """Return the error for a mode that only sensors have that are not simulated; None for any other mode.
+    """Return the error for a mode of a sensor that is not simulated, such as a compass; None for any other mode.
 
     Args:
         mode: The mode, which the sensor on the port does not have.
