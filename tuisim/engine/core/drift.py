@@ -117,7 +117,7 @@ def draw_errors(drift: DriftSpec, seed: int) -> DrawnErrors:
 def sense_turn_rate_dps(left_dps: float, right_dps: float, spec: RunSpec) -> float:
     """Return the counter-clockwise rate of turn that a gyro senses, from the speeds of the wheels' motors.
 
-    The gyro does not sense the slip of accelerating wheels, which is too short.
+    Wheels that speed up slide a little, but for so short a time that the gyro does not sense it.
     """
     drift = find_drift(spec)
     if drift.is_none:
@@ -163,7 +163,7 @@ def compute_lost_echoes(flatness_deg: float, drift: DriftSpec) -> float:
 
 
 class _Wheel:
-    """A wheel that slips, with backlash between it and its motor."""
+    """A wheel with errors: it slides on the floor while it speeds up or brakes, and its gears have play."""
 
     __slots__ = ("_accelerations", "_half_mm", "_play_mm", "_slip", "_times", "before_mm")
 
@@ -191,14 +191,18 @@ class _Wheel:
         return motor_mm * self._times
 
     def compute_slip_mm(self, way_mm: float) -> float:
-        """Return how much of its way the wheel loses to slip in a tick; negative while the wheel brakes."""
+        """Return by how much less than it turns the wheel moves over the floor in a tick; negative while it brakes.
+
+        Args:
+            way_mm: How far the wheel turns in the tick, measured at its rim.
+        """
         speeding = (way_mm - self.before_mm) * self._accelerations
         self.before_mm = way_mm
         return self._slip * speeding * abs(way_mm)
 
 
 class SlippingWheels:
-    """The wheels of a run with drift: with backlash, slip, and sizes that differ from the nominal ones.
+    """The wheels of a run with drift: they slide on the floor, their gears have play, and their sizes are not exact.
 
     Args:
         spec: The run.
@@ -228,16 +232,14 @@ class SlippingWheels:
         self._turn_slip = drift.turn_slip_pc / 100
 
     def turn_deg(self, tick: int, left_deg: float, right_deg: float) -> tuple[float, float]:
-        """Return corrected turns of both motors for a tick, which include backlash, slip and the wheels' real sizes.
-
-        A robot without these errors whose motors make the corrected turns moves as far as this robot does.
+        """Return the turns of the motors with which a robot without wheel errors would move as this robot does.
 
         Args:
             tick: The number of the tick.
-            left_deg, right_deg: The real turns of the left and the right motor in the tick.
+            left_deg, right_deg: How far the left and the right motor of this robot turn in the tick.
 
         Returns:
-            The corrected turns of the left and the right motor, in degrees.
+            The turns of the left and the right motor of the robot without errors, in degrees.
         """
         if not (left_deg or right_deg):
             self._left.before_mm = self._right.before_mm = 0.0

@@ -36,7 +36,7 @@ class EndStops:
 
     @property
     def flags(self) -> int:
-        """The flag in a tick record for the end stop that the motor is at; 0 if it is at neither."""
+        """The flag in a tick record for the end stop at which the motor is; 0 while it is between its end stops."""
         if self._at_deg - self._low_deg <= NEAR_DEG:
             return self._low_flag
         return self._high_flag if self._high_deg - self._at_deg <= NEAR_DEG else 0

@@ -248,7 +248,10 @@ class Motion:
 
     @property
     def notices(self) -> bool:
-        """Whether the motors have drivers, which notice changes of their states late, at their next check."""
+        """Whether the motors have drivers.
+
+        A driver notices a change of its motor's state only at its next check, so programs learn of it late.
+        """
         return bool(self._driven)
 
     @property
@@ -272,7 +275,7 @@ class Motion:
         return min([ends_ns, *looks_ns])
 
     def notice_change(self) -> bool:
-        """Run the motors up to their drivers' checks in the next tick; return whether a driver notices a change."""
+        """Run the drivers' checks up to the end of the next tick; return whether one has noticed a change."""
         end_ns = -(-(self.tick + 1) * NS_PER_S // self._hz)
         for motor in self._driven:
             if motor.next_look_ns <= end_ns:
@@ -475,7 +478,7 @@ class Motion:
         right.bar(right_deg if blocked else 0.0)
 
     def _is_blocked(self, left_mm: float, right_mm: float) -> bool:
-        """Return whether an obstacle blocks a motion of the wheels from its start, except for a very small part.
+        """Return whether an obstacle blocks a motion of the wheels from its start; a very small motion does not count.
 
         Args:
             left_mm, right_mm: How far the left and the right wheel would roll.

@@ -275,7 +275,7 @@ def draw_noise(seed: int, tick: int, most_dps: int) -> tuple[float, float]:
 
 
 def draw_slip(seed: int, tick: int) -> tuple[float, float]:
-    """Return a random factor for the slip of the left and of the right wheel in one tick.
+    """Return two random factors for a tick: for how much the left and the right wheel slide on the floor.
 
     The factors are uniformly distributed around 0, with a variance of 1.
     """

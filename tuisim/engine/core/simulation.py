@@ -213,7 +213,7 @@ class Simulation(Motion):
             self.__class__ = FurtherMotors
 
     def _take_others(self, sources: Sequence[int | None]) -> None:
-        """Update the end stops and the last reported turns of motors that drive no wheel, after the robot was changed.
+        """After a change of the robot, update the end stops and the last reported turns of motors that drive no wheel.
 
         Args:
             sources: For each such motor its number among all motors before the change; None for a new motor.
@@ -271,7 +271,7 @@ class Simulation(Motion):
     def update_record(self) -> None:
         """Write the current tick's record again, after a user has changed something.
 
-        Its motors are running or not as they were at the tick: since then, their drivers may have advanced.
+        Whether a motor is running stays as it was at the tick: since then, its driver may have advanced.
         """
         offset = 64 * self._sink.count
         running = self._buffer[offset + FLAGS_OFFSET] & RUNNING_FLAGS
@@ -319,13 +319,13 @@ class FurtherMotors(Simulation):
         return done + super().advance(ticks - done, until_change) if done < ticks else done
 
     def notice_change(self) -> bool:
-        """Report the turns of motors that drive no wheel to `on_turns`, then call `Motion.notice_change`.
+        """Report how the motors that drive no wheel turn, then run the drivers' checks as in `Motion.notice_change`.
 
-        A report has the position and the speed of each of these motors. None is made while all of them move on at the
-        speeds of the last report.
+        A report is a call of `on_turns` with the position and the speed of each such motor. There is no report while
+        they all move on at the speeds of the last report.
 
         Returns:
-            The result of `Motion.notice_change`: whether a driver notices a change.
+            Whether a driver notices that a motor has changed.
         """
         self._report_turns()
         return super().notice_change()

@@ -55,7 +55,10 @@ def run_freely(motor: ServoMotor, time_ns: int, values: Values) -> None:
 
 
 def set_milli(motor: ServoMotor, time_ns: int, values: Values) -> None:
-    """Set the value that the motor reports for its present position, in thousandths of a count, without moving it."""
+    """Set the value that the motor reports for its present position, without moving it.
+
+    The value is in thousandths of a count, the firmware's unit of angles.
+    """
     motor.set_position(time_ns // 1000, int(values[0]))
 
 
@@ -66,7 +69,7 @@ def hold(motor: ServoMotor, time_ns: int, _values: Values) -> None:
 
 
 def hold_milli(motor: ServoMotor, time_ns: int, values: Values) -> None:
-    """Make the motor's controller hold a given position, in thousandths of a count."""
+    """Make the motor's controller hold a given position, in thousandths of a count, the firmware's unit of angles."""
     motor.control.hold(time_ns // 1000, int(values[0]))
 
 

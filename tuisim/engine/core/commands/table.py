@@ -234,9 +234,9 @@ CALLS: Mapping[Call, CallSpec] = {
 
 
 def list_parts(sim: Simulation, target: Target) -> Sequence[Any] | DriveBases:
-    """Return the parts of a simulation that a command for `target` can name by number, in the order of their numbers.
+    """Return what commands for `target` act on: the motors, the drive bases, or only the simulation.
 
-    The result is the motors, the drive bases, or only the simulation itself for commands to the robot.
+    The number of a part in a command is its index in the result.
     """
     if target is Target.MOTOR:
         return sim.motors

@@ -215,16 +215,16 @@ class Counter:
         return speed_dps
 
     def _search(self, time: int) -> tuple[int, int]:
-        """Return the change of the count, and the time that it took, from which the driver computes the motor's speed.
+        """Return a change of the count and the time that it took: the driver computes the speed from them.
 
-        The driver looks back over more and more changes, until they took at least `MIN_SPAN`.
+        The driver looks back over more and more changes, until they took at least `MIN_SPAN`. If an earlier count
+        equals the present one, it looks no further, and the result is 0 and 1: the motor has not moved.
 
         Args:
             time: Now, in ticks of the clock.
 
         Returns:
-            The change in half degrees, and the time in ticks of the clock; 0 and 1 as soon as the driver comes to an
-            earlier count that equals the present one.
+            The change in half degrees, and the time in ticks of the clock.
         """
         turned = span = 0
         straight = self._straight

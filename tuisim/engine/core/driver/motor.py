@@ -194,9 +194,9 @@ class DriverMotor(MotorDriver):
         return self._look_ns
 
     def find_last_look_ns(self, time_ns: int) -> int:
-        """Return the time in ns of the last check of the motor's state that the driver makes up to `time_ns`.
+        """Return the time in ns of the driver's last check of the motor's state that is not after `time_ns`.
 
-        If even its next check is after `time_ns`, return the time of that check.
+        If no check remains before `time_ns`, return the time of the next one.
         """
         return self._look_ns + max(0, time_ns - self._look_ns) // LOOK_NS * LOOK_NS
 
@@ -233,7 +233,10 @@ class DriverMotor(MotorDriver):
             self._fire()
 
     def _try_to_roll(self) -> bool:
-        """Begin a `Roll` if no controller and no timer is active and the axle turns freely; return whether it rolls."""
+        """Begin a `Roll`, which needs no single steps, if the motor turns freely; return whether it rolls.
+
+        A motor with a timer, such as that of a timed move, does not roll.
+        """
         return self._timers_ns == NEVER_NS and super()._try_to_roll()
 
     def _follow_roll(self, time_ns: int) -> bool:
@@ -317,7 +320,7 @@ class DriverMotor(MotorDriver):
         self.is_at_rest = False
 
     def set_duty(self, time_ns: int, duty: int) -> None:
-        """Set the duty. It changes the motor if `run-direct` was the last command; otherwise it is ignored."""
+        """Set the power of the motor in percent, called duty; ignored unless the last command was `run-direct`."""
         if self._last_command is RUN_DIRECT:
             self.wake(time_ns)
             self.run_direct(time_ns, duty)

@@ -65,7 +65,7 @@ MEDIUM = PlantSpec(
 class Circuit:
     """Values that are computed once from a motor's constants and its battery, such as the steady speed.
 
-    A motor has two such objects: one for the time in which it has a duty (0 brakes it), one for the time in which it
+    A motor has two such objects: one for the time in which it is powered or brakes, one for the time in which it
     coasts.
     """
 
@@ -141,17 +141,17 @@ class Axle:
 
     @property
     def stands(self) -> bool:
-        """Whether the axle is at rest, and the torque is too small to start it."""
+        """Whether the axle is at rest, and its motor is too weak to turn it."""
         return self.speed_dps == 0.0 and abs(self.goal_dps) <= self.circuit.breakaway_dps
 
     @property
     def is_blocked(self) -> bool:
-        """Whether only an obstacle keeps the axle at rest: the torque is large enough to start it."""
+        """Whether the axle is at rest only because of an obstacle: the motor is strong enough to turn it."""
         return not (self.speed_dps or self.stands or self._can_start(self.goal_dps > 0.0))
 
     @property
     def turns_freely(self) -> bool:
-        """Whether the axle turns, its motor has a duty, and no obstacle limits the axle."""
+        """Whether the axle turns, its motor does not coast, and no obstacle limits the axle."""
         return (
             self.circuit is self._powered
             and self.speed_dps != 0.0
@@ -160,7 +160,7 @@ class Axle:
         )
 
     def power(self, duty: float | None) -> None:
-        """Set the duty of the motor's bridge in percent; 0 brakes, and None lets the motor coast."""
+        """Set the power of the motor in percent, called duty: 0 brakes the motor, and None lets it coast."""
         self.circuit = self._coasting if duty is None else self._powered
         self.goal_dps = 0.0 if duty is None else duty * self._powered.dps_per_percent
 
@@ -216,9 +216,9 @@ class Axle:
         return left_ns
 
     def _can_start(self, forwards: bool) -> bool:
-        """Return whether an axle at rest begins to turn: the torque is large enough, and no obstacle is in the way.
+        """Return whether an axle at rest begins to turn: the motor is strong enough, and no obstacle is in the way.
 
-        `forwards` is the direction of the torque.
+        `forwards` is the direction in which the motor pushes.
         """
         if abs(self.goal_dps) <= self.circuit.breakaway_dps:
             return False

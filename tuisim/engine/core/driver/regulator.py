@@ -237,9 +237,9 @@ class MotorDriver:
         return self._roll is not None
 
     def _advance_roll(self, time_ns: int) -> bool:
-        """Advance the roll to the last step that is due, and return whether it goes on.
+        """Advance the present `Roll` to the last step that is due up to a time; return whether it goes on after that.
 
-        If it has ended before that, remove it. Without a roll, return False.
+        A roll that has ended is removed. Return False if there is no roll.
         """
         roll = self._roll
         if roll is None:
@@ -256,7 +256,7 @@ class MotorDriver:
         return False
 
     def leave_roll(self) -> None:
-        """End the roll, and go on in single steps from the axle's present angle."""
+        """End the present `Roll`, and go on in single steps from the axle's present angle."""
         if self._roll is not None:
             self._roll.tell_counter()
             self._roll = None

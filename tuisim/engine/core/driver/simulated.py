@@ -188,9 +188,10 @@ class SimulatedMotor(DriverMotor):
 
     @property
     def aim_dps(self) -> float:
-        """Target speed in degrees per second, negative backwards: the setpoint of the speed control.
+        """The speed that the speed control has to reach, in degrees per second; negative backwards.
 
-        While the speed control is not active, it is the speed without friction to which the duty leads.
+        While the speed control is not active, it is the speed that the motor would reach with its present power and
+        without friction.
         """
         if self._control is self.speed_control:
             return float(self.speed_control.setpoint)

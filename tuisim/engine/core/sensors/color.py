@@ -75,7 +75,10 @@ class ColorReading:
 
     @property
     def reflection(self) -> int:
-        """The value of Pybricks' `reflection()` in whole percent: of the red channel or, on a hub, of all channels."""
+        """The value of Pybricks' `reflection()` in whole percent.
+
+        It is that of the red channel; on a hub, it is that of red, green and blue together.
+        """
         if not self.is_hubs:
             return int(self.red) * 100 // WHITE
         return sum(measure_hub_channels(self.rgb)) * 100 // (3 * HUB_WHITE)

@@ -46,12 +46,14 @@ class Ending(IntEnum):
 def _splice(
     start: Segment, spliced: Segment | None, build: Callable[[Segment], Trajectory]
 ) -> Trajectory:
-    """Return a new trajectory, which begins earlier if the motion goes on with the same acceleration as before.
+    """Return the trajectory of a new motion.
+
+    If the new motion goes on with the same acceleration as the previous one, the trajectory begins where that
+    acceleration began.
 
     Args:
         start: Where, when and how fast the new motion begins.
-        spliced: The segment of the previous trajectory that is running at the start; None if there is none. If the new
-            trajectory has the same acceleration, it begins where this segment began.
+        spliced: The segment of the previous trajectory that is running at the start; None if there is none.
         build: Takes a start, and returns the trajectory from it.
     """
     trajectory = build(start)
@@ -68,9 +70,9 @@ class Controller:
 
     Args:
         settings: The limits, gains and tolerances, in counts.
-        slips: Whether a new motion after a blocked one begins at the measured position, not at the one that the blocked
-            motion should have reached. On a real robot both are equal: wheels that push it against a wall slip, and
-            their encoders count on.
+        slips: Whether the motion after a blocked one begins at the measured position. Otherwise it begins where the
+            blocked motion should have been. On a real robot both are equal: while a wall holds the robot back, the
+            wheels slide on the floor and turn on, and so do their encoders.
     """
 
     __slots__ = (
@@ -195,10 +197,10 @@ class Controller:
         self._begin(trajectory, timed=False)
 
     def match_pace(self, other: Controller) -> None:
-        """Change this controller's trajectory so that it takes the same time as that of another controller.
+        """Change this controller's trajectory so that it takes the same time as that of the controller `other`.
 
-        It becomes a copy of the other trajectory, scaled to the distance of the present one. If one of the two
-        controllers has no trajectory, nothing changes.
+        It becomes a copy of the trajectory of `other`, scaled to this controller's own distance. If either controller
+        has no trajectory, nothing changes.
         """
         if self.trajectory is not None and other.trajectory is not None:
             ours = self.trajectory
@@ -287,7 +289,7 @@ class Controller:
         return min(abs(acceleration), self.settings.acceleration)
 
     def _is_running_evenly(self, now_us: int, rate: int) -> bool:
-        """Return whether the motion already runs at a constant rate, so that a command to do so changes nothing."""
+        """Return whether the motion already runs at the constant rate `rate`, so that it need not begin again."""
         if (
             not self.timed
             or self.trajectory is None
@@ -309,12 +311,12 @@ class Controller:
     def _find_start(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
         """Return where a new trajectory begins, and the segment of the present trajectory that is running there.
 
-        The new trajectory begins at the present point of the present trajectory. If there is none, or if the robot's
-        wheels have slipped, it begins at the point that `measured` returns.
+        The new trajectory begins where the present one has arrived. It begins at the point that `measured` returns if
+        there is no trajectory, or if `slips` is set and the motion was blocked.
 
         Returns:
-            The start, and the running segment; None instead of a segment if none is running, or if it has a constant
-            speed.
+            The start, and the running segment. The segment is None if there is no trajectory, or if the speed is
+                constant.
         """
         if self.trajectory is None or (self._slips and self._behind_milli):
             return measured(now_us), None

@@ -226,7 +226,7 @@ class DriveBase:
         self.heading.settings = replace(self.heading.settings, speed_window_ms=window_ms)
 
     def _follow_gyro(self) -> None:
-        """Update the difference between the heading by the motors and that by the gyro, if the gyro is in use."""
+        """If the gyro is in use, store by how much the heading that the motors measure differs from its heading."""
         if self.uses_gyro:
             counts = self._find_gyro_deg() * self.heading.settings.counts_per_unit
             self._offset = self.left.milli - self.right.milli - round(counts * MILLI)
@@ -344,9 +344,9 @@ class DriveBase:
         return Segment(now_us, turned, self.find_rates(now_us)[1], 0)
 
     def _begin(self, now_us: int) -> None:
-        """Prepare for a new motion, which begins at rest unless the drive base moves both motors.
+        """Prepare for a new motion. If the drive base moves both motors already, the new motion goes on from there.
 
-        If only one motor follows the drive base, that motor coasts.
+        Otherwise, the new motion begins at rest; if one motor still follows the drive base, it coasts.
         """
         self._goal = None
         if not self.active:

@@ -402,7 +402,7 @@ class ServoMotor:
         return 0 if guide.end_us is not None else ENDLESS
 
     def _can_follow(self, guide: Guide, now_us: int) -> bool:
-        """Return whether the motor is fast enough to follow a guide in the next tick and in the rest of the segment."""
+        """Return whether the motor is fast enough to follow a guide in the next tick, and then to the segment's end."""
         assert self._course is not None
         next_deg = (
             abs(guide.find_target(now_us + self._tick_us, self) - self._course) / HALVES_PER_DEG

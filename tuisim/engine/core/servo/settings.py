@@ -61,18 +61,18 @@ class ControlSettings:
 
     @property
     def counts_per_unit(self) -> float:
-        """Number of the controller's counts per unit in which the program gives positions."""
+        """How many of the controller's counts there are in one of the program's units, a degree or a mm."""
         return self.scale / _ONE
 
     @property
     def _steps(self) -> int:
-        """Number of the firmware's steps, thousandths of a degree, per unit of the program, rounded down."""
+        """How many steps of the firmware, thousandths of a degree, are in one unit of the program; rounded down."""
         return int(self.counts_per_unit * STEPS + 1e-3)
 
     def tell(self, counts: float) -> int:
         """Return a rate, acceleration or tolerance, given in counts, as a whole number of the program's units.
 
-        Firmware that computes with torques truncates the number; other firmware rounds it.
+        Version 4 of the firmware truncates the number; the earlier version rounds it.
         """
         return int(counts * STEPS / self._steps) if self.torque_unm else self.units(int(counts))
 
@@ -137,7 +137,11 @@ class ServoKind:
     """The voltage at which the motor has its highest torque."""
 
     def compute_gains(self, tolerance_deg: int) -> tuple[int, ...]:
-        """Return the gains kp, ki and kd: kp and ki for a tolerance in degrees, kd for the motor's usual tolerance."""
+        """Return the gains kp, ki and kd of a motor's controller.
+
+        Args:
+            tolerance_deg: The tolerance from which kp and ki follow; kd follows from the motor's usual tolerance.
+        """
         torque_unm = self.torque_unm * min(self.max_mv, TUNED_MV) // self.max_mv
         kp = torque_unm // tolerance_deg
         return kp, kp // 2, torque_unm // self.position_tolerance_deg // 8

@@ -181,7 +181,7 @@ def build_angle_move(
 def _speed_up(
     length: int, from_rest: int, top_rate: int, acceleration: int, slowing: int
 ) -> tuple[int, int, int]:
-    """Return where in a move the rate is constant: the begin and the end of that part in counts, and that rate.
+    """Return the part of a move in which the rate is constant: where it begins and ends, in counts, and the rate.
 
     Begin and end are equal if the move is too short to reach `top_rate`. Rates are in counts per second.
 
@@ -189,7 +189,8 @@ def _speed_up(
         length: How far the move goes, in counts.
         from_rest: Where the move would have begun if it had sped up from rest; 0 or less.
         top_rate: The highest rate.
-        acceleration, slowing: Acceleration before that part and deceleration after it, in counts per second squared.
+        acceleration: The acceleration before the part with the constant rate, in counts per second squared.
+        slowing: The deceleration after it, in the same unit.
     """
     ramps = top_rate * top_rate * (acceleration + slowing) // (2 * acceleration * slowing)
     if length - from_rest >= ramps:
