@@ -26,7 +26,7 @@ def _is_world(picture: Pixels) -> bool:
     """Return whether the mat `Grey_bands` with its bands and spots, and a robot on it, is a good part of a picture."""
     has_greys = all(_share(picture, (grey, grey, grey)) > 0.01 for grey in GREYS)
     has_spots = all(_share(picture, spot) > 0.0002 for spot in SPOTS)
-    has_robot = _share(picture, (0, 95, 215)) > 0.001
+    has_robot = _share(picture, (0, 95, 215)) > 0.0005
     return _share(picture, (255, 255, 255)) > 0.15 and has_greys and has_spots and has_robot
 
 
