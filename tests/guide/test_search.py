@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -79,6 +80,18 @@ def test_a_found_row_of_a_table_is_located_on_the_page_at_each_width(
     lines = draw_page(load_pages()[found.name], width)
     _, row = find_rows(lines, found.heading, found.passage)
     assert "".join(part for part, _ in lines[row]).startswith(begins)
+
+
+@pytest.mark.parametrize("width", [36, 72, 118])
+def test_a_found_row_is_not_taken_for_an_earlier_one_with_the_same_words(width: int) -> None:
+    found = search("gyro drift")[0]
+    lines = draw_page(load_pages()[found.name], width)
+    _, row = find_rows(lines, found.heading, found.passage)
+    end = find_passage_end(lines, row, found.passage)
+    shown = "".join("".join(part for part, _ in line) for line in lines[row:end])
+    assert shown.split()[0] == "gyro_dps"
+    letters = Counter(re.findall(r"\w", flatten_passage(found.passage)))
+    assert not letters - Counter(re.findall(r"\w", shown))
 
 
 @pytest.mark.parametrize("width", [36, 76, 118])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
+from functools import lru_cache
 from itertools import accumulate
 
 from tuisim.guide.catalogue import LINK, Page
@@ -43,10 +45,7 @@ def find_rows(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
     top = next((row for row, text in enumerate(texts) if heading and text.strip() == heading), 0)
     # Only letters are compared, as drawn lines break at other places than the source, and tables are laid out.
     letters = [_LETTERS.sub("", text) for text in texts[top:]]
-    plain_texts = [
-        _LETTERS.sub("", text)
-        for text in (flatten_passage(passage), max(split_cells(passage), key=len))
-    ]
+    plain_texts = [_read_letters(text) for text in (passage, max(split_cells(passage), key=len))]
     prefixes = [plain_texts[0][:count] for count in _LONG_PREFIXES]
     prefixes += [
         text[:count]
@@ -57,9 +56,43 @@ def find_rows(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
     offset = next((start for start in starts if start >= 0), 0)
     ends = accumulate(map(len, letters))
     row = top + next((row for row, end in enumerate(ends) if end > offset), 0)
-    while passage.startswith("|") and row > top and texts[row].startswith("  "):
-        row -= 1  # go up to the first cell of the table's row
-    return top, row
+    return top, _find_table_row(lines, top, passage, row) if passage.startswith("|") else row
+
+
+def _find_table_row(lines: list[Line], top: int, passage: str, default: int) -> int:
+    """Return the row of a drawn page at which a row of a table begins.
+
+    Cells are drawn beside each other, so their texts are mixed: of the rows that begin with the first word, the result
+    is the one whose letters are most similar.
+
+    Args:
+        lines: The lines of the page.
+        top: The first row that may be the result.
+        passage: The row of the table in Markdown.
+        default: The result if no row begins with the first word.
+    """
+    word = next(iter(flatten_passage(split_cells(passage)[0]).split()), "")
+    letters = Counter(_read_letters(passage))
+
+    def count_differences(row: int) -> int:
+        drawn = Counter(_LETTERS.sub("", _join(lines[row : find_passage_end(lines, row, passage)])))
+        return (letters - drawn).total() + (drawn - letters).total()
+
+    rows = [
+        row
+        for row in range(top, len(lines))
+        if _join(lines[row : row + 1]).removeprefix(" ").startswith(word)
+    ]
+    return min(rows, key=count_differences, default=default)
+
+
+@lru_cache(8)
+def _read_letters(passage: str) -> str:
+    return _LETTERS.sub("", flatten_passage(LINK.sub(_format_link, passage)))
+
+
+def _join(lines: list[Line]) -> str:
+    return "".join(part for line in lines for part, _ in line)
 
 
 def find_passage_end(lines: list[Line], row: int, passage: str) -> int:
@@ -70,8 +103,11 @@ def find_passage_end(lines: list[Line], row: int, passage: str) -> int:
         row: The row at which the passage begins.
         passage: The passage in Markdown.
     """
-    left = len(_LETTERS.sub("", flatten_passage(passage)))
+    left = len(_read_letters(passage))
     while left > 0 and row < len(lines):
-        left -= len(_LETTERS.sub("", "".join(part for part, _ in lines[row])))
+        left -= len(_LETTERS.sub("", _join(lines[row : row + 1])))
+        row += 1
+    # In a narrow table, each cell stands below the first one, after its heading.
+    while passage.startswith("|") and _join(lines[row : row + 1]).startswith("  "):
         row += 1
     return row
