@@ -191,7 +191,7 @@ class _Wheel:
         return motor_mm * self._times
 
     def compute_slip_mm(self, way_mm: float) -> float:
-        """Return by how much less than it turns the wheel moves over the floor in a tick; negative while it brakes.
+        """Return the distance that the wheel loses in a tick because it slides; negative while it brakes.
 
         Args:
             way_mm: How far the wheel turns in the tick, measured at its rim.

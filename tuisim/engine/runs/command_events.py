@@ -318,9 +318,10 @@ class CommandIndex:
     # Finding
 
     def find_scales(self, tick: int) -> dict[str, float]:
-        """Return how many degrees the program counts at a tick while a motor turns by one degree, by the motor's port.
+        """Return the scales of the motors at a tick, by the motor's port.
 
-        The number is 1 for a port that is missing in the result.
+        A scale is the number of degrees that the program counts while a motor turns by one degree. It is 1 for a port
+        that is missing in the result.
         """
         return {port: scale for when, port, scale in self.scale_changes if when <= tick}
 
@@ -338,7 +339,10 @@ class CommandIndex:
         ]
 
     def find_events(self, text: str = "") -> list[int]:
-        """Return the numbers of the events whose part and command contain all words of a text; all if it is empty."""
+        """Return the indices of the events in whose part and command all words of a text occur.
+
+        With an empty text, return the indices of all events.
+        """
         words = text.lower().split()
         names = {
             code: f"{self._name_part(code)} {_name_call(code)} {CALL_WORDS[_find_call(code)].text}".lower()
@@ -437,7 +441,7 @@ class CommandIndex:
         return f"turned {_round(speeds[:count].sum() / self._hz)}° {when}"
 
     def _find_end(self, number: int) -> int:
-        """Return the tick at which an event's part got its next command to move; without one, the newest tick."""
+        """Return the tick at which an event's part got its next command to move; if it got none, the newest tick."""
         if len(self._ends) != len(self):
             self._ends = self._list_ends()
         return self._ends[number]

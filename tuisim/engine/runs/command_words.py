@@ -28,7 +28,9 @@ class Quantity:
     """Names that the values 0, 1, … stand for; empty if the value is a number."""
 
     def write(self, low: float, high: float) -> str:
-        """Return the value of a command as text; for a command that was repeated with other values, their range.
+        """Return the value of a command as text, such as `500 °/s`.
+
+        If the command was repeated with other values, return their range, such as `400 … 500 °/s`.
 
         Args:
             low, high: The lowest and the highest value; if they are equal, the text has one number.
@@ -185,7 +187,7 @@ def describe_aim(call: Call, values: Sequence[float]) -> str:
 def describe_command(
     call: Call, values: Sequence[float], low: float, high: float, tick_hz: int
 ) -> str:
-    """Return a command in words, such as `run 500 °/s`; if it was repeated with other values, with their range.
+    """Return a command in words: `run 500 °/s`, or `run 400 … 500 °/s` if it was repeated with other values.
 
     Args:
         call: The kind of command.

@@ -390,7 +390,7 @@ def _flatten(plain: Any, name: str = "") -> dict[str, Any]:
 
     Args:
         plain: The data.
-        name: The name of the data in the table, with which each name in the result begins; empty for none.
+        name: The begin of each name in the table, such as `world.noise`; empty for none.
     """
     if isinstance(plain, dict) and plain:
         pairs = [(f"{name}.{key}" if name else str(key), value) for key, value in plain.items()]

@@ -199,9 +199,9 @@ def build_telemetry_columns(
 ) -> dict[str, Array]:
     """Return the telemetry of a run as columns by name, with one row per tick, including tick 0 (the start).
 
-    The columns are `time` in simulated seconds; MOTION_COLUMNS; those of every sensor, such as `left_red` (0 … 255),
-    `ultrasonic_mm`, `gyro_deg`; those of every motor with a driver, such as `left_asked_dps`; and `line`, the program's
-    line that ran when the tick passed, 0 for none. Damaged records are left out; see `describe_damage`.
+    The first column is `time`, in simulated seconds. Then come those of the robot, such as `x_mm`, of every sensor,
+    such as `left_red`, and of the motors if they are recorded, such as `left_asked_dps`. The last one is `line`, the
+    program's line that ran at the tick, or 0 for none. Damaged records are left out; see `describe_damage`.
 
     Args:
         run: The run.

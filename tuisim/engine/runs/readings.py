@@ -148,7 +148,7 @@ class Readings:
     """Number of readings for which the file had no space."""
 
     def find(self, modes: tuple[str, ...]) -> Array:
-        """Return the rows of those readings for which the sensor was in one of some modes, in order.
+        """Return those rows of the record in which a sensor was read in one of the given modes, in order of time.
 
         Args:
             modes: The names of the modes, such as `US-DIST-CM`.

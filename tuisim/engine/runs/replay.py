@@ -71,9 +71,9 @@ class CommandCheck:
         """The ranges of the values of calls to parts, as far as they are known of this robot."""
 
     def find_disorder(self, time_ns: int) -> str:
-        """Return a text that says why the next command cannot have been given at a time; empty if it can.
+        """Return why the next command cannot have been given at a time, in words that follow "a command that".
 
-        The text, like that of `find_fault`, continues a sentence that begins with "a command that".
+        The text is empty if it can have been given then.
         """
         if time_ns < self._newest_ns:
             return "goes back in time"

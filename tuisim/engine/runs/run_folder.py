@@ -97,7 +97,7 @@ class StoredRun:
 
     @property
     def state(self) -> RunState:
-        """How the run ended; of a run without an end, whether it is running or was interrupted."""
+        """How the run ended. If its end was not recorded, whether it is still running or was interrupted."""
         if self.end is not None:
             return self.end.end
         return find_state_without_end(self.folder)
@@ -402,7 +402,7 @@ def _read_recording(view: TelemetryView | OutputView, end: Ended | None) -> str:
     """Read a recording once, and return a text that says what is damaged or missing in it; empty if nothing is.
 
     Args:
-        view: The recording, which is then held.
+        view: The recording. After this call it does not read more of its file by itself.
         end: The end of the run, which tells whether records are missing; None if it has not ended.
     """
     view.hold()

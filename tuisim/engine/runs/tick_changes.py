@@ -74,7 +74,7 @@ def find_pen(commands: Iterable[SimulationCommand], *, is_down: bool) -> bool:
 
 
 def _find_position_deg(call: Call, values: Values, scale: float) -> float | None:
-    """Return the position in degrees that a command gives to a motor without turning it; None for other commands.
+    """Return the position in degrees that a command makes a motor report, without turning it; None for other commands.
 
     Args:
         call: The kind of command.

@@ -128,9 +128,9 @@ class _View(ABC):
 
     Args:
         folder: The run folder.
-        is_checked: Whether the program may have changed the file, as in a run that is running or falsified: data that
-            the simulation cannot have written, and a file that disappears, are then damage, and the data is not
-            returned.
+        is_checked: Whether to check that the data comes from the simulation, because the program may have changed the
+            file. Data that the simulation cannot have written is then not returned, and counts as damage; so does a
+            file that disappears.
 
     Raises:
         LogError: by every method, if this machine cannot read the file.
@@ -215,7 +215,10 @@ class _View(ABC):
         return self._damage
 
     def hold(self) -> str:
-        """Read as `read_new` does, and set `holds`."""
+        """Read what was written since the last call, and then keep the copy as it is until the next `read_new`.
+
+        Return why the file is not a valid recording, or an empty text.
+        """
         damage = self.read_new()
         self.holds = True
         return damage
@@ -630,6 +633,7 @@ def open_views(folder: Path, is_checked: bool = False) -> tuple[TelemetryView, O
 
     Args:
         folder: The run folder.
-        is_checked: Whether the program may have changed the files, as in a run that is running or falsified.
+        is_checked: Whether to check that the data comes from the simulation, because the program may have changed the
+            files.
     """
     return TelemetryView(folder, is_checked), OutputView(folder, is_checked)

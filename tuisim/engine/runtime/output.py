@@ -159,10 +159,11 @@ class Addresses:
 
 
 def _is_meant(one: object, before: str) -> bool:
-    """Return whether a printed address is that of an object, by the name of a class in the text before the address.
+    """Return whether a printed address can be that of an object: whether the text before it has the name of its class.
 
-    If it is the name of another class, an earlier object at the same address was printed. For an object of the
-    program's own class, the result is always True, because its `__repr__` can write any text.
+    An example of such a text is `<Motor object`. With the name of another class, an earlier object at the same address
+    was printed. If the program itself has defined the class, the result is True, because its `__repr__` can write any
+    text.
     """
     kind = type(one)
     # The `__repr__` of a program's own class need not contain the name of the class.

@@ -181,7 +181,7 @@ def _has_finalizer(value: object) -> bool:
 
 
 def _is_data(value: object) -> bool:
-    """Return whether a value is data: neither code nor an open file."""
+    """Return whether a value is data, such as a number or a list, and not code or an open file."""
     return not isinstance(
         value, types.ModuleType | types.FunctionType | types.BuiltinFunctionType | type | io.IOBase
     )
@@ -193,9 +193,9 @@ def _add(outcome: ProgramOutcome, words: str) -> ProgramOutcome:
 
 
 def _add_caught(outcome: ProgramOutcome) -> ProgramOutcome:
-    """Return an outcome whose summary also names the first NotSimulated error, which the program has caught.
+    """Return an outcome whose summary also names the first NotSimulated error, if the program has caught one.
 
-    Return the outcome itself if there was no such error, or if the run neither finished nor reached its time limit.
+    Only the outcomes of programs that have finished, or reached their time limit, are changed.
     """
     if not NotSimulated.first or outcome.end not in (End.FINISHED, End.TIME_LIMIT):
         return outcome

@@ -68,7 +68,7 @@ class RunLimits:
 class StopProgram(BaseException):
     """Raised in the program to end it.
 
-    It is not an `Exception`, so that handlers of the program do not catch it.
+    It is not an `Exception`, so that no `except Exception` of the program catches it.
 
     Args:
         end: How the run ends.

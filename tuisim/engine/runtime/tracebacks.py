@@ -328,11 +328,13 @@ def _add_hint(trace: Any, error: BaseException) -> None:
 
 
 def _find_text(error: BaseException, last: traceback.FrameSummary) -> str:
-    """Return which variable in the line of an error is a text with a number, as `input` returns it; empty if none.
+    """Return a hint that a variable in the line of an error is a text with a number, as `input` returns it.
+
+    The hint names the variable; it is empty if there is no such variable.
 
     Args:
         error: The error.
-        last: The frame that raised it, of the program.
+        last: The frame of the program that raised it.
     """
     for frame, line in traceback.walk_tb(error.__traceback__):
         if (frame.f_code.co_filename, line) == (last.filename, last.lineno):

@@ -171,8 +171,8 @@ def all_ports(session: DeviceSession) -> list[SimDevice]:
 def ports_hint(session: DeviceSession, class_name: str) -> str:
     """Return a hint for the error about a missing motor or sensor: which motors or sensors the robot has, by port.
 
-    `class_name` is the kernel's name of the class of the missing device. The hint is empty if that is neither the class
-    of motors nor the class of sensors.
+    `class_name` is the kernel's name of the class of the missing device, such as `tacho-motor`. For devices other than
+    motors and sensors, the hint is empty.
     """
     if class_name not in (MOTOR_CLASS, SENSOR_CLASS):
         return ""

@@ -278,7 +278,7 @@ class DriverMotor(MotorDriver):
         self._skip_looks(time_ns)
 
     def _skip_looks(self, time_ns: int) -> None:
-        """Skip the driver's checks until a time at which the motor's state cannot have changed."""
+        """Skip the driver's checks up to a time: the motor's state cannot change until then."""
         if self._look_ns <= time_ns:
             passed = (time_ns - self._look_ns) // LOOK_NS + 1
             self._look_ns += passed * LOOK_NS

@@ -190,7 +190,10 @@ class Axle:
         return True
 
     def advance(self, duration_ns: float) -> float:
-        """Turn the axle for a time, but no longer than until it comes to rest; return the rest of the time in ns."""
+        """Turn the axle for a time, or until friction stops it; return the time that is then left, in ns.
+
+        The result is 0 if an obstacle stops the axle, or if the axle was at rest and does not start.
+        """
         circuit = self.circuit
         speed_dps = self.speed_dps
         forwards = speed_dps > 0.0 if speed_dps else self.goal_dps > 0.0

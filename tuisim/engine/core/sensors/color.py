@@ -210,9 +210,10 @@ class Response(NamedTuple):
     """How much larger the value is on white."""
 
     def channel(self, value: float, is_over_field: bool) -> float:
-        """Return the sensor's value for one channel, red, green or blue, of what it sees.
+        """Return the sensor's value for one channel (red, green or blue) of what it sees.
 
-        Nothing reflects beyond the field, so the value on black is not added there.
+        It is the sensor's value on black, plus a part that grows with the channel. Beyond the field, nothing reflects
+        light, so it is only this part.
 
         Args:
             value: The channel of the mat, 0 … 255.

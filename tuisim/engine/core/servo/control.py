@@ -211,7 +211,7 @@ class Controller:
     def run_in_proportion(
         self, now_us: int, measured: Measure, other: Controller, part: int, whole: int
     ) -> None:
-        """Begin a motion with the times of another controller's motion, and its distances times `part` / `whole`.
+        """Begin a motion in step with that of the controller `other`; its distances are `part` / `whole` as long.
 
         Args:
             now_us: The present time.

@@ -232,7 +232,10 @@ def find_steady_dps(kind: str, actuation: int) -> float:
 
 
 def combine_settings(motor: ControlSettings, counts_per_unit: float) -> ControlSettings:
-    """Return the settings of one controller of a drive base, which moves the sum or the difference of two motors.
+    """Return the settings of one of a drive base's two controllers.
+
+    One controls the sum of the motors' positions, from which the robot's distance follows, the other their difference,
+    from which its heading follows.
 
     Args:
         motor: The settings of each motor.

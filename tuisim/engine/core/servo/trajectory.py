@@ -28,7 +28,7 @@ def divide(dividend: int, divisor: int) -> int:
 
 
 def compute_duration_us(change: int, rate: int) -> int:
-    """Return how long something takes to change by `change` at `rate` per second, in whole milliseconds given in µs."""
+    """Return the time in µs that a change by `change` takes at `rate` per second, cut to whole milliseconds."""
     return divide(change * 1000, rate) * MS_US
 
 

@@ -225,7 +225,8 @@ def prepare_template(key: Hashable, folder: Path, run: Mapping[str, Any]) -> Non
     Args:
         key: The key of the template.
         folder: The folder of a run of this robot in this world.
-        run: The contents of the folder's `run.json`, as the run was started.
+        run: The contents of its `run.json` when the run started. The file is not read, as the program could have
+            changed it.
     """
     with _Starts.lock:
         if _Starts.warm is not None and _Starts.warm.is_usable:
@@ -376,7 +377,10 @@ def _has_mark(pid: int, marked: int) -> bool:
 
 
 def _build_environment() -> dict[str, str]:
-    """Return the environment variables of a child: few of those of the user, and others that make runs reproducible."""
+    """Return the environment variables of a child.
+
+    A few, such as PATH, are those of the user; others have fixed values, so that runs are reproducible.
+    """
     inherited = {
         name: os.environ[name]
         for name in ("PATH", "HOME", "LD_LIBRARY_PATH", "TMPDIR")

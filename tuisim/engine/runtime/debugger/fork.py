@@ -30,7 +30,7 @@ BLOCKED_LIMIT_S = 2.0
 class TooLong(BaseException):
     """Raised when evaluating a value takes too long.
 
-    It is not an `Exception`, so that handlers of the program do not catch it.
+    It is not an `Exception`, so that no `except Exception` of the program catches it.
     """
 
 

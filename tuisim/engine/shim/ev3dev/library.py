@@ -284,7 +284,7 @@ def _patch_tank(motor: Any, plugs: Plugs) -> None:
 
 
 def refuse_values(sensor: Any, plugs: Plugs) -> None:
-    """Patch `value` of a class of sensors: it raises NotSimulated if no mode of the sensor has the value to read."""
+    """Patch the method `value` of a class of sensors, so that reading a value that no mode has raises NotSimulated."""
     read = sensor.value
 
     @wraps(read)

@@ -59,7 +59,7 @@ class Awaited:
 
 @dataclass(slots=True)
 class Brick:
-    """The brick of one run, as the simulated classes of Pybricks use it."""
+    """The part of the brick that the simulated classes of Pybricks use: motors, sensors, clock and messages."""
 
     session: DeviceSession
     built: BuiltBrick

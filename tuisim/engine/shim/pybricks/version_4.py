@@ -312,7 +312,10 @@ class DriveBase(robotics.DriveBase):
         return round_number(counts / base.heading.settings.counts_per_unit)
 
     def use_gyro(self, use_gyro: bool) -> None:
-        """Take the heading from the hub's gyro, or for False from the wheels; a change lets the motors coast."""
+        """Take the heading from the hub's gyro if the argument is True, and from the wheels if it is False.
+
+        If this is a change, the motors coast.
+        """
         if not self.brick.session.sim.spec.robot.hub:
             raise refused("the EV3 has no gyro inside")
         if bool(use_gyro) != self._base.uses_gyro:

@@ -45,9 +45,9 @@ def find_nearest(measured: tuple[int, int, int], colors: Sequence[Any]) -> Any:
 
 
 def _find_place(color: tuple[int, int, int]) -> tuple[float, float, float]:
-    """Return the coordinates in a double cone of a colour, given by hue, saturation and value.
+    """Return the three coordinates of a colour in the space in which the firmware compares colours, a double cone.
 
-    The firmware measures distances between colours there.
+    `color` is hue, saturation and value.
     """
     hue, saturation, value = color
     chroma = max(0, value) * saturation

@@ -142,7 +142,9 @@ class IMU(Accelerometer):
         angular_velocity_scale: Any = None,
         acceleration_correction: Any = None,
     ) -> tuple[Any, ...] | None:
-        """Set the thresholds of rest and the corrections; without arguments, return them. They change no measurement.
+        """Set below which values the hub counts as at rest, and the corrections of its measurements.
+
+        Without arguments, return these settings. In the simulation they change no measurement.
 
         Raises:
             ValueError: `heading_correction` or a scale, both in degrees per turn, is too far from 360.
