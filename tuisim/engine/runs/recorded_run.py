@@ -228,7 +228,10 @@ _FINEST = 500
 
 
 class _Level:
-    """The last notable value of a variable. A change by more than `_LEVEL_SHARE` of the variable's range is notable."""
+    """The last notable value of a variable: with it, notable changes are found, which the timeline marks.
+
+    A change by more than `_LEVEL_SHARE` of the variable's range is notable.
+    """
 
     def __init__(self, value: float) -> None:
         self._low = self._high = self._level = value

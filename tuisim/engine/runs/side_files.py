@@ -281,7 +281,10 @@ def copy_modules(source: Path, target: Path) -> None:
 
 @dataclass(frozen=True, slots=True)
 class FileRead:
-    """The state of a file when a program first opened it to read it."""
+    """The state of a file when a program first opened it to read it.
+
+    With it, a re-run can tell whether the file has changed since then.
+    """
 
     path: str
     there: bool

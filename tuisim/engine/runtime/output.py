@@ -39,7 +39,7 @@ _NEVER_KEPT = (types.FrameType, types.TracebackType)
 
 
 class _Given(NamedTuple):
-    """The number that is printed in place of an object's address, and whether the object still exists."""
+    """The number that is printed in place of an object's address, with a check whether the object still exists."""
 
     number: int
     is_same: Callable[[], object]

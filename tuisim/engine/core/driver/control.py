@@ -24,7 +24,9 @@ def divide(dividend: int, divisor: int) -> int:
 
 
 class Controller:
-    """A controller: it computes a duty from a setpoint and a measured value.
+    """A PID controller: it computes the power of a motor in percent, its duty.
+
+    The duty follows from the difference between the position or speed to reach, the setpoint, and the measured one.
 
     Args:
         constants: Proportional, integral and derivative constant; `reset` restores them.

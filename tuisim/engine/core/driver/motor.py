@@ -83,7 +83,7 @@ class SetPoints(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Ramp:
-    """A gradual change of the speed setpoint."""
+    """A gradual change of the speed that the motor has to keep, its speed setpoint."""
 
     start_jiffy: int
     jiffies: int

@@ -18,7 +18,7 @@ STEP_S = STEP_NS / NS_PER_S
 
 @dataclass(frozen=True, slots=True)
 class PlantSpec:
-    """The constants of a motor together with the load that it moves."""
+    """The physical constants of a motor together with the load that it moves, such as its inertia and friction."""
 
     resistance_ohm: float
     """Resistance of the winding, the bridge and the battery."""

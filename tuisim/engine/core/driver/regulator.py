@@ -48,7 +48,9 @@ MODELS = {"large": Model(LARGE, 1050, 80_000), "medium": Model(MEDIUM, 1560, 160
 
 
 class MotorDriver:
-    """A motor with its driver. At first the axle is at rest, and no controller is active.
+    """A motor with its driver, the part of the brick's kernel that controls it.
+
+    At first the axle is at rest, and no controller is active.
 
     Args:
         model: The kind of motor.

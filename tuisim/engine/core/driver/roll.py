@@ -27,7 +27,7 @@ MAX_ERROR_S = 1e-6
 
 
 class Roll:
-    """A stretch of time in which an axle turns freely under a constant duty.
+    """A stretch of time in which an axle turns freely, and the power of its motor stays the same.
 
     A formula gives angle and speed at any time in it, without single steps. The counter is updated only when the roll
     ends.
@@ -146,7 +146,7 @@ class Roll:
 
 
 def begin_roll(axle: Axle, counter: Counter, begin_ns: int) -> Roll | None:
-    """Return the roll that an axle begins at a time; None if it turns too slowly, or not freely."""
+    """Return the `Roll` that an axle begins at a time; None if the axle turns too slowly, or not freely."""
     if abs(axle.speed_dps) < MIN_ROLL_DPS or axle.low_deg > -inf or axle.high_deg < inf:
         return None
     is_straight = counter.is_straight(axle.speed_dps)

@@ -77,7 +77,10 @@ Measure = Callable[[int], Segment]
 
 
 class Trajectory(NamedTuple):
-    """A motion in segments: it speeds up or slows down to a rate, keeps it, and stops."""
+    """The planned course of a motion: it speeds up or slows down to a rate, keeps this rate, and stops.
+
+    Each of these three parts is a `Segment`, and so is the rest after them. An endless motion never stops.
+    """
 
     first: Segment
     even: Segment

@@ -392,7 +392,7 @@ class _Polling:
 
 
 class _AtOnce(_Polling):
-    """A `_Polling` that returns immediately, without waiting."""
+    """The object with which a patched selector polls: it never waits, because the selector does."""
 
     def poll(self, timeout_ms: Any = None, *more: Any) -> Any:
         """Return the events that have happened, without waiting for any."""

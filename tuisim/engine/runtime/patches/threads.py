@@ -29,7 +29,7 @@ def patch_threads(scheduler: Scheduler, ended_by: EndedBy) -> None:
     low: Any = _thread
 
     class LockType(SimulatedLock):
-        """The type of locks that the program sees."""
+        """The type of the program's locks, which has the name and the `repr` of the real `_thread.lock`."""
 
         def __init__(self) -> None:
             super().__init__(scheduler)

@@ -38,7 +38,7 @@ CHANNELS = range(1, 5)
 
 
 class Sensor(Connected):
-    """Base class of sensors on an input port."""
+    """Base class of Pybricks' EV3 sensors; such a sensor is on an input port, and measures in one of its modes."""
 
     KIND: ClassVar[str] = ""
     """One of `engine.core.sensors.SENSORS`; empty for any of them."""
@@ -64,7 +64,7 @@ class Sensor(Connected):
 
 
 class TouchSensor(Sensor):
-    """The EV3 touch sensor."""
+    """Pybricks' EV3 touch sensor: it tells whether it is pressed."""
 
     KIND = "touch"
 
@@ -74,7 +74,7 @@ class TouchSensor(Sensor):
 
 
 class ColorSensor(Sensor):
-    """The EV3 colour sensor."""
+    """Pybricks' EV3 colour sensor: it measures colours, reflected light and ambient light."""
 
     KIND = "color"
 
@@ -100,7 +100,7 @@ class ColorSensor(Sensor):
 
 
 class UltrasonicSensor(Sensor):
-    """The EV3 ultrasonic sensor."""
+    """Pybricks' EV3 ultrasonic sensor: it measures distances, and hears other ultrasonic sensors."""
 
     KIND = "ultrasonic"
 
@@ -116,7 +116,7 @@ class UltrasonicSensor(Sensor):
 
 
 class InfraredSensor(Sensor):
-    """The EV3 infrared sensor."""
+    """Pybricks' EV3 infrared sensor: it measures distances, finds the beacon, and receives the remote control."""
 
     KIND = "infrared"
 

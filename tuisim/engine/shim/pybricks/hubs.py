@@ -74,7 +74,7 @@ class Light(Connected):
 
 
 class Battery(Connected):
-    """The battery of the brick."""
+    """The battery of the brick, whose voltage and current a program can read."""
 
     def voltage(self) -> int:
         """Return the voltage of the brick's battery in mV."""
@@ -88,7 +88,7 @@ class Battery(Connected):
 
 
 class EV3Brick(Connected):
-    """The EV3 brick."""
+    """Pybricks' EV3 brick, with its buttons, light, battery, speaker and screen."""
 
     buttons = Buttons()
     light = Light()

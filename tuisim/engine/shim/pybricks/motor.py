@@ -71,7 +71,7 @@ def ending_of(stops: tuple[type[Enum], ...], then: Any) -> Ending:
 
 
 class DCMotor(Connected):
-    """A motor that is run with a power, without control of its speed."""
+    """A motor that runs with a given power: nothing controls its speed or its angle."""
 
     def __init__(self, port: Port, positive_direction: Direction = Direction.CLOCKWISE) -> None:
         self._set_up(port, positive_direction, 1.0)
@@ -120,7 +120,7 @@ class DCMotor(Connected):
 
 
 class Motor(DCMotor):
-    """A large or medium motor."""
+    """A large or medium motor, whose speed and angle are controlled."""
 
     STOPS: ClassVar[tuple[type[Enum], ...]] = (Stop,)
     """The classes whose members say what the motor does after a move."""

@@ -36,7 +36,7 @@ class Charger(Connected):
 
 
 class Hub(Connected):
-    """Base class of all hubs."""
+    """Base class of Pybricks' hubs, with what all hubs have: a light, a battery, buttons and a system."""
 
     BUTTONS: tuple[str, ...] = ("enter",)
     SENSES: ClassVar[type[Accelerometer] | None] = IMU
@@ -62,7 +62,7 @@ class Hub(Connected):
 
 
 class PrimeHub(Hub):
-    """The hub of SPIKE Prime, and of the Robot Inventor."""
+    """The hub of SPIKE Prime and of the Robot Inventor; it also has a speaker, a display and a charger."""
 
     BUTTONS = tuple(BUTTON_NAMES)
     charger = Charger()
@@ -74,7 +74,7 @@ class PrimeHub(Hub):
 
 
 class EssentialHub(Hub):
-    """The hub of SPIKE Essential."""
+    """The hub of SPIKE Essential; it also has a charger."""
 
     charger = Charger()
 
