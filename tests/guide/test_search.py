@@ -179,3 +179,10 @@ def test_a_shown_row_of_a_table_names_its_columns() -> None:
 def test_what_follows_a_colon_belongs_to_the_same_passage_of_the_guide() -> None:
     found = next(one for one in search("export a stored run") if one.heading == "After the run")
     assert found.passage.endswith("tuisim log export last --out again.arrow")
+
+
+def test_a_bar_in_a_cell_of_a_found_row_has_no_backslash() -> None:
+    row = SearchResult("commands", "", r"| `tuisim log` | `--decimal .\|,` | Decimal sign |")
+    assert "".join(part for line in draw_excerpt(row, 80, 4) for part, _ in line) == (
+        "tuisim log · --decimal .|, · Decimal sign"
+    )

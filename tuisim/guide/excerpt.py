@@ -186,6 +186,8 @@ def flatten_passage(markdown: str) -> str:
 def _strip_marks(markdown: str) -> str:
     """Return a passage as one line of plain text: without the signs of Markdown for lists, table cells and links."""
     text = " · ".join(filter(None, split_cells(_MARK.sub("", markdown))))
+    if markdown.startswith("|"):
+        text = text.replace(r"\|", "|")
     # The text becomes one line: a line that begins with a number would be drawn as an item of a list.
     return " ".join(LINK.sub(lambda link: link[1], text).split())
 
