@@ -85,6 +85,32 @@ async def test_the_dialog_for_mats_never_shows_the_picture_of_a_mat_selected_bef
         assert "loading" not in str(title.render())
 
 
+async def test_a_word_of_a_description_finds_its_mats() -> None:
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
+        await pilot.press("b")
+        await until(pilot, lambda: bool(app.screen.query(OptionList)))
+        app.screen.query_one(Input).value = "track"
+        listed = app.screen.query_one(OptionList)
+        await until(pilot, lambda: listed.option_count == 2)
+        assert {option.id for option in listed.options} == {"Loop", "Two_shapes"}
+
+
+async def test_words_that_no_mat_has_leave_no_preview() -> None:
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
+        await pilot.press("b")
+        await until(pilot, lambda: bool(app.screen.query(PixelView)))
+        view, title = app.screen.query_one(PixelView), app.screen.query_one("#title", Static)
+        await until(pilot, lambda: bool(view._strips))
+        # The list empties before it has told that another mat is highlighted.
+        field = app.screen.query_one(Input)
+        field.value = "rainbow"
+        field.value = "rainbowx"
+        await until(pilot, lambda: "nothing here" in str(message_of(app)))
+        await pilot.pause()
+        assert not view._strips
+        assert not str(title.content)
+
+
 async def enter_path(pilot: Pilot[None], path: Path) -> None:
     """Begin to type a path, which turns to the field, and give the rest at once."""
     await pilot.press("slash")

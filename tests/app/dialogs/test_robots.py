@@ -49,7 +49,7 @@ async def test_a_search_without_a_match_shows_no_robot() -> None:
         await until(pilot, lambda: isinstance(app.screen, RobotPicker))
         await until(pilot, lambda: "wheels" in screen_text(app))
         await pilot.press(*"xyz")
-        await until(pilot, lambda: "no name contains these words" in screen_text(app))
+        await until(pilot, lambda: "nothing here has these words" in screen_text(app))
         await until(pilot, lambda: "wheels" not in screen_text(app))
 
 

@@ -151,6 +151,8 @@ class Chooser(ListDialog):
     """
 
     HINT: str = "Enter selects · Escape closes"
+    LISTS_TITLES = True
+    """Whether the list shows the titles of the entries; the search reads them in any case."""
 
     def __init__(
         self,
@@ -206,7 +208,9 @@ class Chooser(ListDialog):
             name_cells = max((len(name) for _, name, title in group.entries if title), default=0)
             options += [
                 Option(
-                    name_and_title(name, title, name_cells) if title else Text(name, "bold"),
+                    name_and_title(name, title, name_cells)
+                    if title and self.LISTS_TITLES
+                    else Text(name, "bold"),
                     id=chosen,
                 )
                 for chosen, name, title in group.entries[:MAX_FILES]
@@ -225,21 +229,24 @@ class Chooser(ListDialog):
         groups = self._search_groups(typed)
         listed.clear_options()
         listed.add_options(self._build_options(groups))
-        empty = "no such file here" if is_path(typed) else "no name contains these words"
+        empty = "no such file here" if is_path(typed) else "nothing here has these words"
         self.say("" if groups else empty)
         if not groups:
-            self.clear_preview()
+            self.preview("")
         else:
             best = find_best_match(groups, os.path.basename(typed)) if typed else self._current
             listed.highlighted = next(
                 (index for index, option in enumerate(listed.options) if option.id == best), None
             )
 
-    def clear_preview(self) -> None:
-        """Remove the preview of the previously highlighted entry.
+    @on(OptionList.OptionHighlighted)
+    def _preview_highlighted(self, event: OptionList.OptionHighlighted) -> None:
+        # A further letter may have removed the entry from the list before this message arrives.
+        if event.option_list.highlighted == event.option_index:
+            self.preview(event.option.id or "")
 
-        This class has no preview, so the method does nothing; subclasses with a preview override it.
-        """
+    def preview(self, value: str) -> None:
+        """Show a preview of an entry in subclasses that have one; clear it if the value is empty."""
 
     def _search_groups(self, typed: str) -> Sequence[ChoiceGroup]:
         if not (self._suffixes and is_path(typed)):
@@ -444,12 +451,14 @@ class MatPicker(Chooser):
         folder: The user's own folder of mats; None for the default one only.
     """
 
+    LISTS_TITLES = False
+
     def __init__(self, current: str, known: Mapping[str, Background], folder: str | None) -> None:
         laid = next(
             (name for name, mat in known.items() if mat.find_spec_name() == current),
             next(iter(known), ""),
         )
-        groups = [ChoiceGroup("", [(name, name, "") for name in known])]
+        groups = [ChoiceGroup("", [(name, name, mat.title) for name, mat in known.items()])]
         find = partial(find_mat, folder=folder)
         super().__init__("Mats", groups, laid, "path of your own image", find, IMAGES)
         self._mats = known
@@ -478,35 +487,27 @@ class MatPicker(Chooser):
         view.styles.height = max(1, round(view.size.width * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / 2))
         self.call_after_refresh(self.show_again)
 
-    def clear_preview(self) -> None:
-        """Remove the picture and the title of the previewed mat."""
-        self._show("")
-
     def show_again(self) -> None:
         """Show the preview of the highlighted mat again, because the size of its picture has changed."""
-        self._show(self._shown)
+        self.preview(self._shown)
 
-    @on(OptionList.OptionHighlighted)
-    def _show_highlighted(self, event: OptionList.OptionHighlighted) -> None:
-        self._show(event.option.id or "")
-
-    def _show(self, name: str) -> None:
+    def preview(self, value: str) -> None:
         """Preview a mat: show its title, and its image as soon as that is decoded."""
-        self._shown = name
+        self._shown = value
         view = self.query_one(PixelView)
-        if not (name in self._mats or Path(name).suffix.lower() in IMAGES) or not view.size:
+        if not (value in self._mats or Path(value).suffix.lower() in IMAGES) or not view.size:
             view.clear_picture()
             self.query_one("#title", Static).update("")
             return
         port = find_field_view(view)
-        self._say_title(name, (name, port) in self._pictures)
-        if (picture := self._pictures.get((name, port))) is not None:
+        self._say_title(value, (value, port) in self._pictures)
+        if (picture := self._pictures.get((value, port))) is not None:
             view.set_fine_picture(picture, view.graphics)
         else:
-            self.set_timer(_STALE_S, partial(self._clear_stale, (name, port)))
-            work = partial(self._decode, name, port, view.ground_rgb)
-            then = partial(self._show_decoded, (name, port))
-            failed = partial(self._report, name)
+            self.set_timer(_STALE_S, partial(self._clear_stale, (value, port)))
+            work = partial(self._decode, value, port, view.ground_rgb)
+            then = partial(self._show_decoded, (value, port))
+            failed = partial(self._report, value)
             background.run(self, work, then, failed, group="picture", exclusive=True)
 
     def _say_title(self, name: str, is_drawn: bool) -> None:

@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING
 
 from rich.color import Color
 from rich.style import Style
-from textual import on
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
-from textual.widgets import OptionList
 
 from tuisim.app.dialogs.chooser import MAX_NAME_COLUMNS, TABLES, ChoiceGroup, Chooser, list_files
 from tuisim.app.dialogs.dialog import WIDTHS
@@ -90,14 +88,9 @@ class RobotPicker(Chooser):
                 yield RobotPicture()
                 yield RobotParts()
 
-    def clear_preview(self) -> None:
-        """Remove the picture and the parts of the previewed robot."""
-        self.query_one(RobotParts).show([])
-        self.query_one(RobotPicture).show(None)
-
-    @on(OptionList.OptionHighlighted)
-    def _show_highlighted(self, event: OptionList.OptionHighlighted) -> None:
-        robot = self._find_robot(event.option.id or "")
+    def preview(self, value: str) -> None:
+        """Show the picture and the parts of a robot; if there is no such robot, show nothing."""
+        robot = self._find_robot(value)
         lines = list(describe_parts(robot)) if robot else []
         parts = self.query_one(RobotParts)
         parts.show(lines)
