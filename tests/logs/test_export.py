@@ -30,9 +30,9 @@ from tuisim.logs.export import (
     export_samples,
     export_telemetry,
     find_companion,
-    read_spec,
 )
 from tuisim.logs.frames import read_log
+from tuisim.logs.metadata import read_spec
 from tuisim.logs.reader import open_log
 
 each_format = pytest.mark.parametrize("suffix", EXPORTERS)

@@ -17,9 +17,9 @@ from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.command_events import ScaleChange
 from tuisim.engine.runs.frames import compute_dead_reckoning, compute_scales, find_lacking_columns
 from tuisim.logs.columns import is_numeric, list_numeric_columns
-from tuisim.logs.export import SCALES
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS, Functions, evaluate, find_names
 from tuisim.logs.log import Log, Series
+from tuisim.logs.metadata import SCALES
 from tuisim.logs.signals import (
     compute_derivative,
     compute_integral,

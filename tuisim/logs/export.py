@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 from tuisim.base.atomic import replacing
 from tuisim.base.errors import ConfigError, ExportError
-from tuisim.engine.core.spec import RunSpec
-from tuisim.engine.core.tree import dump_run, load_run
+from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.logs.metadata import SCALES
 from tuisim.logs.units import TIMEDELTA, WHOLE, parse_unit
 
 if TYPE_CHECKING:
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from tuisim.logs.log import Log, LogTable
 
 LOG_FORMAT = 1
-SCALES = "scales"
-"""Key of the changes of what a program counts as a degree of a motor, in the metadata of a run."""
 _MAX_WHOLE = 2.0**53
 """Beyond it, floating-point numbers skip whole numbers."""
 
@@ -230,22 +228,6 @@ def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) 
             for ordinal, run in enumerate(runs, 1)
         ],
     }
-
-
-def read_spec(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
-    """Return the specification of a run from the metadata of a log; None if they lack it, or are damaged.
-
-    Args:
-        metadata: The metadata.
-        run: Index of the run among the runs of the log, from 0.
-    """
-    try:
-        entry = metadata["runs"][run]
-        return load_run(
-            {key: value for key, value in entry.items() if key not in ("run", "program", SCALES)}
-        )
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError, ConfigError):
-        return None
 
 
 def build_table_metadata(table: str, columns: Iterable[str]) -> dict[str, Any]:

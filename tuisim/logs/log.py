@@ -17,7 +17,7 @@ from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import convert_to_floats, read_numbers, wrap_int64
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import NO_ROWS, ROW, Layout, read_times
-from tuisim.logs.export import read_spec
+from tuisim.logs.metadata import read_spec
 from tuisim.logs.time_order import keep_timed_rows
 from tuisim.logs.units import drop_run
 from tuisim.logs.warnings import Notes
