@@ -12,7 +12,7 @@ from math import prod
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.programs.comparisons import find_constant, is_set
-from tuisim.programs.mistakes import READ_METHODS
+from tuisim.programs.pure_expressions import has_effect, is_reading
 from tuisim.programs.questions import Word
 from tuisim.programs.robot.source import SIGNS, TURNED
 
@@ -23,9 +23,6 @@ _MAX_PARTS = 30
 """Further parts of a condition, and further branches, are not examined in pairs."""
 _MAX_WORDS = 100
 """Longer conditions are not quoted."""
-_PURE = ("abs", "float", "int", "len", "max", "min", "round", "str")
-_PURE_METHODS = {*READ_METHODS, "any", "done", "is_pressed", "ready", "stalled", "time", "value"}
-"""Functions and methods that read and compute, and change nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,43 +124,9 @@ def _read_limit(
         value, word, sign = right, find_constant(left, constants), TURNED.get(sign, sign)
     is_ordered = isinstance(word, int | float) or sign in ("==", "!=")
     is_known = word is not None and find_constant(value, constants) is None
-    if word is None or not (sign and is_ordered and is_known and _is_reading(value)):
+    if word is None or not (sign and is_ordered and is_known and is_reading(value)):
         return None
     return _Limit(ast.unparse(value), sign, word)
-
-
-def _is_reading(node: ast.expr) -> bool:
-    """Return whether an expression has the same value if it is evaluated twice in one condition."""
-    match node:
-        case ast.Name() | ast.Constant():
-            return True
-        case ast.Attribute(value=value) | ast.UnaryOp(operand=value):
-            return _is_reading(value)
-        case ast.Subscript(value=value, slice=index):
-            return _is_reading(value) and _is_reading(index)
-        case ast.BinOp(left=left, right=right):
-            return _is_reading(left) and _is_reading(right)
-        case ast.Call(args=args, keywords=[]):
-            return _is_pure(node) and all(map(_is_reading, args))
-    return False
-
-
-def _is_pure(call: ast.Call) -> bool:
-    match call.func:
-        case ast.Name(id=name):
-            return name in _PURE
-        case ast.Attribute(attr=method):
-            return method in _PURE_METHODS
-    return False
-
-
-def has_effect(test: ast.expr) -> bool:
-    """Return whether evaluating a condition may change a value in it."""
-    return any(
-        isinstance(node, ast.NamedExpr | ast.Await | ast.Yield | ast.YieldFrom)
-        or (isinstance(node, ast.Call) and not _is_pure(node))
-        for node in ast.walk(test)
-    )
 
 
 def _list_samples(words: Sequence[Word]) -> list[object]:
@@ -269,7 +232,7 @@ def _list_lone_words(nodes: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
                     match side:
                         case ast.BoolOp(op=ast.Or(), values=[first, *_] as words) if all(
                             map(_get_kind, words)
-                        ) and _is_reading(other):
+                        ) and is_reading(other):
                             sign = "in" if isinstance(node.ops[0], ast.Eq) else "not in"
                             choice = ", ".join(map(ast.unparse, words))
                             yield (

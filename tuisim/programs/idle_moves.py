@@ -6,9 +6,9 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
-from tuisim.programs.fixed_conditions import has_effect
-from tuisim.programs.moves import ANY_MOVE, STARTS, STOPS, find_call, find_number
-from tuisim.programs.waits import list_blocks
+from tuisim.programs.moves import ANY_MOVE, STARTS, STOPS
+from tuisim.programs.pure_expressions import has_effect
+from tuisim.programs.statements import find_call, find_number, list_blocks
 from tuisim.programs.wrong_calls import PREDEFINED, find_classes
 
 _LEAVES = (ast.Break, ast.Return, ast.Raise)

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from tuisim.base.source import PYBRICKS, find_encoding
 from tuisim.programs.comparisons import is_set
 from tuisim.programs.moves import ANY_MOVE, STOPS
+from tuisim.programs.pure_expressions import READ_METHODS
 from tuisim.programs.questions import COLOR_WORDS
 from tuisim.programs.wrong_calls import explain_call
 
@@ -74,11 +75,6 @@ def _only_makes(node: ast.AST) -> bool:
     return all(ast.unparse(name).rpartition(".")[2][:1].isupper() for name in calls)
 
 
-READ_METHODS = {
-    *("ambient", "angle", "color", "distance", "force", "heading", "hsv", "presence", "pressed"),
-    *("reflection", "rotation", "speed"),
-}
-"""Methods of Pybricks that read a device; in `ev3dev2`, names such as `color` are values."""
 _SHOWS = ("print", "str", "int", "float", "abs", "round")
 
 

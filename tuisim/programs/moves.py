@@ -10,26 +10,12 @@ from math import copysign
 from typing import TypeGuard
 
 from tuisim.base.data_class import dataclass
-from tuisim.programs.waits import list_blocks
+from tuisim.programs.statements import find_call, find_number, list_blocks, name_call
 
 STARTS = ("on", "run_forever", "run", "drive", "dc", "run_direct")
 """Methods that start motors, and return at once."""
 _MOVES = (*STARTS, "on_for_degrees", "on_for_rotations", "on_for_seconds")
 STOPS = ("off", "stop", "brake", "hold")
-
-
-def find_call(statement: ast.stmt, names: tuple[str, ...]) -> str:
-    """Return the name of the function or method that a statement calls, if it is one of `names`; else an empty text."""
-    name = name_call(statement)
-    return name if name in names else ""
-
-
-def name_call(statement: ast.stmt) -> str:
-    """Return the name of the function or method that a statement calls; empty if the statement is not only a call."""
-    match statement:
-        case ast.Expr(value=ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name))):
-            return name
-    return ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -296,19 +282,3 @@ def _find_pair_angle(*calls: ast.Call) -> float:
 
 def _is_known(numbers: list[float | None]) -> TypeGuard[list[float]]:
     return None not in numbers
-
-
-def find_number(node: ast.expr) -> float | None:
-    """Return the number in an expression, which may be in a speed such as `SpeedPercent(30)`.
-
-    The result is None for other expressions.
-    """
-    match node:
-        case ast.Constant(value=int() | float() as value):
-            return float(value)
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            number = find_number(operand)
-            return None if number is None else -number
-        case ast.Call(func=ast.Name(id=name), args=[speed]) if name.startswith("Speed"):
-            return find_number(speed)
-    return None

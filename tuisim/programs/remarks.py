@@ -9,9 +9,9 @@ from itertools import pairwise
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import source_lines
-from tuisim.programs.moves import ANY_MOVE, STARTS, find_call, find_number
+from tuisim.programs.moves import ANY_MOVE, STARTS
 from tuisim.programs.robot.words import is_forwards
-from tuisim.programs.waits import list_blocks
+from tuisim.programs.statements import find_call, find_number, list_blocks
 from tuisim.programs.wrong_calls import find_classes
 
 _MAGIC = "sim_magic"

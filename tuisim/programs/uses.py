@@ -10,9 +10,10 @@ from typing import TypeGuard
 from tuisim.base.data_class import dataclass
 from tuisim.programs.comparisons import find_attribute, read_comparison
 from tuisim.programs.line_values import walk_scope
-from tuisim.programs.moves import STARTS, STOPS, find_call
+from tuisim.programs.moves import STARTS, STOPS
 from tuisim.programs.questions import Word
-from tuisim.programs.waits import LoopEnd, list_blocks
+from tuisim.programs.statements import find_call, list_blocks
+from tuisim.programs.waits import LoopEnd
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _Loop = ast.For | ast.While

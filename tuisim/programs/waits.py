@@ -57,15 +57,6 @@ class LoopEnd:
         return COLOR_WORDS.get(shorten(self.limit), "")
 
 
-def list_blocks(tree: ast.AST) -> Iterator[list[ast.stmt]]:
-    """Yield the lists of statements in a syntax tree: the body of the module, of each function, loop and branch."""
-    for node in ast.walk(tree):
-        for name in ("body", "orelse"):
-            block = getattr(node, name, None)
-            if isinstance(block, list):
-                yield block
-
-
 def list_loop_ends(tree: ast.Module, constants: Mapping[str, Word]) -> tuple[LoopEnd, ...]:
     """Return the loops of a program that end when a comparison in the text becomes true or false, inner loops first.
 

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Mapping
 
 from tuisim.base.data_class import dataclass
-from tuisim.programs.moves import find_number
+from tuisim.programs.statements import find_number
 
 _ERRORS = ("TypeError", "AttributeError", "AssertionError", "SpeedInvalid", "DeviceNotDefined")
 PREDEFINED = {"tank_drive": "MoveTank", "tank_turn": "MoveSteering"}
