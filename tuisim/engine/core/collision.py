@@ -327,7 +327,10 @@ def _measure_way_to_wall(body: Body, direction: int) -> float:
 
 
 def _measure_box_gap(body: Body, box: Box) -> float:
-    """Return the largest gap in mm between body and box along any separating axis, negative if they overlap."""
+    """Return the largest gap in mm between body and box along one of four directions; negative if they overlap.
+
+    The directions are those of the sides of the box and of the body.
+    """
     cx, cy, _, _, _, _, wide, high = body
     left, lower, right, upper = box
     upright = max(left - cx, cx - right) - wide

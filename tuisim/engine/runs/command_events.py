@@ -393,7 +393,7 @@ class CommandIndex:
         port = motors[number].port[-1:] if number < len(motors) else ""
         return f"{('left ', 'right ', '')[min(number, 2)]}motor {port}".rstrip()
 
-    # What came
+    # Results of commands
 
     def _measure(self, number: int, aim: Aim) -> str:
         """Return in words what a command to a wheel or a drive base caused, such as `turned 360° by 1.50 s`.

@@ -57,8 +57,8 @@ def _no_commands(_text: str = "") -> NoReturn:
 class LegoSensor:
     """The driver of a sensor on an input port.
 
-    Reading `value0` takes a new measurement and the time for it. `value1` and the following ones, read directly after
-    it, belong to the same measurement and take no time.
+    Reading `value0` makes the sensor measure again, which takes time. `value1` and the following ones belong to the
+    same measurement, and take no time if they are read directly after `value0`.
     """
 
     def __init__(

@@ -160,7 +160,7 @@ class SimulatedMotor(DriverMotor):
         self._cruise_end_ns = 0
         """The latest time at which the even motion ends, in ns."""
 
-    # What it shows
+    # The state of the motor, for other modules
 
     @property
     def mode(self) -> int:

@@ -116,7 +116,7 @@ class Controller:
         """The highest power that the controller may use, in hundredths of a percent."""
         return self.settings.actuation if self.duty_limit is None else self.duty_limit
 
-    # The reference
+    # Where the motion should be, and how fast
 
     def milli(self, now_us: int) -> int:
         """Return the position that the controlled motion should have at a time, in thousandths of a count."""
@@ -254,7 +254,7 @@ class Controller:
             return build_timed_move(begin, now_us + time_us - begin.start_us, *how)
 
         trajectory = _splice(*self._find_start(now_us, measured), build)
-        # A motion at a speed never makes up for lost distance, and neither does the motion that follows it.
+        # A distance that a motion at a speed has lost stays lost, also in the motion that follows it.
         behind_milli = (
             self._behind_milli
             if self.timed and self.trajectory is not None and not self._slips

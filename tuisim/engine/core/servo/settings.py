@@ -137,7 +137,7 @@ class ServoKind:
     """The voltage at which the motor has its highest torque."""
 
     def compute_gains(self, tolerance_deg: int) -> tuple[int, ...]:
-        """Return the gains kp, ki and kd of a motor's controller.
+        """Return kp, ki and kd, the gains of a motor's PID controller.
 
         Args:
             tolerance_deg: The tolerance from which kp and ki follow; kd follows from the motor's usual tolerance.
@@ -254,7 +254,7 @@ def combine_settings(motor: ControlSettings, counts_per_unit: float) -> ControlS
         kd=motor.kd if has_torque else divide(motor.kd, 2),
         integral_range=2 * motor.integral_range,
         integral_rate=2 * motor.integral_rate,
-        # Firmware with torques: the error at which the proportional part alone asks for the highest torque.
+        # In version 4, it is the error at which the proportional part alone asks for the highest torque.
         position_tolerance=2
         * (COUNTS_PER_DEG * motor.torque_unm / max(kp, 1) or motor.position_tolerance),
         speed_tolerance=2 * motor.speed_tolerance,

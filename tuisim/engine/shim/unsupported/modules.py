@@ -169,7 +169,12 @@ _ERRORS = ("Error", "Exception", "Timeout")
 
 
 def _told(name: str, hardware: Hardware) -> tuple[str, str]:
-    """Return the message and the hint of the error for using a module for hardware, or a name in it."""
+    """Return the message and the hint of the error for using hardware that is not simulated.
+
+    Args:
+        name: The module, or the name in a module, that the program uses.
+        hardware: The hardware for which it is.
+    """
     return f"{name}: {hardware.title} is not simulated", hardware.instead
 
 
@@ -181,7 +186,7 @@ def refused_as(kind: type[Exception], message: str, hint: str) -> Exception:
 
 
 class _Part(type):
-    """Metaclass of the objects that stand for names in a module for hardware.
+    """Metaclass of the stand-ins for names in a module that controls hardware; see `refused_part`.
 
     Programs can derive classes from these objects; all other uses raise NotSimulated.
     """
@@ -210,7 +215,7 @@ class _Part(type):
 
 
 def refused_part(path: str, name: str, hardware: Hardware) -> Any:
-    """Return an object for a name in a module for hardware: a program can import it, but not use it.
+    """Return a stand-in for a name in a module that controls hardware: a program can import it, but not use it.
 
     Args:
         path: The full name of the module.
@@ -241,7 +246,7 @@ def _kept_part(place: Any, path: str, name: str, hardware: Hardware) -> Any:
 
 
 class HardwareModule(types.ModuleType):
-    """A module for hardware, or a submodule of it, which a program can import but not use.
+    """A stand-in for a module that controls hardware, or for its submodule: a program can import it, but not use it.
 
     Args:
         name: Its full name.
@@ -290,7 +295,9 @@ def refuse_other(names: Sequence[str], library: Library) -> RefusedImports:
 
 
 class HardwareFinder:
-    """Module finder for modules for hardware; it is the last, so that files of the program and packages come first.
+    """Module finder for modules that control hardware which is not simulated, such as `bluetooth`.
+
+    It is the last finder, so that files of the program and installed packages come first.
 
     Args:
         library: The library of the program.
@@ -300,7 +307,7 @@ class HardwareFinder:
         self._library = library
 
     def find_spec(self, fullname: str, *_: object) -> ModuleSpec | None:
-        """Return the spec of a module for hardware; None for other modules."""
+        """Return the spec of a module that controls hardware; None for other modules."""
         top = fullname.partition(".")[0]
         if top == fullname:
             known = top in ON_THE_BRICK or top in ELSEWHERE
@@ -312,10 +319,10 @@ class HardwareFinder:
         )
 
     def create_module(self, spec: ModuleSpec) -> types.ModuleType:
-        """Return a stand-in for a module of hardware that the brick has.
+        """Return a stand-in for a module that exists on a real brick.
 
         Raises:
-            NotSimulated: the module is for other hardware only; the error is also an ImportError.
+            NotSimulated: the module is for other computers only; the error is also an ImportError.
         """
         if (top := spec.name.partition(".")[0]) in ELSEWHERE:
             raise refused_as(ImportError, *_told(spec.name, ELSEWHERE[top].told_to(self._library)))
