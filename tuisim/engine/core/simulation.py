@@ -245,12 +245,13 @@ class Simulation(Motion):
         return motor
 
     def _keep_motor(self, motor: Motor, kind: str, before: int, after: int) -> Motor:
-        """Return a motor that stays when the robot changes, with another load if it gains or loses a wheel.
+        """Return a motor that stays when the robot changes; if it gains or loses a wheel, change its load.
 
         Args:
             motor: The motor.
-            kind: Its kind.
-            before, after: Its number before and after the change; the motors with the numbers 0 and 1 drive the wheels.
+            kind: The kind of the motor, one of `MOTOR_KINDS`.
+            before, after: The number of the motor before and after the change; the motors with the numbers 0 and 1
+                drive the wheels.
         """
         free = after > 1
         if free != (before > 1) and isinstance(motor, SimulatedMotor | ServoMotor):

@@ -24,7 +24,8 @@ NumberWriter = Callable[[int], None]
 class _Writers(dict[str, Writer]):
     """Functions that write attributes of a device, by name.
 
-    A missing name raises EACCES if the attribute can be read, else ENOENT.
+    Looking up an attribute that cannot be written raises the OSError of the kernel: EACCES if it can be read, else
+    ENOENT.
     """
 
     def __init__(self, writers: Mapping[str, Writer], readable: Collection[str]) -> None:

@@ -108,8 +108,8 @@ class IsolatedChild:
     """A child process that runs inside bubblewrap.
 
     Args:
-        process: bubblewrap itself, which waits for the child.
-        pid: The child.
+        process: The process of bubblewrap itself, which waits for the child.
+        pid: The process id of the child.
     """
 
     def __init__(self, process: subprocess.Popen[bytes], pid: int) -> None:
@@ -242,15 +242,15 @@ def spawn_isolated(
     writable: Sequence[Path],
     readable: Sequence[Path],
 ) -> IsolatedChild:
-    """Start a child that can change only some folders, and read little else; return it. Blocks until it has started.
+    """Start a child that can change only some folders, and read little else; return it when it has started.
 
     Args:
-        command: Its command.
-        environment: Its environment.
-        log: Its stderr.
-        inherited: File descriptors that it keeps.
-        writable: Folders that it may change; the last one is its working directory.
-        readable: Further files and folders that it may read.
+        command: The command that the child executes.
+        environment: The child's environment variables.
+        log: The file for the child's error output.
+        inherited: File descriptors that the child keeps.
+        writable: Folders that the child may change; the last one is its working directory.
+        readable: Further files and folders that the child may read.
 
     Raises:
         OSError: bubblewrap cannot be started, or has not started the child.

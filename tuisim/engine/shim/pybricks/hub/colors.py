@@ -13,10 +13,10 @@ MAX_DARK_VALUE = 1
 
 
 def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
-    """Return hue in degrees, saturation and value in percent, as the firmware computes them.
+    """Return hue (degrees), saturation and value (percent) of a measured colour, as the firmware computes them.
 
     Args:
-        red, green, blue: Each from 0 to 1024.
+        red, green, blue: The measured numbers, each from 0 to 1024.
     """
     turn, purity, brightest = rgb_to_hsv(red, green, blue)
     # Rounded first, so that 120 degrees do not become 119.
