@@ -77,6 +77,11 @@ def test_a_finished_move_has_no_speed_in_the_tick_of_its_end(run: Run) -> None:
     assert (end.left_position_deg, end.left_speed_dps) == (36.0, 0.0)
 
 
+def test_a_finished_turn_has_no_gyro_rate_in_the_tick_of_its_end(run: Run) -> None:
+    _, end = open_end(run, "tank_turn.on_for_degrees(100, SpeedPercent(40), 300)", "robolab")
+    assert (end.left_speed_dps, end.gyro_rate_dps) == (0.0, 0)
+
+
 def test_commands_of_a_tick_apply_in_order_and_damaged_ones_do_not() -> None:
     before = Instant(
         3, Pose(0, 0, 90), 10.0, 20.0, 5.0, 6.0, gyro_zero_deg=50.0, scales=(-1.0, 0.5)

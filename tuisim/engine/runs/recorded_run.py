@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING
 
 from tuisim.base.errors import LogError
 from tuisim.engine.core.commands.table import SERVO_LAWS
+from tuisim.engine.core.drift import sense_turn_rate_dps
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.motion import compute_stall_ticks
 from tuisim.engine.core.pen_marks import MarkedField, PenMarks
+from tuisim.engine.core.profile import DRIVEN_LAWS
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
 from tuisim.engine.core.state import Instant, MotorValues
 from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, TICK_RECORD
@@ -159,9 +161,13 @@ class Recording:
             scales=tuple(scales.get(motor.port, 1.0) for motor in self.spec.robot.motors),
         )
         changes = self.commands.list_changes(record.tick)
-        return apply_commands(
-            instant, record.running, changes, self.spec.profile.motor_law
-        ), find_pen(changes, is_down=record.is_pen_down)
+        law = self.spec.profile.motor_law
+        instant = apply_commands(instant, record.running, changes, law)
+        if law in DRIVEN_LAWS:
+            # The gyro's rate belongs to the same instant as the speeds, from which a finished move is gone.
+            rate_dps = sense_turn_rate_dps(instant.left_speed_dps, instant.right_speed_dps, spec)
+            instant = replace(instant, turn_rate_dps=rate_dps)
+        return instant, find_pen(changes, is_down=record.is_pen_down)
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
         """Return for the left and the right wheel's motor whether it is stalled: it was running, but did not turn.
