@@ -85,6 +85,16 @@ async def test_the_dialog_for_mats_never_shows_the_picture_of_a_mat_selected_bef
         assert "loading" not in str(title.render())
 
 
+async def test_the_scroll_bar_of_a_list_is_at_its_edge() -> None:
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
+        await pilot.press("b")
+        await until(pilot, lambda: bool(app.screen.query(OptionList)))
+        listed = app.screen.query_one(OptionList)
+        await until(pilot, lambda: listed.show_vertical_scrollbar)
+        bar = app.screen.find_widget(listed.vertical_scrollbar)
+        assert bar.region.right == listed.region.right
+
+
 async def test_a_word_of_a_description_finds_its_mats() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await pilot.press("b")
