@@ -302,8 +302,7 @@ def _find_edges(
     """Return the position in mm at which samples pass the middle between each level and the next, shape (n - 1,).
 
     With noise, samples may pass the middle several times: the edge is then midway between the first and the last time.
-    The
-    position is NaN if samples of a third level lie between two levels.
+    The position is NaN if samples of a third level lie between two levels.
 
     The edges are searched in pairs of neighbouring samples, from the last sample of a level to the first of the next
     one.

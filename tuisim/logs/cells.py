@@ -242,8 +242,7 @@ class TypedColumns:
         """Return columns of texts as a table: the texts become numbers or times in each column that has such values.
 
         The first cells of a column decide this. If they are texts of another kind, the column stays as it is. A cell
-        that does
-        not fit the type of its column becomes null.
+        that does not fit the type of its column becomes null.
 
         Args:
             columns: The columns by name.

@@ -103,8 +103,7 @@ def parse_time_name(name: str) -> TimeName:
     """Return a column's name split into a word and a unit of time in seconds.
 
     `Time (ms)` becomes `time` and 0.001. If the whole name is a unit, such as `ms`, it is the word as well. A name
-    without a
-    unit has the unit None.
+    without a unit has the unit None.
     """
     text = name.strip().lower()
     match = _UNIT.search(text, max(0, len(text) - _LONGEST_UNIT))
@@ -315,8 +314,7 @@ def guess_columns(table: pa.Table) -> Layout:
     dates or times; in a table without headings, the first column, if its numbers rise; the number of the row.
 
     A table may name the variable of each row in a text column, such as `variable`, and have a column `value` beside it.
-    In
-    any other table, each further numeric column is a variable.
+    In any other table, each further numeric column is a variable.
     """
     named = _find_named_time(table)
     time = named or _find_rising(table)

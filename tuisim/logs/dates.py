@@ -87,8 +87,7 @@ def normalize_dates(texts: Any) -> Any:
     """Return texts in which each date is year-month-day, without the blanks and brackets around it.
 
     A date with the year at its end, such as 03/04/2024, is read with the day first. If another date among the texts has
-    a
-    second number above 12, all are read with the month first. Texts that are no dates may change, too.
+    a second number above 12, all are read with the month first. Texts that are no dates may change, too.
     """
     texts = pc.utf8_trim_whitespace(texts)
     if not pc.any(pc.invert(pc.match_substring_regex(texts, _USUAL))).as_py():

@@ -79,8 +79,7 @@ def compute_derived(log: Log, definition: Definition, otherwise: str) -> list[Se
     """Return the series of a derived variable, one for each run that has the first variable of its expression.
 
     The result has a value at each sample of this first variable. Other variables have the value of their last sample
-    there,
-    and columns the value in the same row.
+    there, and columns the value in the same row.
 
     Args:
         log: The log.

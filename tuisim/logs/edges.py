@@ -37,8 +37,7 @@ def find_edges(plateaus: PlateauArray) -> BoolArray:
     """Return for each plateau whether it is no level of its own, but only a step on an edge between two others.
 
     An edge rises or falls all the time, from one plateau to another. A plateau of more than `NEAR_SAMPLES` samples is
-    never
-    a step: that many samples show whether it is level.
+    never a step: that many samples show whether it is level.
     """
     level = plateaus["level"]
     lengths = count_samples(read_spans(plateaus))

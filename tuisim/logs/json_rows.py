@@ -217,8 +217,7 @@ class DocumentReader:
         """Return the rows that a JSON object stands for.
 
         If one value of the object is a table, these are its rows. Otherwise, lists in the object are columns, which are
-        joined
-        to rows. An object without lists is a single row.
+        joined to rows. An object without lists is a single row.
 
         Raises:
             LogError: the object has several tables, or columns of different lengths.

@@ -60,10 +60,8 @@ def undo_clamping(percents: FloatArray, noise: int) -> FloatArray:
     """Return the true levels in percent from the means of noisy pixels.
 
     Noise changes a pixel by at most ±`noise`, and a value outside 0 to 255 is set to the nearest end. Near an end, the
-    mean
-    of the noisy pixels is therefore too far from it. A pixel that is u below 255, with u less than the noise, has the
-    mean
-    255 - (noise + u)² / (4 noise); this function computes u from that mean.
+    mean of the noisy pixels is therefore too far from it. A pixel that is u below 255, with u less than the noise, has
+    the mean 255 - (noise + u)² / (4 noise); this function computes u from that mean.
 
     Args:
         percents: Mean levels, 0 to 100.
@@ -90,8 +88,7 @@ def has_light_levels(name: str, values: FloatArray) -> bool:
     """Return whether a variable can have levels of light, which greys of the mat cause.
 
     False if its name says otherwise, or if all values are whole numbers from 0 to 7: these are taken for codes of
-    colours,
-    such as 6 for white, unless the name says that they are levels.
+    colours, such as 6 for white, unless the name says that they are levels.
     """
     if not can_be_light(name):
         return False

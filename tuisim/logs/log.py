@@ -267,8 +267,7 @@ class Log:
 
         Args:
             column: Name of the variable, and of the new column of the table that has its values. The table gets no
-                column if a
-                series has several samples in one row.
+                column if a series has several samples in one row.
             series: One series, or one for each run.
         """
         bare = self.drop_derived(column)

@@ -205,8 +205,7 @@ def _estimate_steps(
     """Return the steps between two pieces that drift alike, and the standard deviations of these steps.
 
     The steps are estimated by least squares, in units of the noise: one slope is fitted to both pieces, and the step is
-    the
-    difference that remains between their means (analysis of covariance).
+    the difference that remains between their means (analysis of covariance).
 
     Args:
         before: The pieces before the steps.

@@ -102,8 +102,7 @@ def _find_steps(differences: FloatArray) -> BoolArray:
 
     Such a log has two or three samples for most levels, without edges or strays between them: more than a fifth of the
     differences are far larger than the differences before and after them. In noise, large differences follow each
-    other.
-    For a log with longer levels, all values are False.
+    other. For a log with longer levels, all values are False.
     """
     calm = np.minimum(differences[1:], differences[:-1]).max(initial=0.0)
     steps = differences > FAR * calm
@@ -141,10 +140,8 @@ def _find_measurements(values: FloatArray) -> IntArray:
     """Return the index of the first sample of each measurement of a sensor.
 
     A sensor that measures more seldom than the program reads it repeats its last value, so that a measurement is a run
-    of
-    equal samples. A run of twice the usual length is two measurements with the same value. If most samples are in runs
-    of
-    the usual length, each of these is a short level instead, and each sample is a measurement.
+    of equal samples. A run of twice the usual length is two measurements with the same value. If most samples are in
+    runs of the usual length, each of these is a short level instead, and each sample is a measurement.
     """
     starts = np.append(0, np.flatnonzero(np.diff(values)) + 1)
     lengths = np.diff(starts, append=len(values))
@@ -324,11 +321,9 @@ def _choose_places(scaled: FloatArray) -> IntArray:
     """Return the positions at which a log may be cut, from 0 to its length, both included.
 
     In a short log, these are all positions. In a long log, they are those where the mean of the samples before and the
-    mean
-    of the samples after differ most, by more than `CERTAINTY` standard deviations. The means are taken over 1, 3, 8 and
-    24
-    samples, so that one of these widths fits a level of any length; 24 samples show a step of 1.2 times the noise. The
-    positions beside such a position may be cuts, too, since noise shifts it.
+    mean of the samples after differ most, by more than `CERTAINTY` standard deviations. The means are taken over 1, 3,
+    8 and 24 samples, so that one of these widths fits a level of any length; 24 samples show a step of 1.2 times the
+    noise. The positions beside such a position may be cuts, too, since noise shifts it.
 
     Args:
         scaled: The log in units of the noise.

@@ -79,8 +79,7 @@ def estimate_noise(differences: FloatArray, variance: float) -> float:
     Args:
         differences: Absolute differences of samples from what their neighbours predict, shape (n,).
         variance: The variance that such differences have for noise of variance 1: 2 for differences of two neighbours;
-            6
-            for second differences, which are 0 on slopes.
+            6 for second differences, which are 0 on slopes.
     """
     if not len(differences):
         return 0.0

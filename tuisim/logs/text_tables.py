@@ -157,8 +157,7 @@ class CsvReader:
         """Return the rows of this table in a block, and a block with the lines of the next table.
 
         The second block begins with the heading of the next table; it is None if no other table begins here. If the
-        heading of
-        this table is repeated, it is left out.
+        heading of this table is repeated, it is left out.
         """
         if not has_numbers(self._heading.kinds) or not _MAY_BE_NAMES.search(block.text):
             return block, None

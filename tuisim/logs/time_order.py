@@ -203,8 +203,7 @@ def _is_one_clock(table: pa.Table, layout: Layout, back: IntArray) -> bool:
     """Return whether all rows were written in order of time by one clock, which began again at the given rows.
 
     The result is False if the file has one variable after another, so that the time of each begins anew. It is taken
-    for
-    such a file if at one of these rows, no variable has samples both before and after it.
+    for such a file if at one of these rows, no variable has samples both before and after it.
 
     Args:
         table: The table.

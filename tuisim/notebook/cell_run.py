@@ -212,14 +212,12 @@ def run_cell(
         cell: The program.
         stage: The displays of the cell.
         begun: Called with the run and the registers of its wheel motors, as soon as the run has a recording, and again
-            at
-            its end.
+            at its end.
         view: The app, if it has been requested to start the run; None to start the run here.
 
     Raises:
         ConfigError: a function of the notebook that answers the program, such as `roboSim.responder`, has returned a
-            value
-            that a program cannot get; the run has been stopped.
+            value that a program cannot get; the run has been stopped.
     """
     store = RunStore()
     paced = cell.speed > 0

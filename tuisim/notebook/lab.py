@@ -239,8 +239,7 @@ class Lab:
             words: The words of the magic, parsed.
             text: The program below the magic, None for none.
             prelude: Which names are defined for the program before its first line, as the magic says: `none`, `imports`
-                (those
-                of the library) or `preloaded` (also motors and sensors).
+                (those of the library) or `preloaded` (also motors and sensors).
 
         Raises:
             ConfigError: a mat, robot or value is invalid, or there is no program to run.

@@ -17,14 +17,15 @@ _OPPOSITE = {">=": "<", ">": "<=", "<=": ">", "<": ">=", "!=": "==", "==": "!="}
 def read_comparison(
     test: ast.expr, constants: Mapping[str, Word], *, is_break: bool
 ) -> tuple[ast.expr, str, Word] | None:
-    """Return the compared expression, the operator and the constant of a comparison that ends a loop.
+    """Return the parts of a comparison that ends a loop: the compared expression, the operator, and the constant.
 
-    The result is None for other tests.
+    The result is None if the test is not a comparison of one expression with a constant.
 
     Args:
-        test: The comparison.
+        test: The test.
         constants: Values of names in the program; see `list_constants`.
-        is_break: Whether the loop ends if it is true; otherwise the operator is reversed.
+        is_break: True if the loop ends when the test is true, as in `if test: break`. False if it ends when the test is
+            false, as in `while test`; the returned operator is then the opposite one, which is true at the end.
     """
     match test:
         case ast.Compare(left=left, ops=[operator], comparators=[right]):
@@ -79,7 +80,9 @@ def build_difference(test: ast.expr) -> ast.expr:
 def split_start(
     value: ast.expr, ending: str, limit: Word, tree: ast.Module, words: Mapping[str, Word]
 ) -> tuple[ast.expr, str, Word, int]:
-    """Return a comparison without the earlier reading that its value subtracts: `angle - start > 90` as `angle > 90`.
+    """Return a comparison without the earlier reading that is subtracted in it.
+
+    For example, `gyro.angle - start > 90` becomes `gyro.angle > 90` if `start` was set to an earlier reading.
 
     Args:
         value: The compared expression, such as `gyro.angle - start`.
@@ -89,7 +92,8 @@ def split_start(
         words: The values of names in the program that are read as constants.
 
     Returns:
-        The expression without that reading, the operator, the limit, and the line of the reading; 0 without one.
+        The expression without the earlier reading, the operator, the limit, and the line that took the earlier reading.
+        If no reading is subtracted, the comparison is unchanged, and the line is 0.
     """
     match value:
         case ast.BinOp(left=left, op=ast.Sub(), right=right) if not isinstance(limit, str):
@@ -103,9 +107,9 @@ def split_start(
 def _find_start(
     node: ast.expr, tree: ast.Module, words: Mapping[str, Word]
 ) -> tuple[int, float] | None:
-    """Return the line of the reading in an expression such as `start + 5`, and the number that is added to the reading.
+    """Return the line that took the reading in an expression such as `start + 5`, and the number added to it, here 5.
 
-    The result is None for other expressions.
+    The result is None if the expression is not a reading, or a reading with a number added or subtracted.
     """
     match node:
         case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
@@ -183,9 +187,10 @@ def find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None:
 
 
 def find_attribute(node: ast.expr) -> str:
-    """Return the attribute that an expression reads, such as `angle`, or the method that it calls without an argument.
+    """Return the name of the attribute that an expression reads, or of the method that it calls.
 
-    The method's only argument may also be 0. The result is empty for other expressions.
+    For example, this is `angle` for `gyro.angle` and for `gyro.angle()`. A method counts only if it is called without
+    an argument, or with the argument 0. The result is empty for other expressions.
     """
     match node:
         case (
@@ -199,8 +204,9 @@ def find_attribute(node: ast.expr) -> str:
 def find_values(name: str, tree: ast.Module) -> list[tuple[int, ast.expr]]:
     """Return the lines that assign a variable, each with the expression that it assigns.
 
-    If the expression is not known, as in a loop, the syntax node of the name stands for it. The result is empty if
-    several functions share the variable, since their order is not known.
+    If the line shows no such expression, as `for x in …` does not for `x`, the syntax node of the name is returned in
+    its place. The list is empty if a `global` or `nonlocal` statement names the variable, since the order of its
+    assignments is then not known.
     """
     values = _map_values(tree).get(name, [])
     known = {line for line, value in values if not isinstance(value, ast.Name)}
@@ -213,9 +219,10 @@ def find_values(name: str, tree: ast.Module) -> list[tuple[int, ast.expr]]:
 
 @lru_cache(maxsize=1)
 def _map_values(tree: ast.Module) -> dict[str, list[tuple[int, ast.expr]]]:
-    """Return the lines that assign each variable, by name, each with the expression and with the node of the name.
+    """Return by name, for each variable, the lines that assign it, each with a syntax node.
 
-    Variables that several functions share are left out.
+    For an assignment such as `x = 5`, the line occurs twice: with the expression `5`, and with the node of the name
+    `x`. Variables that are named in a `global` or `nonlocal` statement are left out.
     """
     shared = set[str]()
     values: dict[str, list[tuple[int, ast.expr]]] = defaultdict(list)

@@ -51,7 +51,7 @@ def _list_nodes(tree: ast.Module, *kinds: type[ast.AST]) -> list[ast.AST]:
 
 
 def _is_dead(node: ast.AST) -> bool:
-    """Return whether a loop, branch or function does nothing: its body has no effect, or its condition is never true.
+    """Return whether a loop, `if` or function does nothing: its body has no effect, or its condition is never true.
 
     A `while` with an empty body is not dead, because it waits.
     """
@@ -193,7 +193,10 @@ class ProgramFacts:
         return QuestionReader(self.tree)
 
     def find_question(self, line: int) -> Question:
-        """Return how the program uses the value that a line reads; `Question()` if the text does not show it."""
+        """Return how the program uses the value that it reads on a line, for example with which colours it compares it.
+
+        The result is `Question()` if the program's text does not show this.
+        """
         return self._question_reader.find_question(line)
 
     @cached_property
@@ -233,7 +236,7 @@ class ProgramFacts:
 
     @cached_property
     def slips(self) -> tuple[tuple[int, str], ...]:
-        """The lines that probably contain a mistake, as they have no effect, or always the same; with descriptions."""
+        """The lines that probably contain a mistake, such as `motor.stop` without `()`, each with a description."""
         return (
             *list_slips(self.tree),
             *list_fixed_conditions(self.tree, self.constants),
@@ -246,7 +249,7 @@ class ProgramFacts:
 
     @cached_property
     def idle_definition(self) -> tuple[int, str] | None:
-        """If the program only has definitions: the line of the last function or class, and why it does nothing.
+        """In a program with definitions only, the line of the last function or class, and why it does nothing.
 
         The value is None for any other program.
         """
@@ -364,7 +367,14 @@ def _build_prelude_scope(prelude: str) -> Scope:
 
 
 def _name_prelude(name: str, prelude: str) -> str:
-    """Return the full name of the object that a prelude defines for a name such as `tank_drive`; else the name."""
+    """Return the full name of an object that a prelude defines, such as `tank_drive`.
+
+    A name that the prelude does not define is returned unchanged.
+
+    Args:
+        name: The name by which programs use the object.
+        prelude: The code that runs before the program and defines such names: a key of `PRELUDE_TEXTS`.
+    """
     names = _Names(_build_prelude_scope(prelude))
     return next(iter(names.list_meanings(ast.Name(name), names.prelude)))
 

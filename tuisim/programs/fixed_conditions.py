@@ -27,7 +27,7 @@ _MAX_WORDS = 100
 
 @dataclass(frozen=True, slots=True)
 class _Limit:
-    """A comparison of a value with a constant."""
+    """A comparison of a value with a constant, such as `light < 20`."""
 
     value: str
     """The compared expression, as text."""
@@ -44,9 +44,9 @@ class _Limit:
 def list_fixed_conditions(
     tree: ast.Module, constants: Mapping[str, Word]
 ) -> Iterator[tuple[int, str]]:
-    """Yield lines with a condition that is always the same, or with a branch never reached, each with a description.
+    """Yield the lines with a condition that is always or never true, or an `elif` that is never reached.
 
-    Of each kind of mistake, only the first line is yielded.
+    Each line comes with a description. Of each kind of mistake, only the first line is yielded.
 
     Args:
         tree: The program.
@@ -77,9 +77,10 @@ def _list_fixed(
 
 
 def find_value(test: ast.expr, constants: Mapping[str, Word]) -> bool | None:
-    """Return the value that a condition has whatever its parts are; None if it varies, or if that is not known.
+    """Return True for a condition that is always true, such as `x < 85 or x > 75`; False for one that is never true.
 
-    Only values that are compared with at least two constants count; all other parts may be true or false.
+    The result is None if the condition is sometimes true, or if this is not known. At least one value in the condition
+    must be compared with two constants. Nothing is assumed of the parts without a constant: they may be true or false.
 
     Args:
         test: The condition.
@@ -130,7 +131,11 @@ def _read_limit(
 
 
 def _list_samples(words: Sequence[Word]) -> list[object]:
-    """Return values of every kind that comparisons with constants tell apart: equal, between, beyond and different."""
+    """Return values with which to try all comparisons of a value with some constants.
+
+    They are the constants themselves, numbers between and beyond them, and, for texts, a value that equals none of
+    them.
+    """
     numbers = sorted({word for word in words if not isinstance(word, str)})
     texts = {word for word in words if isinstance(word, str)}
     if not numbers:
@@ -144,7 +149,13 @@ def _evaluate(
     samples: Mapping[str, object],
     limits: Mapping[ast.Compare, Sequence[_Limit | None]],
 ) -> bool | None:
-    """Return the value of a condition for given values; None if it also depends on something else."""
+    """Return whether a condition is true for given values; None if it also depends on a value that is not given.
+
+    Args:
+        test: The condition.
+        samples: The given values, by the text of the compared expression, such as `light`.
+        limits: The comparisons with constants in the condition, by their syntax node; None for other comparisons.
+    """
     values: list[bool | None]
     match test:
         case ast.UnaryOp(op=ast.Not(), operand=operand):
@@ -201,7 +212,10 @@ def _name_cure(test: ast.expr, constants: Mapping[str, Word]) -> str:
 
 
 def _name_span(test: ast.expr, constants: Mapping[str, Word]) -> str:
-    """Return the condition that a value is between the two limits of a condition, such as `75 < x < 85`; else empty."""
+    """Return the condition that was probably meant: that a value is between two limits, such as `75 < x < 85`.
+
+    The result is empty if the given condition does not compare one value with a lower and an upper limit.
+    """
     pairs = [
         pair
         for part in (test.values if isinstance(test, ast.BoolOp) else [test])
@@ -222,7 +236,10 @@ def _quote(test: ast.expr) -> str:
 
 
 def _list_lone_words(nodes: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
-    """Yield the lines with a constant beside a comparison, such as `color == "red" or "blue"`."""
+    """Yield the lines with a constant beside a comparison, such as `color == "red" or "blue"`.
+
+    Each line comes with a description.
+    """
     for node in nodes:
         match node:
             case ast.If(test=test) | ast.While(test=test) | ast.IfExp(test=test):
@@ -265,7 +282,10 @@ _SENSORS = ("colorLeft", "colorRight", "ultrasonic", "gyro")
 
 
 def _list_lone_names(nodes: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
-    """Yield the lines with a sensor or reading beside the comparison of another one, such as `left and right < 9`."""
+    """Yield the lines in which a sensor or a reading stands alone beside a comparison, such as `left and right < 9`.
+
+    Each line comes with a description, which says what to write: here `left < 9`.
+    """
     sources = _find_sources(nodes)
     for node in nodes:
         match node:
@@ -283,9 +303,10 @@ def _list_lone_names(nodes: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
 
 
 def _find_sources(nodes: Sequence[ast.AST]) -> dict[str, str]:
-    """Return what each variable always holds, by name: a sensor of a class, or numbers read by a method or property.
+    """Return what each variable always holds, by the variable's name.
 
-    Variables that may hold anything else are left out, or have an empty text.
+    The text is `Sensor` for a sensor, or the name of the method or property from which a number is read, such as
+    `distance`. It is empty for a variable that may hold anything else.
     """
     sources = dict.fromkeys(_SENSORS, "Sensor")
     values: dict[str, list[str]] = defaultdict(list)
@@ -311,9 +332,10 @@ def _find_sources(nodes: Sequence[ast.AST]) -> dict[str, str]:
 
 
 def _get_kind(node: ast.expr) -> str:
-    """Return the kind of a constant that is compared, but is no answer: a text, a number, or names such as `Color.RED`.
+    """Return the kind of a constant with which programs compare readings.
 
-    The result is empty for all other expressions, also for 0 and 1, which stand for no and yes.
+    This is `text`, `number`, or the part of a name such as `Color.RED` before the last dot. The result is empty for all
+    other expressions. It is also empty for 0 and 1, which often mean no and yes, as True and False do.
     """
     match node:
         case ast.Constant(value=str() as text) if text:
@@ -326,10 +348,13 @@ def _get_kind(node: ast.expr) -> str:
 
 
 def _ask_about(word: ast.expr, part: ast.expr) -> str:
-    """Return the comparison with `word` that was probably meant beside a comparison; empty if `part` is no such one.
+    """Return the comparison that was probably meant by a constant that stands alone beside another comparison.
+
+    For `color == "red" or "blue"`, this is `color == "blue"`. The result is empty if `part` is not a comparison with a
+    constant of the same kind.
 
     Args:
-        word: A constant that stands alone, such as `"blue"`.
+        word: The constant that stands alone, such as `"blue"`.
         part: What stands beside it, such as `color == "red"`.
     """
     match part:
@@ -344,7 +369,10 @@ def _ask_about(word: ast.expr, part: ast.expr) -> str:
 def _list_unreached(
     nodes: Sequence[ast.AST], constants: Mapping[str, Word]
 ) -> Iterator[tuple[int, str]]:
-    """Yield the lines with an `elif` that is never reached, as a condition before it is true whenever its own is."""
+    """Yield the lines with an `elif` that never runs, each with a description.
+
+    It never runs because whenever its condition is true, an earlier condition of the same `if` is true as well.
+    """
     chained = {branch for node in nodes for branch in _list_elifs(node)}
     for node in nodes:
         if isinstance(node, ast.If) and node not in chained:

@@ -80,7 +80,10 @@ class _Block(NamedTuple):
 
     @property
     def is_evaluated(self) -> bool:
-        """Whether Python reads other names at the definition itself, as for a class or for default values."""
+        """Whether Python needs other names as soon as it reads the definition, as for a class or a default value.
+
+        A function without default values and decorators needs other names only when it is called.
+        """
         node = parse_module("\n".join(self.lines)).body[0]
         return not isinstance(node, ast.FunctionDef) or bool(
             node.decorator_list or node.args.defaults or node.args.kw_defaults

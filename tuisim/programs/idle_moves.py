@@ -27,7 +27,10 @@ def list_idle_moves(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 
 def _list_blocks(tree: ast.Module) -> Iterator[list[ast.stmt]]:
-    """Yield the lists of statements in a program, without those that only print, and take no time."""
+    """Yield each list of statements in a program, such as the body of a loop, without the calls of `print` in it.
+
+    Such calls take no time, so the motors do not move between the statement before and the one after.
+    """
     for block in list_blocks(tree):
         yield [step for step in block if not _is_print(step)]
 
@@ -40,7 +43,7 @@ def _is_print(step: ast.stmt) -> bool:
 
 
 def _find_makers(tree: ast.Module) -> dict[str, str]:
-    """Return what the motors, and pairs of motors, are made of, such as their ports, by name.
+    """Return by name, for each motor and each pair of motors, the arguments with which it is created, such as its port.
 
     Two pairs with the same motors have the same text.
     """
@@ -65,7 +68,7 @@ def _find_owner(step: ast.stmt, methods: Sequence[str], makers: Mapping[str, str
 def _list_stopped_starts(
     blocks: Sequence[Sequence[ast.stmt]], makers: Mapping[str, str]
 ) -> Iterator[tuple[int, str]]:
-    """Yield the lines that start motors which the next statement stops."""
+    """Yield each line that starts motors which the next statement stops at once, with a description."""
     for block in blocks:
         for step, following in pairwise(block):
             owner = _find_owner(step, STARTS, makers)
@@ -86,7 +89,11 @@ def _is_moving(step: ast.stmt) -> bool:
 
 
 def _name_wait(step: ast.stmt) -> str:
-    """Return what lets a motor run that a statement starts."""
+    """Return what to write so that the motors run for a while, such as `wait in between lets them run`.
+
+    Args:
+        step: The statement that starts the motors; the next statement stops them.
+    """
     match step:
         case ast.Expr(
             value=ast.Call(func=ast.Attribute(value=owner, attr="drive"), args=[speed, turn])
@@ -100,7 +107,11 @@ def _name_wait(step: ast.stmt) -> str:
 def _list_overruled(
     blocks: Sequence[Sequence[ast.stmt]], makers: Mapping[str, str]
 ) -> Iterator[tuple[int, str]]:
-    """Yield each `if` whose start of motors the next `if` overrules at once, since all of its branches start them."""
+    """Yield each line in an `if` that starts motors in vain, with a description.
+
+    The next statement is a second `if` with an `else`. Each of its cases starts the same motors anew, so that the first
+    start has no effect.
+    """
     for block in blocks:
         for step, following in pairwise(block):
             match step, following:
@@ -119,9 +130,9 @@ def _list_overruled(
 
 
 def _list_branches(branch: ast.If) -> list[list[ast.stmt]]:
-    """Return the statements of the branches of an `if`, of which one is always taken; empty if there is no `else`.
+    """Return the bodies of an `if`, of its `elif` and of its `else`, exactly one of which runs.
 
-    The result is also empty if one of its conditions may wait.
+    The result is empty if there is no `else`, or if a condition calls something that may wait.
     """
     branches = []
     while not has_effect(branch.test):
@@ -139,7 +150,10 @@ def _list_branches(branch: ast.If) -> list[list[ast.stmt]]:
 def _list_restarts(
     blocks: Sequence[Sequence[ast.stmt]], makers: Mapping[str, str]
 ) -> Iterator[tuple[int, str]]:
-    """Yield each stop with a `break` that ends only an inner loop, so that the outer one starts the motors again."""
+    """Yield the line of each `break` after a stop of motors that ends only an inner loop, with a description.
+
+    The outer loop then starts the motors again, which was probably not meant.
+    """
     for block in blocks:
         for loop in block:
             match loop:
@@ -172,9 +186,10 @@ def _has_numbers(step: ast.stmt) -> bool:
 
 
 def list_stopping_loops(tree: ast.Module) -> Iterator[tuple[int, str, range]]:
-    """Yield the lines that stop motors in the first pass of a loop that needs them, with the lines of the loop.
+    """Yield the lines in a `while` loop that stop the motors in its first pass, although the loop waits while they run.
 
-    Each has a description.
+    Yields:
+        The line, a description, and the lines of the loop.
     """
     makers = _find_makers(tree)
     functions = [node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]

@@ -81,7 +81,8 @@ _SHOWS = ("print", "str", "int", "float", "abs", "round")
 def _find_uncalled_method(tree: ast.Module) -> tuple[int, str] | None:
     """Return the first line that names a method without calling it, and a description; None if there is none.
 
-    A name alone on a line that is no move may also be a value, such as `color` in `ev3dev2`.
+    A name that stands alone on a line may also be a value, such as `color` in `ev3dev2`. The description then says what
+    to write in both cases.
     """
     nodes = [*ast.walk(tree)]
     for node in nodes:
@@ -107,9 +108,9 @@ def _find_uncalled_method(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _find_uncalled_function(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line with one of the program's functions alone, or as a condition, without a call.
+    """Return the first line with the name of one of the program's functions, but without `()`, and a description.
 
-    The result has a description; it is None if there is none.
+    Only a name that stands alone on a line or is a whole condition counts. The result is None if there is no such line.
     """
     nodes = [*ast.walk(tree)]
     others = {node.id for node in nodes if isinstance(node, ast.Name) and is_set(node)}
@@ -154,7 +155,7 @@ def _describe_uncalled(name: ast.expr) -> str:
 
 
 def _list_used(nodes: Sequence[ast.AST]) -> Iterator[tuple[int, ast.expr]]:
-    """Yield the expressions whose values are compared, tested, computed with or shown, each with the line of the use.
+    """Yield the expressions whose values the program compares, tests, computes with or shows, each with its line.
 
     If a variable only stands for an attribute, as after `press = button.pressed`, the attribute is yielded.
     """
@@ -250,7 +251,10 @@ def _find_equal_branches(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _is_equal(first: object, second: object) -> bool:
-    """Return whether two syntax nodes, or lists of nodes, have the same text; a chain of `elif` may be long."""
+    """Return whether two syntax nodes, or two lists of nodes, have the same text.
+
+    This does not recurse, because a chain of `elif` may be too deep for that.
+    """
     pairs = [(first, second)]
     while pairs:
         left, right = pairs.pop()
@@ -373,9 +377,10 @@ def _find_short_wait(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _find_colour_text(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first comparison of a colour that is no text with a text, and a description; None if there is none.
+    """Return the first line that compares a colour with a text such as `"red"`, and a description.
 
-    A `while` that compares so is left out, unless the text is in capitals: the run shows what it waited for.
+    A sensor's `color` is never a text. A `while` with such a comparison is left out, unless the text is in capitals,
+    because the reasons why the run went wrong then say what it waited for. The result is None if there is no such line.
     """
     nodes = [*ast.walk(tree)]
     waits = [node.test for node in nodes if isinstance(node, ast.While)]

@@ -104,10 +104,10 @@ _VARIABLE = re.compile(rf"\.({'|'.join(STARTS)})\(.*\b[a-z]\w*\b(?!=)")
 
 
 def find_steering(tree: ast.Module, line: int) -> int:
-    """Return the line of the code around a line of a program that steers the robot over and over; 0 without such code.
+    """Return the line around `line` that steers the robot again and again, as a line follower does; 0 if there is none.
 
-    It is a call such as `follow_line()`, or the first move of a function or of a loop whose moves are not always the
-    same.
+    This is `line` itself if it is a call such as `follow_line()`. Otherwise, it is the first move in the function
+    around `line` or, outside functions, in the loop around it, if the moves in this loop differ.
 
     Args:
         tree: The program.
@@ -165,12 +165,13 @@ _PAIRS = re.compile("Move[A-Z]|DriveBase|tank_|steering_")
 def list_parted_moves(tree: ast.Module, is_straight: Callable[[int], bool]) -> Iterator[PartedMove]:
     """Yield each two successive calls that move two motors equally, if the first call waits for its end.
 
-    They are in a loop with other statements, or a comment says that they drive straight on. Programs that also move
-    both wheels by one call are left out: they probably move one wheel alone on purpose.
+    Such a pair probably means one move of both motors. It counts only in a loop with other statements, or if a comment
+    says that the robot drives straight on. A program that also moves both wheels by one call has no such pair: it
+    probably moves one wheel alone on purpose.
 
     Args:
         tree: The program.
-        is_straight: Returns whether a comment says of a line that the robot drives straight on.
+        is_straight: Takes a line; returns whether a comment says of it that the robot drives straight on.
     """
     nodes = [*ast.walk(tree)]
     if any(isinstance(node, ast.Name) and _PAIRS.match(node.id) for node in nodes):

@@ -119,7 +119,10 @@ def _find_uses(tree: ast.Module) -> Iterator[tuple[ast.Attribute, ast.Name]]:
 
 
 def _list_bound_names(tree: ast.Module) -> Iterator[str]:
-    """Yield the names that the program assigns or defines, in any scope; names with several such places repeatedly."""
+    """Yield the names that the program assigns or defines, in any scope.
+
+    A name is yielded as often as the program assigns or defines it.
+    """
     for node in ast.walk(tree):
         match node:
             case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):

@@ -42,7 +42,10 @@ class NotebookProgram:
 
 @dataclass(frozen=True, slots=True)
 class _Words:
-    """A parsed magic line of a notebook: its settings, and the names of the notebook's variables in other options."""
+    """A parsed magic line of a notebook: its settings without those that contain variables of the notebook.
+
+    `unknown` has these variables as text.
+    """
 
     magic: re.Match[str]
     settings: Mapping[str, Any]

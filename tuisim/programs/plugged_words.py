@@ -11,9 +11,10 @@ from tuisim.programs.robot.library import DEVICES, SENSES_WALLS
 
 
 def describe_plugged(run: StoredRun) -> str:
-    """Return a sentence about the parts that were plugged in during a run because the program's text did not show them.
+    """Return a sentence about the parts that a run plugged in only when the program opened them.
 
-    The sentence also says how to have them from the start. The result is empty if no part was plugged in.
+    The text of the program had not shown these parts. The sentence also says how to have them from the start. The
+    result is empty if no part was plugged in.
     """
     parts = list_parts(run.plugged)
     if not parts:

@@ -387,9 +387,12 @@ def _check_prelude(program: Program) -> None:
 
 
 def _find_law(named: str | ProfileSpec) -> MotorLaw | None:
-    """Return the motor law of a profile, given as such or by its name: how motors move, and for which library.
+    """Return how the motors of a profile move, and for which library; None if there is no such profile.
 
-    The result is None if there is no such profile; another function reports that.
+    A missing profile is reported by another function.
+
+    Args:
+        named: The profile, or its name.
     """
     try:
         return _load_profile(named).motor_law

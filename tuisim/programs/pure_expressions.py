@@ -26,7 +26,10 @@ def has_effect(test: ast.expr) -> bool:
 
 
 def is_reading(node: ast.expr) -> bool:
-    """Return whether an expression has the same value if it is evaluated twice in one condition."""
+    """Return whether an expression has the same value if it is evaluated twice in one condition.
+
+    For example, `sensor.distance()` has, but `next(values)` has not.
+    """
     match node:
         case ast.Name() | ast.Constant():
             return True

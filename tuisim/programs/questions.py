@@ -204,9 +204,10 @@ class QuestionReader:
         )
 
     def _find_flow(self, steps: Iterable[ast.stmt]) -> list[ast.stmt]:
-        """Return the given steps, with all steps that depend on the values that these read.
+        """Return the given steps, and after them all steps that depend on the values that they read.
 
-        A step also depends on a value if it runs only because of a condition with this value.
+        A step may depend on a value directly, through other steps, or because it runs only after a condition with this
+        value.
         """
         flow = dict.fromkeys(steps)
         queue = [*flow]
@@ -253,7 +254,10 @@ class QuestionReader:
                     yield self._constants[name]
 
     def _list_handlers(self) -> Iterator[str]:
-        """Yield the names of handlers such as `on_up` that the program assigns, in order of the lines."""
+        """Yield the names such as `on_up` to which the program assigns a function that the library calls for a button.
+
+        They are in the order of their lines.
+        """
         for node in sorted(
             (node for node in self._nodes if isinstance(node, ast.Attribute)),
             key=lambda node: node.lineno,

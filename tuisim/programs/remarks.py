@@ -45,7 +45,7 @@ _SPEEDS = ("speed", "left_speed", "right_speed")
 
 
 class Remarks:
-    """The lines of a program, in which comments, prints and names tell its intentions.
+    """The lines of a program whose comments, prints and names say what the program is meant to do.
 
     Args:
         text: The program.
@@ -55,7 +55,9 @@ class Remarks:
         self._lines = source_lines(text)
 
     def find_color(self, first_line: int, last_line: int, ends: Collection[int] = ()) -> str:
-        """Return `black` or `white` if the lines in and around a loop name only this colour; empty otherwise.
+        """Return `black` or `white` if the lines in and around a loop name this colour and no other.
+
+        The result is empty in any other case.
 
         Args:
             first_line: The first line of the loop.
@@ -81,7 +83,7 @@ class Remarks:
         return _find_side(self._read_comment(line))
 
     def has_straight_comment(self, line: int) -> bool:
-        """Return whether a comment on a line, or one above it, says that the robot drives straight on, and no more."""
+        """Return whether a comment on or above a line says that the robot drives straight on, and nothing of turns."""
         text = self._read_comment(line).replace("rotations", "")
         is_straight = is_forwards(text) or bool(_STRAIGHT.search(text))
         return is_straight and not (_TURNS.search(text) or _CURVES.search(text))

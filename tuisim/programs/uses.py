@@ -30,8 +30,8 @@ _SPEEDS = "Speed"
 def list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoopEnd]:
     """Yield each use of an old reading in a loop: the program took the reading before the loop, and never again in it.
 
-    A use is a comparison with a constant, another test, or a move. For the last two, the operator is empty. The first
-    and last line of a use are those of the loop.
+    A use is a test in the loop, or a move. Only for a comparison with a constant, the result has an operator; otherwise
+    the operator is empty. The lines in the result are those of the loop.
 
     Args:
         tree: The program.
@@ -84,9 +84,10 @@ def _list_reads_before(loop: _Loop, nodes: list[ast.AST]) -> dict[str, ast.Assig
 
 
 def _find_read(value: ast.expr, loop: _Loop, name: str) -> str:
-    """Return the attribute that an assignment before a loop reads; empty if it reads none.
+    """Return the attribute, such as `distance`, that an assignment before a loop reads; empty if it reads none.
 
-    An answer such as `near = us.distance < 20` counts only if the loop cannot end without another one.
+    For a comparison such as `near = us.distance < 20`, the attribute is returned only if the loop is `while near` or
+    `while not near`, and no statement such as `break` leaves it.
 
     Args:
         value: The assigned expression.
@@ -187,7 +188,11 @@ def _find_derived(loop: _Loop, name: str) -> set[str]:
 
 
 def _depends(node: ast.expr, stale: set[str], fresh: set[str]) -> bool:
-    """Return whether an expression uses a name in `stale`, but none in `fresh`, and reads nothing itself."""
+    """Return whether an expression depends only on old values: it uses a name in `stale`, but no name in `fresh`.
+
+    An expression that reads an attribute, or calls something that may read a new value, does not depend only on old
+    values.
+    """
     names = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
     reads = any(
         isinstance(part, ast.Attribute) or (isinstance(part, ast.Call) and not _is_pure(part))

@@ -216,14 +216,15 @@ def _build_end(
     tree: ast.Module,
     words: Mapping[str, Word],
 ) -> LoopEnd | None:
-    """Return a comparison as the end of a loop; None if nothing shows on what it depends.
+    """Return the end of a loop that a comparison describes; None if the text does not show what the value depends on.
 
-    The loop must read the value from a device; or the value must have been set before the loop, which cannot end then.
+    The value must be read from a device in the loop. It may also have been set before the loop, if nothing else can end
+    the loop: then the loop never ends.
 
     Args:
         loop: The loop.
         test: The condition.
-        comparison: Its value, the operator that ends the loop, and the constant.
+        comparison: The compared expression, the operator with which it is true at the end, and the constant.
         tree: The program.
         words: Values of names in the program, which are read as constants.
     """
@@ -249,10 +250,15 @@ def _build_end(
 
 
 def _is_short(number: Word | None, operator: str, limit: Word) -> bool:
-    """Return whether a variable's number has to change before `number operator limit` is true.
+    """Return whether a variable must still change before a comparison with a limit is true, as a counter must.
 
-    The result is False for flags, which may keep their value: numbers compared by `!=`, or 0 with 1 and the reverse. It
-    is also False if one of the values is not a number.
+    The result is False if one of the two is not a number. It is also False if the variable may be a flag, which can
+    keep its value: if the operator is `!=`, or one number is 0 and the limit is 1, or the reverse.
+
+    Args:
+        number: The variable's value before the loop.
+        operator: The operator with which the comparison ends the loop.
+        limit: The constant with which the variable is compared.
     """
     is_number = isinstance(number, int | float) and isinstance(limit, int | float)
     is_flag = operator == "!=" or {number, limit} == {0, 1}

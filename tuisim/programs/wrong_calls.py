@@ -74,7 +74,7 @@ class _Move:
     """The names of its further arguments."""
 
     def list_parameters(self) -> tuple[str, ...]:
-        """Return what the method takes; empty if that is not known."""
+        """Return descriptions of the arguments that the method takes; empty if they are not known."""
         others = _OTHERS.get(self.class_name, {})
         if self.method in others:
             return others[self.method]
@@ -206,7 +206,10 @@ def _describe_surplus(move: _Move, takes: str) -> str:
 
 
 def _is_reversed(move: _Move) -> bool:
-    """Return whether the first value of a call is no speed, and the others may be speeds."""
+    """Return whether the numbers of a call are probably in the wrong order.
+
+    This is so if the first number is too high for a speed, and all others may be speeds.
+    """
     numbers = [find_number(each) for each in move.args]
     first, *others = [number for number in numbers if number is not None] or [0.0]
     is_known = len(others) == len(numbers) - 1 > 0 and "steering" not in move.list_parameters()

@@ -479,10 +479,12 @@ class _Builder:
         return ported
 
     def _stay(self, left: list[SensorSpec], placed: dict[str, SensorSpec]) -> None:
-        """Add the usual sensors that the program does not name: on the usual port or, if that is taken, a free one.
+        """Add those sensors of the usual robot that the program does not name to the sensors of the program's robot.
+
+        Each keeps its port; if another sensor is on it, it gets a free port. Without a free port, it is left out.
 
         Args:
-            left: The usual sensors that the program does not name.
+            left: The sensors of the usual robot that the program does not name.
             placed: The sensors by port, to which they are added.
         """
         moving = []
@@ -524,12 +526,12 @@ class _Builder:
 
 
 def _is_there(sensor: SensorSpec, mention: Mention | None, *, by_side: bool) -> bool:
-    """Return whether a sensor of the usual robot is the sensor that the program creates on the port.
+    """Return whether the device that the program creates on a port can be the sensor that the usual robot has there.
 
     Args:
-        sensor: The sensor.
+        sensor: The sensor of the usual robot.
         mention: The device that the program creates on the port; None for none.
-        by_side: Whether a colour sensor must be on the side that the program's name for it says.
+        by_side: Whether the program's name for a colour sensor must say the side on which the usual robot has it.
     """
     if mention is None or mention.kind not in (KINDS[type(sensor)], DeviceKind.SENSOR):
         return False

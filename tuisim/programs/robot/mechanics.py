@@ -206,14 +206,16 @@ class _MechanicsReader:
     def _stall(
         self, base: ast.expr, scope: Scope, node: ast.AST, ways: Sequence[bool] | None = None
     ) -> None:
-        """Record an end stop of a motor, unless the program only prints whether the motor is stalled.
+        """Record that a motor has an end stop, unless the program only prints whether the motor is stalled.
+
+        If the program drives the motor against a stop in both directions, both end stops are recorded.
 
         Args:
             base: The expression for the motor.
             scope: The scope that contains it.
             node: The call or test that shows the end stop.
-            ways: For each execution of a call, whether it moves the motor forwards; None to take this from the motor's
-                other moves.
+            ways: The directions in which the call can drive the motor, True for forwards; None to take the direction
+                from the motor's other moves.
         """
         if ways is None and scope.prints(node):
             return
@@ -253,7 +255,10 @@ class _MechanicsReader:
         return bool(self._find_calls(scope.body, ports, names, scope))
 
     def _is_endless(self, base: ast.expr, scope: Scope) -> bool:
-        """Return whether the program moves a motor, but only by calls that do not end by themselves."""
+        """Return whether the program moves a motor only by calls such as `run`, which start it without an end.
+
+        The result is False if the program does not move the motor at all.
+        """
         ports = self._find_motors(base, scope)
         return self._moves(scope, ports, self.moves.endless) and not self._moves(
             scope, ports, self.moves.ending

@@ -67,9 +67,10 @@ class Mention:
     """Turns of the motor per turn of what it drives, as the program says."""
 
     def makes(self, value: Instance) -> bool:
-        """Return whether an object in the program is this device: the call that makes the device made the object.
+        """Return whether an object in the program is this device, because the same call created both.
 
-        In a class of the program, this may be the call `super().__init__(port)`.
+        If the object's class is one of the program that inherits from the device's class, the call
+        `super().__init__(port)` in it counts as this call.
         """
         return _is_maker(self.call, self.owner, value)
 
@@ -98,9 +99,10 @@ class Pair:
     """The polarity that the program gives for the motors, for a class that takes one."""
 
     def makes(self, value: Instance) -> bool:
-        """Return whether an object in the program is this pair: the call that makes the pair made the object.
+        """Return whether an object in the program is this pair of motors, because the same call created both.
 
-        In a class of the program, this may be the call `super().__init__(left, right)`.
+        If the object's class is one of the program that inherits from the pair's class, the call
+        `super().__init__(left, right)` in it counts as this call.
         """
         return _is_maker(self.call, self.owner, value)
 
@@ -227,7 +229,7 @@ class _Reader:
     # Calls
 
     def _sort(self, call: Call, calls: dict[Function, list[Call]]) -> None:
-        """Record a call under what it calls: a function or class of the program, or a class of the library.
+        """Record a call by the function or class that it calls, which is one of the program or a class of the library.
 
         Args:
             call: The call.
@@ -415,7 +417,7 @@ class _Reader:
     def _find_ports(
         self, call: Call, name: str, position: int, names: tuple[str, ...]
     ) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """Yield the ports that an argument of a call can be, each with the program's names for the device there.
+        """Yield the ports that an argument of a call may name, each with the program's names for the device there.
 
         Args:
             call: The call that creates the device.
@@ -667,10 +669,14 @@ def _needs_motors(name: str) -> bool:
 
 
 def _is_maker(call: ast.Call | None, owner: Scope | None, value: Instance) -> bool:
-    """Return whether a call makes an object.
+    """Return whether a call created an object.
 
-    It is then the object's own call, or a call such as `super().__init__()` in the object's class, whose scope is
-    `owner`.
+    This is also true of a call such as `super().__init__()` in the class of the object.
+
+    Args:
+        call: The call.
+        owner: The scope of the class that contains the call; None outside classes.
+        value: The object.
     """
     if value.call is not None and value.call is call:
         return True

@@ -46,9 +46,10 @@ def add_sides(mentions: Sequence[Mention]) -> list[Mention]:
 
 
 def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorSpec]) -> bool:
-    """Return whether a program's names put one of its colour sensors on another side than in the usual robot.
+    """Return whether a program's names put one of its colour sensors on another side than the usual robot has it.
 
-    If the program has only colour sensors that the usual robot has, this requires that all their names say a side.
+    If all ports of the program's colour sensors have a colour sensor in the usual robot, too, the result is True only
+    if the names of all these sensors say left or right.
 
     Args:
         mentions: The devices that the program creates, by port.

@@ -36,9 +36,9 @@ def find_state_test(node: ast.expr) -> StateTest | None:
 
 
 def find_stopped_motors(loop: ast.While) -> Iterator[tuple[ast.expr, bool]]:
-    """Yield each motor for which a loop waits until it is slow or stands still, and whether this is certain.
+    """Yield each motor that must be slow or stand still before a loop ends, and whether this is certain.
 
-    It is certain if the loop compares positions; a comparison of a speed may have another purpose.
+    It is certain if the loop compares positions of the motor; if it compares a speed, it may wait for something else.
     """
     match loop.test:
         case ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.NotEq()], comparators=[right]):

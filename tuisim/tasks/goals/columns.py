@@ -63,7 +63,7 @@ def _refuse(text: str, comparison: ValueCondition, error: ConfigError | ValueErr
 def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> str:
     """Return which value of a column came nearest to the number in a comparison, and when, to end a sentence.
 
-    The result is empty if the comparison is not one of a column with a number, such as `x_mm > 100`.
+    The result is empty if the comparison does not compare a column with a number, as `x_mm > 100` does.
     """
     import numpy as np
 

@@ -355,10 +355,10 @@ class Evidence:
 
 
 def find_ticks(rows: Array, hz: int) -> Array:
-    """Return for each reading, or each other record with a time, its tick, shape (n,).
+    """Return the tick of each reading, shape (n,); this also works for other records that have a time.
 
     Args:
-        rows: The readings, with their times in the field `time_ns`.
+        rows: The readings or other records, with their times in the field `time_ns`.
         hz: Ticks per second.
     """
     seconds, rest_ns = divmod(rows["time_ns"], NS_PER_S)

@@ -115,11 +115,12 @@ class GoalsFile:
 
 
 def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, GoalsFile | None]:
-    """Read a world file; return its world, and its goals or, if it has no goals, None.
+    """Read a world file; return its world, and its goals as a `GoalsFile`, or None in place of this if it has no goals.
 
     Args:
         path: The file, or one of `list_example_names`.
-        mats: A further folder in which the mat is searched for if the file names no folder of mats; None for none.
+        mats: A further folder in which to search for the mat if the file does not name a folder of mats; None to search
+            in no further folder.
 
     Raises:
         ConfigError: a file cannot be read or is wrong; the error names file, line and key.
@@ -335,10 +336,15 @@ def _parse_condition(
 
 
 def _check_lists(kind: type[Condition], data: object, location: Location) -> None:
-    """Check the form of the keys of a condition whose values must be lists, of texts or of ranges.
+    """Check that those keys of a condition have lists as values that need lists of texts or of ranges.
+
+    Args:
+        kind: The class of the condition.
+        data: The condition's table in the goals file.
+        location: The location of the table, for errors.
 
     Raises:
-        ConfigError: a value is not such a list; the error has a hint.
+        ConfigError: a value is not such a list; the error says what it must be.
     """
     for key, value in data.items() if isinstance(data, dict) else ():
         field = kind.__dataclass_fields__.get(key)
@@ -477,10 +483,12 @@ _STEP = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
 def find_key_line(text: str, key: str) -> int:
     """Return the line, from 1, at which the value of a key begins in a valid TOML text.
 
+    If there is no such key, the line of the innermost table that should contain it is returned; 1 if that is missing,
+    too.
+
     Args:
         text: The TOML.
-        key: The key's path, such as `goal[2].reach.x_mm`, where entries count from 1. If there is no such key, the line
-            of the innermost table around it is returned; 1 if there is none.
+        key: The key's path, such as `goal[2].reach.x_mm`, where entries count from 1.
     """
     lines = text.split("\n")
     path = [int(step[1]) - 1 if step[1] else step[2] for step in _STEP.finditer(key)]
@@ -494,7 +502,7 @@ def find_key_line(text: str, key: str) -> int:
     def begun(count: int) -> bool:
         """Return whether the key is in the first `count` statements of the TOML.
 
-        If the last of these statements goes on over several lines, it is read to its end.
+        If the text ends in the middle of a value after these statements, as much is added as is needed to complete it.
         """
         while (parsed := _parse_lines(lines[: ends[count]])) is None:
             count += 1

@@ -74,9 +74,10 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
 
 
 def _find_arrivals(there: Array) -> Array:
-    """Return for each tick at which the robot is at a place, the index of the tick at which it came there, shape (n,).
+    """Return the tick of arrival at a place, for each tick at which the robot is there, shape (n,).
 
-    The index is 0 if the robot was there from the start. At ticks at which it is elsewhere, the value has no meaning.
+    The value is 0 if the robot was at the place from the start. At ticks at which the robot is elsewhere, the value has
+    no meaning.
 
     Args:
         there: Whether the robot is at the place, at each tick, shape (n,).

@@ -24,7 +24,7 @@ _MAX_BYTES = 4_000_000
 
 
 class StepState(StrEnum):
-    """Whether a student has done a step of a lesson, has skipped it, or neither."""
+    """The state of a step of a lesson for a student: done, skipped, or still to do."""
 
     OPEN = "open"
     DONE = "done"

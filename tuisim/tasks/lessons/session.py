@@ -167,7 +167,7 @@ class LessonSession:
         """Load the student's progress on the lesson.
 
         Raises:
-            ConfigError: the file with the progress is damaged; the lesson begins at its first step.
+            ConfigError: the file with the progress is damaged; after this, the lesson begins at its first step.
         """
         try:
             self.progress = load_progress().get(self.lesson.name, LessonProgress())

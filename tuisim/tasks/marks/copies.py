@@ -129,10 +129,11 @@ def _read_tokens(texts: Iterable[str]) -> list[Token]:
 
 
 def _compute_prints(tokens: Sequence[Token]) -> _Prints:
-    """Return the fingerprints of a program; to each belong the numbers of the lines whose tokens it covers.
+    """Return the fingerprints of a program, each with the numbers of the lines from which it was computed.
 
-    A hash is computed for each sequence of `TOKENS` successive tokens. The fingerprints are the smallest hash in each
-    window of `WINDOW` successive hashes; of equal ones, the last.
+    A hash is computed for each sequence of `TOKENS` successive tokens. In each window of `WINDOW` successive hashes,
+    the smallest hash becomes a fingerprint; the lines are those of its tokens. Of equal hashes in a window, the last is
+    taken.
     """
     kinds = [token.kind for token in tokens]
     hashes = [

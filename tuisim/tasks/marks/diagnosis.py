@@ -21,10 +21,10 @@ def add_diagnoses(sheet: Sheet) -> Sheet:
 
 
 def find_diagnosis(row: SheetRow, store: RunStore) -> str:
-    """Return why the run that a row names as its failure went wrong: the first reason, with time and line, as text.
+    """Return why a student's run failed: the first reason, with time and line, as text without a full stop.
 
-    The text has no full stop. It is empty if every run was good, or failed in hidden worlds only. It is also empty if
-    the run was not kept, or if the row already has the error that is the reason.
+    The run is the one that the row of the marks names as its failure. The text is empty if every run was good, or
+    failed only in hidden worlds; if the run was not kept; or if the row already has the error that is the reason.
     """
     for outcome in row.outcomes:
         if outcome.seed == row.seed and outcome.run_id and _is_shown_failure(outcome):

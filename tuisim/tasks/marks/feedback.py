@@ -31,7 +31,8 @@ _FORBIDDEN = frozenset('/\\:*?"<>|')
 def build_file_stems(names: Iterable[str]) -> list[str]:
     """Return a name for each student's file, without its suffix: all distinct, and without unusual characters.
 
-    A student whose name needs no change has files of that name, even if another student's name becomes equal to it.
+    Two students' names may become equal when unusual characters are replaced; all but one of them then get a number. A
+    name without unusual characters is kept as it is.
     """
     names = [*names]
     plain = [_make_plain(name) for name in names]
