@@ -231,10 +231,8 @@ class LabApp(PanelMessages):
         super().complain(error)
 
     def _tell_config(self) -> None:
-        """Show the errors in `config.toml` and where settings of the run come from.
-
-        Settings can come from that file, or the app has decided them because of the program.
-        """
+        """Show the errors in `config.toml`; say which settings come from this file, and which from the program's
+        text."""
         for error in self._config_problems[:MAX_PROBLEMS]:
             self.complain(error)
         if self.settings.from_config:
@@ -418,9 +416,9 @@ class LabApp(PanelMessages):
         self._frame_timer = self.set_interval(gap_s, self._on_frame_timer)
 
     def _is_starting(self) -> bool:
-        """Return whether the run is starting.
+        """Return whether the run is starting; once it has started, set the usual frame rate again.
 
-        Drawing a frame while it starts would delay the frame with its first tick.
+        A frame that is drawn while the run starts would delay the frame with the first tick.
         """
         if not self._starting_until_s:
             return False

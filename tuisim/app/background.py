@@ -120,9 +120,10 @@ def start(work: Callable[[], object]) -> None:
 
 
 def enter() -> None:
-    """Prepare Python's memory for an app: existing objects are never collected, and collections are rare.
+    """Prepare Python's garbage collection for an app.
 
-    Large freed blocks are given back to the system; see `return_freed_blocks`.
+    Objects that exist now are never collected, and collections are rare. Large freed blocks are given back to the
+    system; see `return_freed_blocks`.
     """
     gc.freeze()
     gc.set_threshold(COLLECT_EVERY)

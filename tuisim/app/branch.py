@@ -39,7 +39,7 @@ _WORLD_FIELDS = (
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """A run that repeats another run up to an instant, and then differs by a user action or an edited program."""
+    """A run that repeats a former run up to an instant, and then differs by a user action or an edited program."""
 
     of: Recording
     tick: int
@@ -51,7 +51,7 @@ class Branch:
 
     @property
     def time_s(self) -> float:
-        """The instant of the branch, in simulated seconds."""
+        """The simulated time in s of the instant up to which the branch repeats the former run."""
         return self.tick / self.of.spec.profile.tick_hz
 
     @property
@@ -74,18 +74,22 @@ class Branch:
 
     @property
     def noise(self) -> NoiseSpec:
-        """The noise of the branch after its instant: the one that the user sets there, else that of the former run."""
+        """The noise in the branch after the instant at which it leaves the former run.
+
+        This is the noise that the user sets at that instant. If the user sets none, it is the noise of the former run
+        at that instant.
+        """
         if isinstance(self.then, protocol.SetNoise):
             return NoiseSpec(self.then.light, self.then.motor)
         return self.of.find_noise(self.of.telemetry.record(self.tick))
 
     def script(self) -> tuple[UserAction, ...]:
-        """Return the user's actions in the former run up to the instant of the branch."""
+        """Return the user actions that the branch repeats: those of the former run up to the instant of the branch."""
         return tuple(action for action in self.of.actions() if action.tick <= self.tick)
 
     @property
     def runs(self) -> Program:
-        """The program that the branch runs: its present text, with the arguments and the answers of the former run."""
+        """The program that the branch runs: the present text, with the former run's arguments."""
         return replace(
             self.of.program,
             name=self.program.name,

@@ -388,7 +388,11 @@ class DebugController:
         self.position = self._wanted = None
 
     def show_raised(self, line: int) -> None:
-        """Run the program again up to the line with which it ended by an error, to show the variables there."""
+        """Show the variables at the error with which the run ended: the program runs again up to the line of the error.
+
+        Args:
+            line: The line of the error in the text of the run, from 1; for 0, do nothing.
+        """
         recording = self._run_controller.timeline.recording
         if recording is not None and line and self._has_past_variables():
             self._seeks_raise = True
@@ -506,7 +510,7 @@ class DebugController:
     def _find_position(self) -> Position | None:
         """Return the position in the run that is in view; None before the first tick.
 
-        If the executed line is not known, the position is that of its tick only.
+        A position is a tick and an executed line in it; if the line is not known, the position has only the tick.
         """
         timeline = self._run_controller.timeline
         if self.position:

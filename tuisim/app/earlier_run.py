@@ -42,9 +42,10 @@ def find_run_before(later: Recording) -> Recording | None:
 
 
 def find_similar_run(program: Program, spec: RunSpec) -> StoredRun | None:
-    """Return the newest stored run of a program file, if it had the same text and the same specification.
+    """Return the newest stored run of a program file, if it ran the same text with the same specification.
 
-    The result is None if it had not, if there is no such run, or if it cannot be read.
+    The result is None if the newest run had another text or specification, if no run is stored, or if it cannot be
+    read.
     """
     with suppress(LogError):
         run = next(_load_runs(program, ""), None)

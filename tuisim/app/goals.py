@@ -182,8 +182,8 @@ def _judge_run(
 ) -> tuple[tuple[Judgement, ...], float] | None:
     """Return the judgements of a run, and the wall-clock seconds that judging took.
 
-    The result is None if a live run has just ended, but its folder does not say yet how. The run is loaded from its
-    folder, because the app reads the recording object at the same time in another thread.
+    The result is None if a live run has just ended, but how it ended is not stored in its folder yet. The run is loaded
+    from its folder, because the app reads the recording object at the same time in another thread.
     """
     from tuisim.tasks.goals.judge import judge
 

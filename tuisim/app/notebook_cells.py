@@ -24,10 +24,10 @@ def do_asked(context: ActionContext, asked: Mapping[str, Any]) -> None:
 
     Args:
         context: The parts of the app.
-        asked: The request. Its `what` is one of these words, which has further entries: `open` opens the file `path`;
-            `stop` stops the program; `run` shows the stored run `id`; `cell` applies the `settings` and the `program`
-            of a notebook's cell. With `home`, the robot then goes back to its start; with `runs`, the program runs, at
-            the cell's `speed` if that is not None.
+        asked: The request. Its entry `what` says what to do: `open` opens the file with the path `path`; `stop` stops
+            the program; `run` shows the stored run with the id `id`; `cell` applies the `settings` and the `program` of
+            a notebook's cell. The request for a cell also says whether the robot goes back to its start pose (`home`),
+            whether the program is started (`runs`), and at which `speed`, where None stands for the app's own speed.
     """
     match asked:
         case {"what": "open", "path": str(path)}:

@@ -276,7 +276,10 @@ class PanelArea(Container):
                 break
 
     def keep_panels(self) -> None:
-        """Store the preset, and the panels that the user has shown or hidden, for the next start in this size."""
+        """Store the preset and the panels that the user has shown or hidden, for terminals of this size class.
+
+        The next start of the app in such a terminal uses them.
+        """
         save_layout(self._find_size(), KeptLayout(self.preset, self._chosen))
 
     def _find_size(self) -> TerminalSize:

@@ -56,7 +56,7 @@ def _find_typing_room(area: PanelArea) -> tuple[int, int]:
 
 
 class PanelMessages(LabHost):
-    """The handlers of the messages of panels, as a base class of the app; Textual finds the methods by name."""
+    """Base class of the app with the methods that handle messages of the panels; Textual finds the methods by name."""
 
     context: ActionContext
     has_hinted = False
@@ -154,7 +154,10 @@ class PanelMessages(LabHost):
         self.handle_situation_change()
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
-        """Move the robot to where it is dragged; in the past, ask about a branch at the end of the drag."""
+        """Move the robot to where it is dragged.
+
+        If a past instant is in view, ask at the end of the drag whether to start a branch there.
+        """
         if message.done or not self.context.debugger.is_away:
             self.context.runs.place(message.pose)
 

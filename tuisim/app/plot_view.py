@@ -87,8 +87,8 @@ class PlotView(LinesView):
         """Show lines of text with charts.
 
         Args:
-            paint: Draws the lines, and returns them all with the charts in them, each chart after the number of its
-                first row. It is called with True if the canvases must stay blank, because pixels will be drawn there.
+            paint: Draws the lines, and returns all of them, and each chart in them with the number of its first row. It
+                is called with True if pixels will cover the canvases of the charts, which it must then leave blank.
         """
         graphics = self.graphics
         lines, pictures = paint(graphics is not None)

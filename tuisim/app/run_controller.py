@@ -242,7 +242,10 @@ class RunController:
         return instant, line, down
 
     def _find_present(self, record: TickRecord) -> Present | None:
-        """Return what the program would read at the pause in view; None if `record` is not the record of that pause."""
+        """Return the values that the program would read at the pause in view.
+
+        The result is None if the program is not paused, or `record` is not the record of the pause.
+        """
         pause = self.shown_pause
         is_there = pause is not None and (pause.past or self._is_paused)
         return pause.find_present(record, self.spec.robot) if pause and is_there else None
@@ -332,7 +335,7 @@ class RunController:
         )
 
     def start_branch(self, branch: Branch) -> None:
-        """Start a branch: repeat a run as fast as possible up to an instant, and continue from there.
+        """Start a branch: repeat a former run as fast as possible up to an instant, and continue from there.
 
         The current run is closed.
 
@@ -352,13 +355,16 @@ class RunController:
         self._branch = branch
 
     def _finish_branch(self, paused: protocol.Paused | None = None) -> Branch | None:
-        """End the start of a branch: let its run, which has paused where the branch begins, go on; return the branch.
+        """Finish the start of a branch, whose run has paused at the instant up to which it repeats the former run.
 
-        The result is None if no branch is being started. A program that ended before that instant has paused at its
-        end, and goes on from there.
+        Apply the user's action at that instant, and continue the run if the branch is to go on. If the program has
+        ended before that instant, the run has paused at its end, and is continued without the action.
 
         Args:
             paused: The pause; None if the run has ended, so that there is nothing to continue.
+
+        Returns:
+            The branch; None if no branch is being started.
         """
         branch = self._branch
         self._branch = None
@@ -469,7 +475,10 @@ class RunController:
         self._still = replace(self._still, seed=seed)
 
     def place(self, pose: Pose) -> None:
-        """Place the robot at a pose: in a live run as a user action, else as the start pose of the next run."""
+        """Place the robot at a pose: in a live run as a user action, else as the start pose of the next run.
+
+        If a past instant is in view, only ask the user whether to start a branch there with this pose.
+        """
         command = protocol.SetPose(pose.x_mm, pose.y_mm, pose.heading_deg)
         if self.propose(command):
             return

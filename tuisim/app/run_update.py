@@ -52,7 +52,7 @@ def describe_remarks(
 ) -> Iterator[str]:
     """Yield the lines that the app adds to the output after an event of the run.
 
-    The program, for example, is in a loop without a wait, or a part was plugged in.
+    The event is that the program is in a loop without a wait, or that a part was plugged in.
     """
     if isinstance(event, protocol.BusyLoop):
         yield describe_busy_loop(event)
@@ -61,7 +61,7 @@ def describe_remarks(
 
 
 class NearSampleWatch:
-    """Looks for a printed row that is nearly a sample, and gives the user one hint about it in each run."""
+    """Looks for printed rows that are nearly samples, such as `speed: 5 cm`, and gives one hint in each run."""
 
     def __init__(self) -> None:
         self._told: Recording | None = None

@@ -270,8 +270,8 @@ def find(
         text: An expression in one of the forms of `list_forms`.
         timeline: The run, and the instant in view.
         mat: The run's mat, from which readings are taken; None if it is not prepared yet.
-        first_at_end: Whether a search at the newest instant begins at the start of the run; otherwise it goes
-            backwards.
+        first_at_end: Whether a search that starts at the newest instant goes forwards from the start of the run;
+            otherwise it goes backwards from the newest instant.
 
     Raises:
         ConfigError: the expression is not understood, or there is no such instant.
@@ -308,13 +308,13 @@ def find(
 
 
 def describe_match(text: str, tick: int, timeline: Timeline, mat: Field | None = None) -> str:
-    """Return about the instant that a search found what its place in the run does not show; empty for nothing.
+    """Return remarks on the instant that a search has found, as one text; empty for none.
 
-    That is where the first match is, if the search began later, and that the instant is the newest one.
+    One remark says that the instant is the newest one, another where the first match is if a later one was found.
 
     Args:
         text: The words of the search, as for `find`.
-        tick: The tick that `find` returned for them.
+        tick: The tick that `find` returned for these words.
         timeline: The run, and the instant at which the search began.
         mat: As for `find`.
     """

@@ -296,8 +296,7 @@ class BufferedApp(HookedApp):
         """Return whether an error only comes from the shutdown of the app, and can be ignored.
 
         During the shutdown, widgets cannot be mounted, some are removed while they are being mounted, and at last there
-        is no
-        screen any more.
+        is no screen any more.
         """
         cause = error.error if isinstance(error, WorkerFailed) else error
         return is_leaving(self) and isinstance(

@@ -175,8 +175,7 @@ class TerminalDriver(HookedLinuxDriver):
         """Restore the terminal, and stop the process group of the app until the shell resumes it.
 
         The signal is SIGTSTP, which the system drops if no shell could resume the app. Textual sends SIGSTOP, which
-        would stop
-        the app for ever in that case.
+        would stop the app for ever in that case.
 
         Returns:
             Whether the app was stopped, and has resumed.
@@ -187,7 +186,10 @@ class TerminalDriver(HookedLinuxDriver):
             return self._was_continued
 
     def handle_continuation(self) -> None:
-        """After a stop of the process, take the terminal back unless it is lent; called by the signal's handler."""
+        """Take the terminal back after the process was stopped; called by the handler of the signal.
+
+        While another program uses the terminal, only record that the process was continued.
+        """
         if self._is_lent:
             self._was_continued = True
         elif self.resumes:

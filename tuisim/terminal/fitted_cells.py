@@ -38,7 +38,7 @@ def fit_cells(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> Cells:
     """Return the glyphs and colours that show some cells of a picture best.
 
     Args:
-        picture: A whole number of cells, each with the points of the glyphs.
+        picture: The picture, a whole number of cells wide and high. Each of its cells has as many points as a glyph.
         glyphs: The glyphs to choose from.
         places: Rows and columns of the cells.
 
@@ -100,8 +100,7 @@ def _draw_half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
     """Return cells with half blocks; each half has the colour of one row of points, the mean of the row.
 
     The mean is taken because a thin line covers only one of the two points of a row: with the colour of one point
-    alone,
-    either the line or the background would disappear.
+    alone, either the line or the background would disappear.
     """
     of_rows = np.rint(points.reshape(3, glyphs.rows, glyphs.cols, -1).mean(axis=2)).astype(np.uint8)
     covered = np.repeat(glyphs.covered[0, :: glyphs.cols, None], of_rows.shape[2], axis=1)
@@ -118,10 +117,8 @@ def _find_typical(
     """Return the index of the typical point in each cell, first among its covered points, then among its other points.
 
     The typical point of a group is the point whose colour is nearest to the mean of the group. The mean itself often is
-    no
-    colour of the picture, and looks blurred. If two points are equally near, the darker one is taken: the lighter one
-    would
-    look like a notch in the edge of a dark band.
+    no colour of the picture, and looks blurred. If two points are equally near, the darker one is taken: the lighter
+    one would look like a notch in the edge of a dark band.
     """
     points: list[npt.NDArray[np.intp]] = []
     for share in (covered, 1 - covered):
@@ -132,11 +129,10 @@ def _find_typical(
 
 
 def _find_best_glyphs(lab: npt.NDArray[np.float32], glyphs: GlyphSet) -> npt.NDArray[np.intp]:
-    """Return for each cell the index of the glyph that splits its points into the two most even groups.
+    """Return for each cell the index of the glyph that splits the cell's points into the two most even groups.
 
-    All glyphs are compared by the variance that their split explains. It follows from the sum of the points that the
-    glyph
-    covers, if the mean of all points has been subtracted from them.
+    This is the glyph whose split explains most of the variance of the points. To find it, the mean of all points is
+    subtracted from them: the variance that a glyph explains then follows from the sum of the points that it covers.
     """
     size = lab.shape[1]
     # One product for each channel is so small that the library does not start threads for it.

@@ -69,9 +69,10 @@ GLYPHS: tuple[str, ...] = (
 
 @cache
 def block_patterns() -> dict[str, tuple[int, int]]:
-    """Return for each glyph of sextants or octants its number of rows of two points, and a bit for each point covered.
+    """Return for each glyph of sextants or octants how many rows of points it has, and which points it covers.
 
-    Bit 0 is the upper left point; the bits follow row by row.
+    Each row has two points. The covered points are the bits of a number: bit 0 is the upper left point, and the bits
+    follow row by row.
     """
     octants = {char: (4, pattern) for pattern, char in enumerate(_list_octants())}
     return {char: (3, pattern) for pattern, char in enumerate(_list_sextants())} | octants

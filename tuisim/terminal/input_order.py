@@ -67,7 +67,7 @@ class Turn:
 
     @contextmanager
     def step(self, pump: MessagePump) -> Iterator[None]:
-        """In a `with` block, handle one message or callback of the turn, which is done at the end of the block.
+        """In a `with` block, handle one message or callback of the turn; at the end of the block, it counts as handled.
 
         Messages that are posted in the block belong to the turn, too.
         """
@@ -106,9 +106,9 @@ class Turn:
             self._ended()
 
     def delay(self, pump: MessagePump, callback: Callable[[], Any]) -> Callable[[], Awaitable[Any]]:
-        """Add a callback to the turn.
+        """Add a callback to the turn, and return a function that calls it.
 
-        Return a function that calls it, so that what follows from it belongs to the turn, too.
+        Messages and callbacks that follow from this call belong to the turn, too.
         """
         self.add(pump)
 

@@ -323,9 +323,8 @@ def _ask_terminal() -> CellSet:
     """Return the finest set of glyphs that the terminal of standard input and output shows, by asking it.
 
     First an octant is printed, and the terminal is asked where its cursor is. It is asked for its name only after it
-    has
-    answered that the cursor has moved by one column. A late answer would be taken for keys, so a terminal that does not
-    answer is asked as little as possible.
+    has answered that the cursor has moved by one column. A late answer would be taken for keys, so a terminal that does
+    not answer is asked as little as possible.
     """
     fd = sys.stdin.fileno()
     before = termios.tcgetattr(fd)

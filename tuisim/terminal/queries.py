@@ -71,9 +71,10 @@ class TerminalFacts:
 
     @property
     def without_refusal(self) -> TerminalFacts:
-        """The same facts, but with `has_kitty_graphics` None if it was False without an error from the terminal.
+        """The same facts, but without a mere guess that the terminal lacks kitty's protocol.
 
-        Such a False is only a guess, as the terminal has not answered about kitty's protocol.
+        If `has_kitty_graphics` is False without an error from the terminal, the terminal has not answered about the
+        protocol: the value then becomes None.
         """
         return (
             self
@@ -201,9 +202,10 @@ class AnswerParser(XTermParser):
         return match[0] if match else ""
 
     def tick(self) -> Iterable[Message]:
-        """Yield messages for input that was held back as the possible begin of an answer, if no more has come.
+        """Yield messages for input that was held back as the possible beginning of an answer, if nothing has followed
+        it.
 
-        If the input surely was the begin of an answer, drop it.
+        If the input surely was the beginning of an answer, drop it.
         """
         is_answer = _BEGUN.match(self._begun)
         if self._begun and monotonic() - self._begun_s >= (_REST_S if is_answer else _KEY_S):

@@ -20,7 +20,7 @@ Line: TypeAlias = list[Run]
 def escape_markup(text: str) -> str:
     """Return the markup that shows a text from a file or the user unchanged.
 
-    `textual.markup.escape` leaves some brackets that follow a backslash or stand in quotes.
+    `textual.markup.escape` does not escape some brackets that follow a backslash or are in quotes.
     """
     return text.replace("[", "\\[")
 

@@ -142,8 +142,7 @@ def read_textual_version() -> Version:
     """Return the version of the installed Textual; empty if it is no release.
 
     The version is read from the name of the folder with the package's metadata, `textual-1.2.3.dist-info`: the function
-    of
-    `importlib.metadata` would take a tenth of the time in which Textual is imported.
+    of `importlib.metadata` would take a tenth of the time in which Textual is imported.
     """
     numbers = [
         _METADATA.fullmatch(entry.name) for entry in os.scandir(Path(textual.__file__).parents[1])
@@ -330,10 +329,9 @@ class ThoroughCompositor(Compositor):
     """Textual's compositor, changed to compare each layout with the last one for which the widgets were sent messages.
 
     Textual compares a layout with its newest map of all widgets. It makes a new map whenever code asks for the size of
-    a
-    widget between two layouts. A widget that was mounted before that is then in both, and is never sent `Resize` or
-    `Show`;
-    a widget that was removed stays on the screen. Whether code asks in between depends on how busy the machine is.
+    a widget between two layouts. A widget that was mounted before that is then in both, and is never sent `Resize` or
+    `Show`; a widget that was removed stays on the screen. Whether code asks in between depends on how busy the machine
+    is.
     """
 
     def __init__(self) -> None:

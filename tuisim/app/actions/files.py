@@ -188,7 +188,7 @@ def _save(context: ActionContext, what: str, name: str, write: Callable[[Path], 
 
 
 def save_world(context: ActionContext) -> None:
-    """Ask for a file, and write the world of the next run to it, with the name of the open program."""
+    """Ask for a file, and write the world of the next run to it, with the open program's path and arguments."""
     from tuisim.app.dialogs.save import SaveDialog
     from tuisim.settings.worlds import save_world as write
 

@@ -708,8 +708,8 @@ def list_footer_actions(
 ) -> list[LabAction]:
     """Return actions with the words that the footer shows for them now; the word of the pause key depends on the run.
 
-    Left out are the keys of a lesson that do nothing in its current step, `run` while the program is paused, and
-    `step-out` while the program is not paused.
+    These actions are left out: those of a lesson that do nothing in its current step, `run` while the program is
+    paused, and `step-out` while the program is not paused.
 
     Args:
         table: The actions by id.

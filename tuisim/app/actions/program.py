@@ -17,7 +17,10 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 0.0)
 
 
 def run(context: ActionContext) -> None:
-    """Start the program, or restart a paused one; if a past instant is in view, ask whether to branch or restart."""
+    """Start the program; if it is paused, start it again from its beginning.
+
+    If a past instant is in view, ask whether to start a branch at that instant, or the program from its beginning.
+    """
     if context.runs.in_past:
         propose_branch(context, None, restart=True)
     elif context.runs.state is RunPhase.PAUSED:

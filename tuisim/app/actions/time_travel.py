@@ -102,7 +102,7 @@ def go_to_start(context: ActionContext) -> None:
 def step_tick(context: ActionContext) -> None:
     """Go forward one tick: if a past tick is in view, show the next recorded one; else simulate one.
 
-    A tick can contain several lines of the program. If one of them in the newest tick is in view, and it is not the
+    The newest tick can contain several executed lines of the program. If one of these lines is in view, but not the
     last one, go to the newest instant instead.
     """
     if context.runs.in_past:
@@ -280,9 +280,10 @@ def _say_nothing_wrong(context: ActionContext) -> str:
 
 
 def propose_action(context: ActionContext, action: protocol.Message) -> bool:
-    """If a past instant is in view, ask whether to branch there with a user action.
+    """If a past instant is in view, ask whether to start a branch there with a user action.
 
-    A past instant can also be in the newest tick: a line of the program before the last line that has run.
+    A branch is a new run that repeats the run in view up to an instant. A past instant can also be in the newest tick:
+    a line of the program before the last line that has run.
 
     Returns:
         Whether a past instant is in view; if so, the caller must not apply the action to the live run.
@@ -295,11 +296,11 @@ def propose_action(context: ActionContext, action: protocol.Message) -> bool:
 def propose_branch(
     context: ActionContext, then: protocol.Message | None = None, restart: bool = False
 ) -> None:
-    """Ask whether to branch from the instant in view.
+    """Ask whether to start a branch: a new run that repeats the run in view up to the instant in view.
 
     Args:
         context: The parts of the app.
-        then: The action with which the user changes the branch at that instant, such as another pose; None without one.
+        then: The user action with which the branch begins at that instant, such as another pose; None for no action.
         restart: Whether the dialog also offers to run the program from its start.
     """
     from tuisim.app.dialogs.question import BRANCH, RESTART, BranchQuestion

@@ -555,8 +555,8 @@ def find_bands(model: AnalysisModel, names: Sequence[str]) -> None:
 def build_band_search(rows: int) -> Search:
     """Return the function that searches a log with this number of rows for bands.
 
-    Up to `SEARCHED_AT_ONCE` rows, the function searches directly. Above that, it searches in another process. Call this
-    then in a worker of Textual: if the worker is cancelled, the search stops.
+    Up to `SEARCHED_AT_ONCE` rows, that function searches directly. For more rows, it searches in another process: then
+    `build_band_search` must be called in a worker of Textual, and the search stops if the worker is cancelled.
     """
     if rows <= SEARCHED_AT_ONCE:
         return find_plateaus

@@ -75,10 +75,10 @@ def _is_folder(file: os.DirEntry[str]) -> bool:
 
 
 def check_numbers(path: Path) -> None:
-    """Check that a text may be a log: that most of its first lines have a number.
+    """Check that a text file may be a log: more than half of its first lines must contain a number.
 
     Raises:
-        LogError: it is another text, or cannot be read.
+        LogError: too few lines contain a number, or the file cannot be read.
     """
     try:
         with path.open("rb") as file:

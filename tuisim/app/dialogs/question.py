@@ -79,13 +79,15 @@ RESTART = "restart"
 
 
 class BranchQuestion(Dialog[str]):
-    """The dialog that asks whether to branch from a run at an instant; it returns `BRANCH`, `RESTART` or None.
+    """The dialog that asks whether to start a branch: a new run that repeats a former run up to an instant.
+
+    It returns `BRANCH`, `RESTART` for a run of the program from its start, or None.
 
     Args:
         branch: The proposed branch.
         change: What the user changes at that instant, in words; empty for nothing.
         in_run: Whether the former run is still live; it ends when the branch starts.
-        restart: Whether to offer a run from the start.
+        restart: Whether to offer a run of the program from its start.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -242,7 +244,8 @@ class LinePrompt(Dialog[bool]):
         words: Possible completions of the current word; tab accepts one.
         placeholder: Text of the empty field.
         text: Text above the field; empty for none.
-        sees_below: Whether the screen below should stay visible: in a low terminal, the forms then lack their meanings.
+        sees_below: Whether the screen below should stay visible. In a low terminal, the dialog then lists the forms
+            without explaining them.
     """
 
     HINT = "Enter applies · Escape closes"

@@ -66,7 +66,7 @@ EDITOR_KEYS = (
 
 
 class EditorCommand(StrEnum):
-    """A command of a key that was pressed in the text, such as opening a file; the code panel carries it out."""
+    """What a key that is pressed in the text requests of the code panel, such as opening a file."""
 
     TYPE = "type"
     STOP_TYPING = "stop_typing"

@@ -202,9 +202,9 @@ class CandidateList(Widget):
         self.display = False
 
     def can_complete(self, word: str) -> bool:
-        """Return whether a dot or a parenthesis typed after a word replaces the word by the chosen name.
+        """Return whether a dot or a parenthesis typed after a word replaces the word by the selected name of the list.
 
-        It does so if the user asked for the list, and the word alone is not yet a name in the list.
+        This is so only if the user has asked for the open list, and the word itself is not a name in it.
         """
         return (
             self.is_open and bool(word) and not self.is_offered and not self._has_whole_name(word)

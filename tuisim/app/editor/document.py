@@ -531,7 +531,10 @@ class Document:
         write_text(path, self._text, self._form)
 
     def _finish_save(self, path: Path, then: Callable[[], None]) -> None:
-        """After the text was saved to a file, show a notice, also about a mistake in the text, and call `then`."""
+        """After the text was saved to a file, show a notice, and call `then`.
+
+        If the text has a mistake, the notice is an error that names the mistake.
+        """
         moved = str(path) != self._path
         self._mark_saved(path)
         mistake = self._find_mistake()

@@ -235,7 +235,7 @@ def _fit_panels(
 
 
 def measure_mat(box: PanelBox) -> float:
-    """Return the area that the mat has in a world panel of this box, in cells."""
+    """Return the area of the mat, in cells, in a world panel with the size of a box."""
     width, height = box.width - EDGES, box.height - EDGES - TIME_BAR_ROWS
     return (
         min(width, 2 * height * FIELD_WIDTH_MM / FIELD_HEIGHT_MM) ** 2

@@ -99,7 +99,7 @@ def select_panels(panels: Sequence[str], where: PanelPlace) -> list[str]:
 
 
 def _build_stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], width: int) -> Node:
-    """Return columns of stacked panels as a node.
+    """Return columns of stacked panels, side by side, as a tree of panels.
 
     Args:
         columns: The panels of each column, from the top.
@@ -120,7 +120,7 @@ def _build_stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], wi
 
 
 def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
-    """Return the columns of the bottom strip as nodes, each a panel or stacked panels; empty without panels.
+    """Return the columns of the bottom strip, each a panel or a tree of stacked panels; empty without panels.
 
     If the code would be narrow, and the strip is high enough, the code has the whole width above the other panels.
     """
@@ -155,7 +155,7 @@ def _needs_stack(panels: Sequence[str], width: int, height: int) -> bool:
 
 
 def _build_output_stack(width: int) -> Node:
-    """Return a node with the code beside the chart, and the output below the chart."""
+    """Return a tree of panels: the code beside the chart, and the output below the chart."""
     code = max(_LINE_COLS, width - _CHART_COLS) / width
     stack = Split(Axis.ROWS, ("chart", "output"), least=_STACKED_ROWS)
     return join_nodes(Axis.COLUMNS, ["code", stack], shares=(code, 1 - code))
@@ -189,7 +189,7 @@ def _split_side(side: Sequence[str], height: int) -> tuple[list[str], list[str]]
 
 
 def build_wide(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return a node with the world above the bottom strip, and a column beside both.
+    """Return a tree of panels: the world above the bottom strip, and a column beside both.
 
     If a lesson is in the column, other panels move from there to the strip as far as they fit.
     """
@@ -236,9 +236,9 @@ _MAX_EMPTY_ROWS = 3
 
 
 def build_board(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return a node with the world and the readings side by side, above a strip with the chart.
+    """Return a tree of panels: the world and the readings side by side, above a strip with the chart.
 
-    The node of `build_wide` is returned instead if the area is too narrow or not of medium size, if one of these panels
+    The tree of `build_wide` is returned instead if the area is too narrow or not of medium size, if one of these panels
     is hidden, or if a lesson is shown.
     """
     side = select_panels(panels, PanelPlace.SIDE)
@@ -273,9 +273,9 @@ def _find_strip_rows(height: int) -> int:
 
 
 def _build_board_strip(roomy: Sequence[str], has_output: bool, height: int) -> Node:
-    """Return a node with the chart and the output.
+    """Return a tree of panels for a strip with the chart and the output, side by side.
 
-    They are side by side; if code or brick is shown, that is at the left, and the output is below the chart.
+    If code or brick is shown, it is at the left, and the output is below the chart.
 
     Args:
         roomy: `code` and `brick`, as far as they are shown.
@@ -313,7 +313,7 @@ def count_tight_rows(panels: Sequence[str], width: int) -> list[int]:
 
 
 def _build_column(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return a node with stacked panels, each with at least the rows that it needs to be read, if they fit."""
+    """Return a tree of stacked panels; if they fit, each has at least the rows that it needs to be read."""
     tight = count_tight_rows(panels, width)
     if len(panels) == 1 or sum(tight) > height:
         return join_nodes(Axis.ROWS, panels)
@@ -321,7 +321,7 @@ def _build_column(panels: Sequence[str], width: int, height: int) -> Node:
 
 
 def build_below(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return a node with the world in the whole width, and all other panels in columns below it."""
+    """Return a tree of panels: the world in the whole width, and all other panels in columns below it."""
     side, strip, main = (
         select_panels(panels, where)
         for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN)
@@ -371,7 +371,7 @@ _FAIR_ROWS = 22
 
 
 def build_low(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return a node for a low area.
+    """Return a tree of panels for a low area.
 
     The world has the whole width, above the readings and the output. If a panel such as the code needs the whole width,
     it is below the world, and the readings and the output are beside the world.
@@ -431,7 +431,7 @@ def _list_read_rows(panels: Sequence[str]) -> tuple[int, ...]:
 
 
 def _stack_readings(panels: Sequence[str], height: int) -> Node:
-    """Return a node with stacked panels; if there is room, the readings get a further row for the pose."""
+    """Return a tree of stacked panels; if there is room, the readings get a further row for the pose."""
     column = join_nodes(Axis.ROWS, panels)
     if isinstance(column, str) or count_min_rows(column) >= height:
         return column
@@ -439,7 +439,7 @@ def _stack_readings(panels: Sequence[str], height: int) -> Node:
 
 
 def _build_line(panels: Sequence[str], width: int) -> Node:
-    """Return a node with the output and the readings side by side; the output is at the left, where notices appear."""
+    """Return a tree with the output and the readings side by side; the output is at the left, where notices appear."""
     share = max(1 / 2, min(_READINGS_COLS, width - _TEXT_COLS) / width)
     order = [panel for panel in ("output", "instrumentation") if panel in panels]
     return join_nodes(Axis.COLUMNS, order, shares=(1 - share, share))
@@ -450,9 +450,7 @@ def _sum_fair_rows(panels: Sequence[str]) -> int:
 
 
 def build_halves(first: Sequence[str], second: Sequence[str], share: float) -> Form:
-    """Return a form, which is a function that arranges panels, with two columns.
-
-    Panels that belong to neither column go below them.
+    """Return a function that arranges panels in two columns; panels that belong to neither column go below both.
 
     Args:
         first: Panels of the left column, from the top.
@@ -489,7 +487,7 @@ def build_halves(first: Sequence[str], second: Sequence[str], share: float) -> F
 
 
 def _pair_panels(panels: Sequence[str], width: int) -> list[Node]:
-    """Return the parts of a stack of panels, in which small neighbours are side by side if there is room."""
+    """Return the parts of a stack of panels; if there is room, two small neighbours are one part, side by side."""
     nodes: list[Node] = []
     for panel in panels:
         last = nodes[-1] if nodes else None

@@ -128,10 +128,10 @@ class Chart(LinesPanel, can_focus=True):
             self._throttle.ask()
 
     def show_printed(self, time_s: float) -> None:
-        """Let the next `show` include the samples up to `time_s` in the values at the cursor.
+        """Set the simulated time up to which printed samples count in the values at the cursor.
 
-        At this time, the newest visible line of the output was printed, so that the chart and the output show the same
-        values.
+        This is the time at which the newest visible line of the output was printed, so that the chart and the output
+        show the same values. The next `show` uses it.
         """
         if time_s != self._printed_s:
             self._printed_s = time_s

@@ -26,7 +26,7 @@ _INFO = PANELS["goals"]
 
 
 class Goals(LinesPanel, can_focus=True):
-    """The goals panel: the list of goals with their states, and the details of one."""
+    """The goals panel: the list of goals with their states, and the details of the selected goal."""
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [

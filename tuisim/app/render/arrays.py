@@ -102,11 +102,11 @@ _MIN_ROWS = 4
 
 
 def find_asked_lines(now: Snapshot, before: frozenset[int]) -> frozenset[int]:
-    """Return the lines at which the program, at an instant, compares readings with thresholds in a loop.
+    """Return the lines of the program whose comparisons of readings with thresholds matter at an instant.
 
-    Before a run, these are all lines with thresholds. A function may have been called in a loop, which then goes on
-    while the function runs. The text of the program does not tell which loop that is: lines outside the function are in
-    the result if they are in `before`.
+    These are the lines with thresholds in the loop that is executed; before a run, they are all lines with thresholds.
+    While a function runs, the text of the program does not tell in which loop it was called: lines outside the function
+    are then in the result if they are in `before`.
 
     Args:
         now: The instant.
@@ -165,7 +165,7 @@ def _build_value_line(face: DiscFace, width: int) -> Line:
 
 
 def build_swatch(seen: ColorReading) -> Run:
-    """Return two cells in the colour that a sensor sees, underlined, so that they are visible on that colour, too."""
+    """Return two cells in the colour that a sensor sees; an underline shows them on a background of that colour."""
     return "  ", Style(color=palette.LABEL, bgcolor=Color.from_rgb(*seen.rgb), underline=True)
 
 

@@ -71,8 +71,9 @@ def _overlap(first: Corners, other: Corners, heading_deg: float) -> bool:
     """Return whether two rectangles overlap.
 
     Args:
-        first, other: Their corners.
-        heading_deg: By how much the other one is turned, in degrees.
+        first: The corners of a rectangle whose sides are parallel to the axes.
+        other: The corners of a rectangle that is turned.
+        heading_deg: By how much the rectangle `other` is turned, in degrees.
     """
     heading = math.radians(heading_deg)
     axes = (

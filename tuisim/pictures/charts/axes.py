@@ -154,10 +154,8 @@ def extend_limits(ends: Limits, rows: int) -> Limits:
     """Return limits for a vertical axis on which round ticks are in the middle of rows, at equal distances.
 
     The axis begins at a multiple of a round step, at or below the values. It has 2 to 6 parts, and may end beyond its
-    last
-    tick. Of all such axes, one is chosen that is short and easy to read. For this comparison, an axis counts as longer
-    if it
-    has few parts, or ticks in neighbouring rows. The limits seldom change while values come in.
+    last tick. Of all such axes, one is chosen that is short and easy to read. For this comparison, an axis counts as
+    longer if it has few parts, or ticks in neighbouring rows. The limits seldom change while values come in.
 
     Args:
         ends: The lowest and the highest value.

@@ -145,7 +145,7 @@ def _place_points(
         curve: The curve.
         columns, rows: Size of the canvas in cells.
         x_limits, y_limits: Limits of the axes.
-        parts: The units in a cell, across and down: (1, 1) for cells.
+        parts: How many parts a cell has across and down; with (1, 1), the distances are in cells.
     """
     times_s = curve.times_s
     values = curve.values

@@ -269,7 +269,9 @@ _SUMMED_AT_ONCE = 10_000
 
 
 class Pyramid:
-    """The finite points of a series, sorted by time, with the extremes of blocks, for drawing long series quickly.
+    """The finite points of a series, sorted by time, for drawing long series quickly.
+
+    It also has the least and the greatest value of each block of successive points.
 
     Args:
         times_s: Shape (n,).

@@ -38,8 +38,7 @@ def draw_face(face: DiscFace, width: int, height: int, *, has_limits: bool) -> D
     """Return the picture of what a colour sensor sees: the disc of the mat below it, and texts below the disc.
 
     The texts have the value that the program reads, the program's thresholds, and the mean light in three rings of the
-    disc.
-    Between disc and texts is a scale from black to white with the value.
+    disc. Between disc and texts is a scale from black to white with the value.
 
     Args:
         face: What is shown of the sensor.

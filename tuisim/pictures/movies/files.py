@@ -130,9 +130,10 @@ class Clip:
 
     @property
     def view(self) -> Viewport:
-        """A view with the size of the whole frame, in which the world lies exactly as in the frame's world panel.
+        """A view as large as a whole frame, in which the world is exactly where the frame's world panel shows it.
 
-        So a picture in this view, such as one of a path, fits over the frame. The movie must have a world panel.
+        A picture drawn in this view, such as one of a path, can therefore be laid over the frame. The movie must have a
+        world panel.
         """
         return find_frame_view(self.recorded, self.panels, self.size)
 

@@ -83,9 +83,9 @@ def _fit_size(panels: Sequence[ClipPanel], robot: RobotSpec, area: Area) -> Size
 def find_frame_view(
     recorded: ClipRun, panels: Sequence[ClipPanel], size: Size | None = None
 ) -> Viewport:
-    """Return a view with the size of the whole frame, in which the world lies exactly as in the frame's world panel.
+    """Return a view as large as a whole frame, in which the world is exactly where the frame's world panel shows it.
 
-    So a picture drawn in this view fits over the frame.
+    A picture drawn in this view, such as one of a path, can therefore be laid over the frame.
 
     Args:
         recorded: The run.

@@ -41,11 +41,9 @@ def shrink(
     """Return the picture of a mat in a viewport.
 
     Each picture pixel is the mean of the mat pixels under it. Only a pixel that is as wide as a cell, or half of a
-    cell, is
-    drawn otherwise, so that edges are sharp and thin lines stay visible: it has the colour of the area that covers most
-    of
-    it, or of a thin line in it. So a black line of 10 mm is black even where a pixel covers 30 mm, and looks the same
-    whether it lies in one row of pixels or between two.
+    cell, is drawn otherwise, so that edges are sharp and thin lines stay visible: it has the colour of the area that
+    covers most of it, or of a thin line in it. So a black line of 10 mm is black even where a pixel covers 30 mm, and
+    looks the same whether it lies in one row of pixels or between two.
 
     Args:
         mat: The mat, one pixel a mm, row 0 at the top of the field.

@@ -83,8 +83,7 @@ def _join_points(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatA
     """Return the points of a trace without NaN, and further points between any two of them that the pen has joined.
 
     The further points are at most `step_mm` apart; they follow all others. Points more than `_LONGEST_STEP_MM` apart
-    are not
-    joined.
+    are not joined.
     """
     good = np.isfinite(xs) & np.isfinite(ys)
     if len(xs) < 2:

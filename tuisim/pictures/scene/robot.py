@@ -168,8 +168,7 @@ def draw_robot(
         opacity: 0 … 1.
         pressed: Whether each bumper is pressed; empty for none.
         detail_cols: Draw details, such as sensors, as for a picture with this number of pixels across a cell, 1 or 2;
-            None
-            for the number in the view, at most 2.
+            None for the number in the view, at most 2.
     """
     detail_cols = detail_cols or min(view.cell.cols, 2)
     outline = colors.choose_parts(outline)
@@ -249,7 +248,7 @@ def _classify_samples(
         cell_mm: Width of a cell.
         cell_cols: Pixels across a cell.
         edge_mm: Width of the robot's edge.
-        nose_mm: How far the heading marker projects beyond the front, for a crisp robot; 0 for another.
+        nose_mm: How far the heading marker of a small robot projects beyond the front; 0 for a large robot.
         colors: The colours of the parts, which say whether wheels and marker are drawn.
     """
     px_mm = cell_mm / cell_cols
