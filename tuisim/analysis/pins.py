@@ -39,7 +39,7 @@ class Pin:
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """The position of the text beside a ring, which is to the right or to the left of it, in pixels of the picture."""
+    """The position of the text to the right or left of a ring, in pixels of the picture."""
 
     left_px: float
     right_px: float

@@ -54,7 +54,10 @@ def find_choices(file: str) -> ReadChoices | None:
 
 
 def _look_up(file: str) -> _Reading | None:
-    """Return the path, size and time of a file, without choices of how to read it; None if it is not a regular file."""
+    """Return the path, size and time of a file as a `_Reading`, which has no choices of how to read the file.
+
+    The result is None if it is not a regular file.
+    """
     try:
         status = os.stat(file) if LogRequest(file).is_readable_again else None
     except OSError:
@@ -166,7 +169,10 @@ class OpenedLog:
         return (find_notes_file(file),) if file.is_file() else ()
 
     def stamp(self) -> object:
-        """Return an object by which callers notice that the log has grown: it then differs from an earlier result."""
+        """Return an object that is equal to an earlier result only if the log has not grown since.
+
+        Callers compare two results to notice that there are new rows.
+        """
         if self.runs:
             return tuple(
                 (run.telemetry.count if self.request.telemetry else run.output.length)

@@ -52,8 +52,7 @@ def prepare_program(
         arguments: Its `sys.argv[1:]`; empty for those in the settings.
         layers: Settings by path, the later ones take precedence.
         constants: New values of the program's constants, by name. The robot that tuisim finds in the text of the
-            program
-            has the values in this text, not these.
+            program has the values in this text, not these.
 
     Raises:
         ConfigError: its settings do not fit it, or it has no such constant.

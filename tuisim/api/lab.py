@@ -47,15 +47,14 @@ class Lab:
     """A robot in its world, without a program: a script moves it on, tick by tick.
 
     Physics, noise and drift are those of a run with the same seed, to the last bit. So a lab from `Lab.of_run` goes
-    through
-    the same poses as the run, if it gets the commands of the run.
+    through the same poses as the run, if it gets the commands of the run.
 
     Args:
         world: A world, or its file; by default an empty mat.
         robot: A robot, its name, or its file.
         seed: Seed of noise and drift.
-        profile: A profile from `tuisim profiles`, or a file; by default that of the world, or `robolab`, or
-            `pybricks4` for a robot with a hub.
+        profile: A profile from `tuisim profiles`, or a file; by default that of the world, or `robolab`, or `pybricks4`
+            for a robot with a hub.
         columns: Names of the columns that `step` returns: those of `Run.telemetry`, except `line`. For a colour sensor,
             there is also its light in percent, such as `left_red_pc` beside `left_red`.
         goals: A goals file for `judge`; its world is used if no `world` is given.
@@ -169,10 +168,8 @@ class Lab:
         Args:
             left, right: The speed for each wheel's motor in degrees per second, positive forwards, at most
                 `max_speed_dps`. Under `robolab` a motor gains at most 5000 / `weight` degrees per second in each
-                    second: 833
-                for the default robot; a weightless one reaches its speed immediately. Without speeds, both motors go on
-                    as
-                before.
+                second: 833 for the default robot; a weightless one reaches its speed immediately. Without speeds, both
+                motors go on as before.
             period_s: Simulated seconds, rounded to ticks; at least one tick.
             commands: Commands of a program during the step, such as those of `Run.commands` whose times lie in it; each
                 takes effect at its own time.

@@ -49,12 +49,9 @@ def mark(
     Returns:
         One row for each student, with the columns of `tuisim mark --export marks.csv`. `student` and `program` name the
         row. `points` is the mean over the runs, `robustness` the share of the seeds with all points, `runs` the number
-            of
-        runs, and `goal_NAME` the mean points of each goal. `reason`, `line`, `source_line` and `seed` tell of the first
-            run
-        without all points. `earned` and `comment` are of use only with points that a tutor gives by hand in `tuisim
-            mark`:
-        here, `earned` equals `points`, and `comment` is empty.
+        of runs, and `goal_NAME` the mean points of each goal. `reason`, `line`, `source_line` and `seed` tell of the
+        first run without all points. `earned` and `comment` are of use only with points that a tutor gives by hand in
+        `tuisim mark`: here, `earned` equals `points`, and `comment` is empty.
 
     Raises:
         ConfigError: goals, folders or seeds are wrong, or bubblewrap does not start; nothing was run.

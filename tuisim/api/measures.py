@@ -107,8 +107,7 @@ def compute_cell(name: str, metric: Metric, run: Run, index: int) -> Any:
     """Return the value of a metric of a run, as a cell of the table.
 
     The result is None if the metric raises an exception and the program of the run has raised one, too. Any other
-    exception
-    of the metric gets a note with the names of the metric and the run.
+    exception of the metric gets a note with the names of the metric and the run.
 
     Args:
         name: The name of the metric.

@@ -89,8 +89,7 @@ def open_sweep(
     """Return the sweep, which runs the plan and collects the rows of the table.
 
     If the experiment was interrupted before, the sweep has the rows of the runs that it finished. Warns if these rows
-    cannot
-    be used, or if another table is replaced.
+    cannot be used, or if another table is replaced.
 
     Args:
         plan: The runs.

@@ -145,7 +145,7 @@ def find_encoding(data: bytes) -> str:
     """Return the encoding of a program file, as Python names it.
 
     Raises:
-        SyntaxError, LookupError: there is no such encoding, or it is one of domain names.
+        SyntaxError, LookupError: there is no such encoding, or it is one for domain names, such as `idna`.
     """
     # Imported here: the child process that runs a program does not need them.
     import codecs

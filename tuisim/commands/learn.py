@@ -76,7 +76,11 @@ def open_lesson(word: str | None, folder: str | None, library: str | None, as_te
 
 
 def _choose_next_lesson(lessons: Sequence[Lesson], progress: dict[str, LessonProgress]) -> Lesson:
-    """Return the lesson to go on with: the lesson opened last if it has an open step, else the first with one."""
+    """Return the lesson to go on with.
+
+    This is the lesson opened last if it has a step still to do. Otherwise, it is the first lesson with such a step or,
+    if all are done, the first of all.
+    """
 
     def is_open(lesson: Lesson) -> bool:
         return progress.get(lesson.name, LessonProgress()).current(lesson) is not None
@@ -317,7 +321,11 @@ def find_last_opened(progress: Mapping[str, LessonProgress]) -> str:
 
 
 def find_warnings(lesson: Lesson) -> list[str]:
-    """Return warnings about a lesson, one line each: wrong ways that are not tried, and answers without a reason."""
+    """Return warnings about a lesson, one line each.
+
+    They name kinds of wrong programs or answers that the lesson does not try, and missing explanations of right or
+    wrong answers.
+    """
     warnings = []
     for step in lesson.steps:
         place = f"{lesson.path}, line {step.line}"

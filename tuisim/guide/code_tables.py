@@ -159,7 +159,7 @@ def list_breakpoints() -> Table:
 
 
 def list_columns() -> Table:
-    """Return the table of a run's columns for the default robot, with columns of motors only in profile `ev3`."""
+    """Return the table of the columns of a run of the default robot under the profile `ev3`."""
     return _build_column_table(
         list_column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"]))
     )

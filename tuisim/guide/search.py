@@ -117,8 +117,8 @@ class _Postings:
 
     Args:
         texts: The stems of each text, with their weights.
-        power: The similarity is divided by the text's length to this power. With 1 it is the cosine; with less, longer
-            texts are more similar.
+        power: How much the length of a text lowers its similarity. With 1, the similarity is the cosine of the angle
+            between text and question; with less, longer texts count as more similar.
     """
 
     def __init__(self, texts: Sequence[Mapping[str, float]], power: float = 1.0) -> None:
@@ -203,7 +203,13 @@ class _Index:
         return rows
 
     def _sum_questions(self, question_stems: Iterable[_Stems]) -> list[dict[str, float]]:
-        """Return for each passage the sum of the vectors of its questions; each vector has the length 1."""
+        """Return for each passage the weights of the stems in all questions that it answers, by stem.
+
+        The weights of each question are scaled so that the sum of their squares is 1, and then added.
+
+        Args:
+            question_stems: The stems of each question.
+        """
         sums: list[dict[str, float]] = [{} for _ in self.passages]
         for row, stems in zip(self.row_of_ask, question_stems, strict=True):
             weights = self.weights(stems)

@@ -131,7 +131,7 @@ def _convert_mask(truths: Any) -> BoolArray:
 
 
 def sort_places(column: pa.ChunkedArray, descending: bool) -> IntArray:
-    """Return the indices, shape (n,), that put the cells of a column in order."""
+    """Return the indices of the cells of a column in sorted order, shape (n,)."""
     column = convert_to_texts(column) if pa.types.is_dictionary(column.type) else column
     way = "descending" if descending else "ascending"
     places: IntArray = pc.sort_indices(column, sort_keys=[("", way)]).to_numpy().astype(np.int64)

@@ -106,7 +106,7 @@ class BandReport:
 def count_samples(band: Band) -> str:
     """Return the number of samples of a band as text, such as `12, 1 stray`.
 
-    Strays do not affect the band's level and spread.
+    A stray is a sample that is far from the level of the band. Strays do not affect the band's level and spread.
     """
     strays = f", {counted(band.strays, 'stray')}" if band.strays else ""
     return f"{band.samples}{strays}"
@@ -333,9 +333,10 @@ def _find_edges(
 
 
 def _measure_reach(levels: Levels) -> FloatArray:
-    """Return for each level and the next how far a sample of their edge can be from the middle of both, shape (n - 1,).
+    """Return how far a sample on the edge between two levels can be from the middle of the two, shape (n - 1,).
 
-    A sample between the two levels that is farther away belongs to a third level.
+    There is one value for each level and the next one. A sample between the two that is farther from the middle belongs
+    to a third level.
     """
     spread = np.maximum(levels.spread[:-1], levels.spread[1:])
     return _FAR_OF_STEP * np.abs(np.diff(levels.true_level)) + _FAR_OF_SPREAD * spread

@@ -156,7 +156,8 @@ def _find_form(cells: pa.Array, separator: str, decimal: str) -> _NumberForm | N
 def _is_bare_hexadecimal(texts: pa.Array) -> bool:
     """Return whether texts are hexadecimal numbers without `0x`, as loggers of a CAN bus write them.
 
-    They have the same length, and only some of them letters.
+    They must all have the same length. At least one must contain a letter, and at least one must look like a plain
+    number.
     """
     are_alike = pc.count_distinct(pc.utf8_length(texts)).as_py() == 1
     if (

@@ -419,7 +419,11 @@ def find_unread_time(table: pa.Table, layout: Layout) -> str:
 
 
 def describe_guessed_times(table: pa.Table, layout: Layout) -> str:
-    """Return a note on what the numbers in a time column of texts are taken for, if only a guess tells; else empty."""
+    """Return a note on how the dates or times in the time column are read, if this is only a guess.
+
+    For example, it may say that they are read as day, month, year. The note is empty if there is no doubt, or if the
+    column has no texts.
+    """
     if not layout.time or not is_text(table.field(layout.time).type):
         return ""
     parts = describe_guess(table.column(layout.time).cast(pa.string()))
@@ -435,7 +439,10 @@ def time_in_words(layout: Layout) -> str:
 
 
 def _find_rising(table: pa.Table) -> str:
-    """Return the name of the first full column if its numbers rise and the table has no headings; else `ROW`."""
+    """Return the name of the first column without empty cells, if its numbers rise and the table has no headings.
+
+    In any other case, return `ROW`.
+    """
     names = table.column_names
     nameless = all(name == f"column {number}" for number, name in enumerate(names, 1))
     full = (name for name in names if not _has_empty_cells(table.column(name)))

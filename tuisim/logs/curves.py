@@ -36,7 +36,7 @@ _TREAD_RISE = 2.5
 
 
 def find_curves(signal: Signal, plateaus: PlateauArray) -> BoolArray:
-    """Return for each plateau whether it is a part of a curve."""
+    """Return for each plateau whether it is no level, but only a part of a curve."""
     curves = _find_treads(signal, plateaus)
     spans = read_spans(plateaus)
     lengths = count_samples(spans)
@@ -61,7 +61,9 @@ def find_curves(signal: Signal, plateaus: PlateauArray) -> BoolArray:
 
 
 def _go_on(windows: FloatArray, shape: IntArray) -> BoolArray:
-    """Return for each row of samples whether a curve explains it better than a level between two edges.
+    """Return for each plateau whether it belongs to a curve that goes on before and after it, shape (m,).
+
+    A curve must explain the samples better than a level between two edges does.
 
     Args:
         windows: The samples before, of and after m plateaus of one length, shape (m, n).
@@ -102,7 +104,11 @@ def _measure_misfit(part: FloatArray, degree: int) -> FloatArray:
 
 
 def _find_treads(signal: Signal, plateaus: PlateauArray) -> BoolArray:
-    """Return for each plateau whether it is one of several steps of the scale, by which a slow curve is read."""
+    """Return for each plateau whether it is only a step in a slow curve, shape (n,).
+
+    Values are read in steps of their scale, such as whole percents. A curve that changes slowly thus has several short
+    plateaus in a row, which are no levels.
+    """
     steps = np.abs(np.diff(signal.values))
     tread = steps[steps > 1e-9 * np.abs(signal.values).max()].min(initial=np.inf)
     treads = np.zeros(len(plateaus), bool)

@@ -76,9 +76,10 @@ def find_ramps(signal: Signal, plateaus: PlateauArray) -> BoolArray:
 def find_hidden_edges(
     signal: Signal, plateaus: PlateauArray, cut: Pieces, owners: IntArray
 ) -> BoolArray:
-    """Return for each plateau whether it consists of several levels with the edges between them.
+    """Return for each plateau whether it really consists of several levels, with the edges between them.
 
-    This is so if more samples in a row are far from its level than strays can be.
+    This is so if more samples in a row are far from the plateau's level than strays can be: at most `STRAY_SAMPLES`
+    wrong samples in a row count as strays.
 
     Args:
         signal: The log.

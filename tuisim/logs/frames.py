@@ -48,8 +48,7 @@ def read_log(
 
     A file that `out=` or `tuisim log export` has written is returned as it was, to the last bit, if no other argument
     is given; only empty texts in a CSV file become missing values. A CSV or JSONL file needs the `.json` file beside it
-    for
-    this.
+    for this.
 
     Any other file, such as one of your own `to_csv`, gets an index, and so does each file if another argument is given:
     the time in seconds or, without a time, the number of the row. Dates count from the first row, times of day from

@@ -220,7 +220,10 @@ def _read_comment(comment: tuple[int, str], below: _Line, separator: str) -> _Li
 def _read_comments(
     comments: Sequence[tuple[int, str]], below: _Line, separator: str
 ) -> list[_Line]:
-    """Return the last comment as `_read_comment` does; if it has units, after the comment above it with the names."""
+    """Return the lines of a heading in the comments above a table: names, or names and units; empty if there is none.
+
+    The heading is the last comment. If this has the units, the names are in the comment above it.
+    """
     headings = [_read_comment(comment, below, separator) for comment in comments[-2:]]
     match headings:
         case [_Line() as names, _Line() as units] if _has_units(units.cells, names):
@@ -447,9 +450,10 @@ def _find_names(
 
 
 def _leave_out_settings(line: _Line, usual: str) -> _Line:
-    """Return a line above a table without numbers in columns that are empty in the table, such as a sampling period.
+    """Return a line above a table without the numbers that are settings, such as a sampling period, and not units.
 
-    Empty cells beyond the width of the table are left out, too.
+    These are the numbers above columns that are empty in the table. Empty cells beyond the width of the table are left
+    out, too.
 
     Args:
         line: The line.
@@ -483,7 +487,10 @@ def _join_unit(name: str, unit: str) -> str:
 
 
 def _has_gaps(line: _Line, names: _Line) -> bool:
-    """Return whether a line below names has words below some of them only, such as how a column was averaged."""
+    """Return whether a line below the names of columns has words under some of them, and empty cells under the others.
+
+    Such words may say how a column was averaged. Units do not count.
+    """
     are_names = len(names.kinds) == len(line.kinds) and set(names.kinds) == {"w"}
     return are_names and set(line.kinds) == {"w", "-"} and not _has_units(line.cells, names)
 

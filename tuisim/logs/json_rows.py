@@ -167,7 +167,7 @@ class DocumentReader:
     def finish(self) -> pa.Table | None:
         """Return the rows of the document as a table; None if it has no rows.
 
-        Of a damaged document, only the rows in a line of their own are returned.
+        If the document is damaged, only those rows are returned that are each on a line of their own.
 
         Raises:
             LogError: the document is not a table.

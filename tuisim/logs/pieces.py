@@ -129,7 +129,9 @@ def _join_seams(signal: Signal, pieces: Pieces, seams: IntArray, min_samples: in
 
 
 def _find_firsts(count: int, seams: IntArray) -> IntArray:
-    """Return for each piece the index of the first of the pieces with which it is joined; its own if it is not joined.
+    """Return for each piece the index of the first of the pieces with which it is joined, shape (n,).
+
+    A piece that is not joined has its own index.
 
     Args:
         count: The number of pieces.
@@ -146,7 +148,9 @@ def _find_firsts(count: int, seams: IntArray) -> IntArray:
 
 
 def _find_continued(signal: Signal, left: Pieces, right: Pieces, min_samples: int) -> BoolArray:
-    """Return for each pair of pieces whether the right one continues the left one, as parts of one drift.
+    """Return for each pair of pieces whether the right one continues the left one, without a step between them.
+
+    Both may lie on one line with a slope, as in a log that drifts.
 
     Args:
         signal: The log.

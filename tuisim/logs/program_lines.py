@@ -117,9 +117,10 @@ def _split_time(line: str) -> tuple[str | None, str, bool]:
 
 
 def _strip_prefixes(text: str, pattern: re.Pattern[str]) -> str:
-    """Return the part of a text that matches a pattern after prefixes, such as a logger's, are removed.
+    """Return a text without the prefixes in front of the part that matches a pattern.
 
-    The result is empty if no part matches.
+    A prefix is, for example, the time or the name that a logger writes before each line. The result is empty if no part
+    matches.
     """
     while pattern.fullmatch(text) is None:
         prefix = _PREFIX.match(text)

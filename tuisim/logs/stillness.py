@@ -115,7 +115,8 @@ def _measure_levels(plateaus: PlateauArray, part: FloatArray, keep: BoolArray) -
     Args:
         plateaus: The plateaus.
         part: Their samples, shape (m, length).
-        keep: False for samples that are strays and do not count, shape (m, length); each row has equally many.
+        keep: False for samples that are strays and do not count, shape (m, length). Each row must have the same number
+            of strays.
     """
     count, length = part.shape
     samples = part[keep].reshape(count, -1)

@@ -252,7 +252,14 @@ def _list_rows(block: Block) -> list[int]:
 
 
 def _count_words(texts: Sequence[pa.Array], typed: Sequence[pa.ChunkedArray]) -> int:
-    """Return how many rows at the end have words where numbers should be: they are sentences below the table."""
+    """Return how many rows at the end of a table have words in all columns of numbers.
+
+    They are no rows, but sentences below the table.
+
+    Args:
+        texts: The columns as texts.
+        typed: The same columns with their types.
+    """
     numbers = [
         cells for cells, column in zip(texts, typed, strict=True) if is_floating(column.type)
     ]

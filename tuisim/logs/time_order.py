@@ -200,10 +200,10 @@ def _find_restarts(seconds: FloatArray, back: IntArray) -> IntArray:
 
 
 def _is_one_clock(table: pa.Table, layout: Layout, back: IntArray) -> bool:
-    """Return whether all rows were written in order of time by one clock, which began again at the given rows.
+    """Return whether one clock wrote all rows in order of time, and began again at the given rows, as in several runs.
 
-    The result is False if the file has one variable after another, so that the time of each begins anew. It is taken
-    for such a file if at one of these rows, no variable has samples both before and after it.
+    The result is False if the file has one variable after another: each variable then has its own times. The file is
+    taken for such a file if, at one of the given rows, no variable has samples both before and after the row.
 
     Args:
         table: The table.

@@ -147,7 +147,7 @@ class _Reader:
         Args:
             name: The function's name in the program.
             function: The function.
-            user: What uses it, for errors.
+            user: The name of the function or class that uses it, for errors.
 
         Raises:
             ConfigError: the function has no source, or uses something that cannot be copied.
@@ -179,7 +179,7 @@ class _Reader:
             name: The name of the class in the program.
             kind: The class.
             around: The names around the code that uses it.
-            user: What uses it, for errors.
+            user: The name of the function or class that uses it, for errors.
         """
         own = kind.__name__
         if kind.__module__ != around.values.get("__name__"):
@@ -216,7 +216,7 @@ class _Reader:
             name: The name of the module in the program.
             module: The module.
             names: The names in the module that the code uses.
-            user: What uses it, for errors.
+            user: The name of the function or class that uses it, for errors.
         """
         self._claim(name, id(module), user)
         around = Surroundings.read_module(module)
@@ -233,7 +233,7 @@ class _Reader:
         Args:
             name: The name by which the code uses the function or class; if it differs from `own`, it becomes an alias.
             own: The name in the definition.
-            user: What uses it, for errors.
+            user: The name of the function or class that uses it, for errors.
         """
         if name == own:
             return True
@@ -246,7 +246,7 @@ class _Reader:
         Args:
             name: The name.
             owner: An id of the object.
-            user: What uses it, for errors.
+            user: The name of the function or class that uses it, for errors.
 
         Raises:
             ConfigError: the name stands for another object already.
@@ -262,7 +262,7 @@ class _Reader:
         Args:
             name: The name.
             around: The names around the code that uses it.
-            user: What uses it, for errors.
+            user: The name of the function or class that uses it, for errors.
         """
         if statement := around.find_import(name):
             self._add_import(name, statement, user)
@@ -282,7 +282,7 @@ class _Reader:
             name: The name.
             value: The object.
             around: The names around the code that uses it.
-            user: What uses it, for errors.
+            user: The name of the function or class that uses it, for errors.
         """
         function = inspect.unwrap(value)
         if statement := write_import(name, value):
@@ -306,7 +306,7 @@ class _Reader:
         Args:
             name: The name of the value.
             around: The names around the code that uses it.
-            user: What uses it, for errors.
+            user: The name of the function or class that uses it, for errors.
         """
         origin, source = around.find_origin(name)
         if origin == name:
@@ -348,7 +348,7 @@ class _Reader:
 
         Args:
             around: The names around the code with these expressions.
-            user: What uses them, for errors.
+            user: The name of the function or class that uses them, for errors.
         """
         for name, value in [*self._writer.names.items()]:
             self._add_named(name, value, around, user)

@@ -204,7 +204,8 @@ def _convert_error(error: click.UsageError, ctx: click.Context) -> ConfigError:
 def _explain_case(ctx: click.Context, text: str) -> str:
     """Return a hint if the user seems to have typed the letter of an option in the wrong case; empty if not.
 
-    The user has then typed a value after an option that takes none, while the letter in the other case takes one.
+    This is so if the user typed a value after an option that takes none, such as `-x 5`, and the option with the letter
+    in the other case, such as `-X`, takes one.
 
     Args:
         ctx: The command with its words.

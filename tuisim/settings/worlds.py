@@ -39,7 +39,10 @@ Given: TypeAlias = _Value | UnsetType
 
 
 class _World(Struct):
-    """The keys of a world file that are not values of a run; other functions check those of type `Any`."""
+    """The keys that a world file can have besides the values of a run, such as `robot` and `mats`.
+
+    Other functions check the keys of type `Any`.
+    """
 
     world: Given[str] = UNSET
     program: Given[str] = UNSET
@@ -482,6 +485,6 @@ def _format_infrared(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -
 
 
 def _make_relative(path: str, folder: Path) -> str:
-    """Return a path relative to a folder; with `./` in front if it looked like the name of a mat or a program."""
+    """Return a path relative to a folder; with `./` in front if it could be taken for a mat's or program's name."""
     relative = os.path.relpath(user_path(path), folder)
     return relative if os.sep in relative or Path(relative).suffix else f".{os.sep}{relative}"

@@ -78,7 +78,10 @@ def _check_name(name: str) -> None:
 
 
 def keep_file(folder: Path, name: str, content: IO[bytes]) -> Path:
-    """Store a file as `Uploads.take` does, unless a file of this name has the same content; return the path.
+    """Store a file in a folder, and return its path.
+
+    A file with the same name and the same content is not stored again. If its content differs, a number is added to the
+    new file's name.
 
     Raises:
         OSError: it cannot be written.

@@ -201,7 +201,7 @@ def _parse_threshold_option(arguments: Arguments) -> EventChoice:
     A threshold of `--at` has the variable "", which stands for every variable.
 
     Raises:
-        ConfigError: neither or both of the options are given, or the text of `--when` is no threshold.
+        ConfigError: both options are given, or none, or the text of `--when` is no threshold.
     """
     if bool(arguments.when) is (arguments.at is not None):
         raise ConfigError(

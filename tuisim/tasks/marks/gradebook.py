@@ -169,9 +169,11 @@ def write_gradebook(
 def _choose_heads(
     kind: GradebookKind, sheet: Sheet, roster: Roster
 ) -> tuple[Sequence[str], str, str]:
-    """Return the headings of a gradebook's columns: for what identifies a student, for the total, and for the feedback.
+    """Return the headings of a gradebook's columns, in three parts.
 
-    The heading of the total is empty if the title of the task is to be used as that heading.
+    Returns:
+        The headings of the columns that identify a student; the heading of the total, or "" to take the title of the
+        task as this heading; and the heading of the feedback.
     """
     has_numbers = kind is GradebookKind.MOODLE and any(kind in row.ids for row in sheet.rows)
     if has_numbers and not roster.people:

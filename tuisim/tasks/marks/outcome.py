@@ -103,7 +103,7 @@ class Outcome:
 
     @property
     def gave_up(self) -> bool:
-        """Whether further runs of the program would only cost time: it hung, flooded or died and met no goal.
+        """Whether further runs would only cost time: the program met no goal, and hung, printed without end, or died.
 
         A program that cannot be compiled gave up, too. A program that met a goal with points did not: its other runs
         show whether it meets the goal again.

@@ -225,7 +225,7 @@ def run_trial(
     time_limit_s: float,
     jobs: int,
 ) -> TaskTrial:
-    """Try a task with a model, wrong and idle programs; blocks while the programs run.
+    """Try a task with the author's model and wrong programs, and with programs that do nothing; block while they run.
 
     Args:
         task: The task.

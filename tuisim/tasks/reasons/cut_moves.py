@@ -204,7 +204,8 @@ def _turns_as_asked(data: RunData, move: _Move, call: moves.UnwaitedMove) -> boo
 def _has_looked(data: RunData, move: _Move) -> bool:
     """Return whether the program probably ended a move on purpose.
 
-    It then read a sensor or motor during the move, or ended the move by a command to stop or to turn at a speed.
+    This is so if it read a sensor or motor during the move, or if the command that ended the move was a stop, or a
+    start at a speed.
     """
     aim = CALL_WORDS[move.next_call].aim if move.next_call else Aim.NONE
     ticks = data.reading_ticks

@@ -165,10 +165,10 @@ def _find_wrong_turn(
 def _find_wrong_side(
     records: Array, eye: ColorSensorSpec, spec: RunSpec, mat: Field, ticks: Array
 ) -> str:
-    """Return the side to which a robot turned as a sensor got brighter, if it was away from the line; else empty.
+    """Return the side to which a robot turned when a sensor got brighter, if this was away from the line; else empty.
 
-    Only the time before the line was lost counts: a robot that lost it for another reason may reach its other edge
-    later.
+    Only the time before the line was lost counts: after that, the robot may reach the other edge of the line, where the
+    right side to turn to is the other one.
 
     Args:
         records: Telemetry up to the loss of the line.

@@ -40,7 +40,7 @@ _MIN_TURN_DEG = 10.0
 
 
 def list_stale_reads(data: RunData) -> Iterator[Unmet]:
-    """Yield a misuse for each reading that was taken before a loop, and still used in it when it was out of date.
+    """Yield a fault for each reading that the program took before a loop and still used in it when it was out of date.
 
     For example, `light = sensor.reflected_light_intensity` stands before `while light > 20`, not in the loop.
     """
@@ -54,16 +54,18 @@ def list_stale_reads(data: RunData) -> Iterator[Unmet]:
 
 
 def _was_in_vain(data: RunData, use: LoopEnd) -> bool:
-    """Return whether the run was ended from outside while the program was in the loop that uses a reading.
+    """Return whether the run was ended from outside, for example by a limit, in the loop that uses an old reading.
 
-    Another reason then says what the program waited for in vain.
+    The reason why the run went wrong is then that the program waited in vain, and other functions report this.
     """
     line = data.records["line"][-1]
     return use.first_line <= line <= use.last_line and not data.is_finished
 
 
 def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
-    """Return the first use of a reading that is out of date, as the sensor sees something else now; None without one.
+    """Return a fault at the first use of an old reading that differs from what the sensor or motor would read by then.
+
+    The result is None if there is no such use.
 
     Args:
         data: The run.
@@ -137,7 +139,10 @@ def _name(series: Series, value: float) -> str:
 
 
 def list_lone_stops(data: RunData) -> Iterator[Unmet]:
-    """Yield a misuse for each stop that never came: its `if` is in no `while` loop, and was tested once, too early."""
+    """Yield a fault for each stop of the motors that never came because the program tested its condition only once.
+
+    The `if` with the stop is in no `while` loop, and its condition was still false when it was tested.
+    """
     for stop in uses.list_lone_stops(data.facts.tree, data.facts.constants):
         read_ticks = data.find_read_ticks(stop.read_line)[:_MAX_READINGS]
         if np.diff(read_ticks).min(initial=data.hz) < _APART_S * data.hz:
@@ -148,11 +153,13 @@ def list_lone_stops(data: RunData) -> Iterator[Unmet]:
 
 
 def _is_unstopped(data: RunData, stop: uses.LoneStop, tick: int) -> bool:
-    """Return whether the robot drove on after the reading on which a stop depends, without another reading or a stop.
+    """Return whether the robot drove on after a reading, because the condition for its stop was not met then.
+
+    The result is False if the program soon took another reading, or stopped the motors.
 
     Args:
         data: The run.
-        stop: The stop, with the line of its reading.
+        stop: The `if` with the stop, and the line of its reading.
         tick: The tick of the reading.
     """
     soon = min(tick + round(_SOON_S * data.hz), len(data.records) - 1)
@@ -195,7 +202,10 @@ def _describe_lone(data: RunData, stop: uses.LoneStop, tick: int) -> str:
 
 
 def list_stopping_loops(data: RunData) -> Iterator[Unmet]:
-    """Yield a misuse for each stop in a loop that the run did not leave, as nothing moved the robot any more."""
+    """Yield a fault for each loop that stopped the motors itself, so that its condition never changed.
+
+    The run was still in the loop at its end.
+    """
     lines = data.records["line"]
     for line, text, loop in idle_moves.list_stopping_loops(data.facts.tree):
         is_inside = (lines >= loop.start) & (lines < loop.stop)
@@ -207,7 +217,7 @@ def list_stopping_loops(data: RunData) -> Iterator[Unmet]:
 
 
 def list_lost_values(data: RunData) -> Iterator[Unmet]:
-    """Yield a misuse for each value that a function assigned to a local name, though a global name was probably meant.
+    """Yield a fault for each value that a function assigned to a local name, though a global name was probably meant.
 
     Functions that did not run are left out.
     """
@@ -228,7 +238,7 @@ def list_lost_values(data: RunData) -> Iterator[Unmet]:
 def _find_tick(data: RunData, first_line: int, last_line: int) -> int | None:
     """Return the first tick at which the program ran one of the lines, or read a sensor or motor there.
 
-    The result is None if the program did neither.
+    The result is None if the program never came to these lines.
     """
     ticks = []
     for lines, when in (

@@ -128,7 +128,7 @@ def list_curves(data: RunData) -> Iterator[Unmet]:
 def list_wrong_sides(data: RunData) -> Iterator[Unmet]:
     """Yield a fault for each part of the program that turns the robot to the wrong side whenever it runs.
 
-    The name of the function, or a comment, says the other side.
+    It is the wrong side if the name of the function, or a comment, says left for a turn to the right, or the reverse.
     """
     lines = data.records["line"]
     for turn in remarks.list_named_turns(data.facts.tree, data.facts.remarks):

@@ -118,7 +118,7 @@ def describe_reasons(run: StoredRun) -> list[str]:
 
 
 def describe_end(run: StoredRun) -> dict[str, str]:
-    """Return texts on faults for the final state of a run: by `waited_for` and by `went_wrong`.
+    """Return two texts for the final state of a run, by the keys `waited_for` and `went_wrong`; each may be empty.
 
     `waited_for` says what the run waited for in vain. `went_wrong` has the reasons of `find_reasons`, without those
     that the final state shows in other values; if there are none, it says if the mat is blank. It is empty if nothing
@@ -232,11 +232,11 @@ def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
 
 
 def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]:
-    """Yield a reason for each obstacle that stopped or pushed the robot, and for each wait.
+    """Yield a reason for each obstacle that stopped or pushed the robot, and for each wait that was in vain.
 
     Args:
         run: The run.
-        all_waits: What the program waited for in vain.
+        all_waits: Descriptions of what the program waited for in vain.
     """
     for contact in (
         find_standstill(run.telemetry, run.spec),
@@ -336,8 +336,8 @@ def _build_reason(kind: ReasonKind, fault: Unmet) -> Reason:
 def _find_slips(data: RunData) -> Iterator[Reason]:
     """Yield a reason for each line of the program that has no effect or always the same, such as a stop without `()`.
 
-    The time of the reason is when the line, or the loop around it, first ran; if neither did, it is the end of the run.
-    While a run goes on, lines that have not run yet are left out.
+    The time of the reason is when the line, or the loop around it, first ran. If it never ran, this is the end of the
+    run. While a run goes on, lines that have not run yet are left out.
     """
     lines, end = data.records["line"], data.run.end
     cause = data.facts.explain_error(end.error, end.error_line) if end else ""

@@ -202,7 +202,7 @@ class RunData:
         The result is None if they are not known, or if noise or the pen's marks would make the computation slow.
 
         Args:
-            loop: The comparison: that of a loop's end, or another one.
+            loop: The comparison with a constant, which may end a loop or have another purpose.
             stay: The first tick to consider, and the tick after the last one.
         """
         ticks = self.find_read_ticks(loop.read_line)
@@ -223,8 +223,8 @@ class RunData:
         the change since an earlier reading, the values are the changes.
 
         Args:
-            loop: The comparison: that of a loop's end, or another one; the program read its sensor or motor at least
-                once.
+            loop: The comparison with a constant, which may end a loop or have another purpose. The program read its
+                sensor or motor at least once.
             ticks: The ticks.
         """
         import numpy as np
@@ -245,8 +245,8 @@ class RunData:
         The result is also None if noise or the pen's marks would make the computation slow.
 
         Args:
-            loop: The comparison: that of a loop's end, or another one; the program read its sensor or motor at least
-                once.
+            loop: The comparison with a constant, which may end a loop or have another purpose. The program read its
+                sensor or motor at least once.
             records: The records, structured as `TICK_FIELDS`; they need not be those of the run.
             ticks: The ticks of the records.
         """
@@ -279,7 +279,7 @@ class RunData:
         The result is None if it reads something else than the position or the speed of the motor.
 
         Args:
-            loop: The comparison: that of a loop's end, or another one.
+            loop: The comparison with a constant, which may end a loop or have another purpose.
             wheel: `left` or `right`.
             port: The motor's port.
             records: The records, structured as `TICK_FIELDS`.
@@ -301,7 +301,7 @@ class RunData:
         slow.
 
         Args:
-            loop: The comparison: that of a loop's end, or another one.
+            loop: The comparison with a constant, which may end a loop or have another purpose.
             sensor: The sensor.
             read: Column, factor and unit of the measurement.
             records: The records, structured as `TICK_FIELDS`.

@@ -51,9 +51,9 @@ class Unmet:
 
 
 def find_unmet(data: RunData) -> Unmet | None:
-    """Return what the program waited for in its last loop or move.
+    """Return what the program waited for in its last loop or move, in a run that goes on or was cut off.
 
-    The result is None unless the run still goes on or was ended by a limit or the user. It is also None if the program
+    A run is cut off if a limit or the user ended it. The result is None for other runs. It is also None if the program
     waited for nothing, or if that is not known.
 
     Args:
@@ -150,7 +150,10 @@ def _list_met(data: RunData) -> Iterator[Unmet]:
 
 
 def _name_turned(loop: LoopEnd, series: Series) -> str:
-    """Return what to change in a comparison that was met at once, if the opposite was probably meant."""
+    """Return what to change in a comparison that was met at once: its sign, if the opposite was probably meant.
+
+    The result is empty if the comparison is neither with `<` nor with `>`.
+    """
     other = {">": "<", "<": ">"}.get(loop.operator[0], "")
     if not other or isinstance(loop.limit, str):
         return ""
@@ -159,7 +162,10 @@ def _name_turned(loop: LoopEnd, series: Series) -> str:
 
 
 def list_stale_angles(data: RunData) -> Iterator[Unmet]:
-    """Yield loops that first waited for an angle of the gyro and, when run again, ended at their first reading."""
+    """Yield a fault for each loop that ended at once when it ran again, because the gyro still had the earlier angle.
+
+    When the loop ran first, it waited for the gyro to reach this angle.
+    """
     import numpy as np
 
     lines = data.records["line"]
@@ -309,9 +315,9 @@ def _name_nearest(loop: LoopEnd, series: Series, hz: int) -> str:
 
 
 def _find_miss(data: RunData, loop: LoopEnd, series: Series) -> Unmet | None:
-    """Return where the light came within `_NEAR` % of a loop's limit without passing it; None if it did not.
+    """Return a fault if the light came within `_NEAR` % of a loop's limit without passing it; None if it did not.
 
-    Before and after, the light was at least `_AWAY` % away from the limit.
+    This counts only between two readings that were at least `_AWAY` % away from the limit.
     """
     import numpy as np
 

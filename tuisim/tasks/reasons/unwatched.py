@@ -103,9 +103,9 @@ def list_unwatched(data: RunData) -> Iterator[Unmet]:
 def _list_passes(
     data: RunData, sensor: ColorSensorSpec, threshold: ProgramThreshold, ticks: Array
 ) -> Iterator[Unmet]:
-    """Yield a fault if the result of a comparison changed and changed back between two readings, so that nobody saw it.
+    """Yield a fault if the result of a comparison changed and changed back between two readings.
 
-    Only the first such time is yielded.
+    The program then did not see the change. Only the first such time is yielded.
 
     Args:
         data: The run.

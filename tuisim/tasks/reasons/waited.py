@@ -227,7 +227,10 @@ class _Search:
                     yield awaited
 
     def _find_readings(self, subject: Subject, port: str) -> Array:
-        """Return the indices of a subject's readings on the lines on which the program waits for the subject now."""
+        """Return the indices of the readings by which the program waits for a subject, such as a touch sensor.
+
+        These are the subject's readings on those lines on which the program waits for it now.
+        """
         import numpy as np
 
         is_meant = self._select(subject, port)
