@@ -254,7 +254,7 @@ _COLUMNS_FOR_ONE = 20
 
 
 def find_max_entries(columns: int) -> int:
-    """Return how many entries the footer may show in a terminal with this number of columns."""
+    """Return the largest number of entries that the footer may show in a terminal with this number of columns."""
     return _FEWEST + max(0, columns - _FEWEST_AT) // _COLUMNS_FOR_ONE
 
 

@@ -331,7 +331,7 @@ class LabApp(PanelMessages):
         self.panel_area.show_next_run(self.run_controller.next_run)
         self.draw(force=True)
 
-    # A run
+    # The following methods start runs, and process what a run sends.
 
     def start_run(self, paused: bool = False) -> bool:
         """Start the program; if the mat is not prepared yet, start it when the mat is.
@@ -508,7 +508,7 @@ class LabApp(PanelMessages):
         self.handle_situation_change()
         self.check_files()
 
-    # The picture
+    # The following methods draw the panels and the footer.
 
     def draw(self, force: bool = False) -> bool:
         """Show the instant in view in every panel. Return whether the panels have changed.
@@ -603,7 +603,7 @@ class LabApp(PanelMessages):
             names = ("panel-next", *names)
         actions = list_footer_actions(self.ACTIONS, names, state.situation, state.playing)
         if "esc" in dict(keys := self._field_keys()):
-            # Letters are text.
+            # The focused field takes letters as text, so that no action has a key.
             actions = []
         self.key_footer.show(actions, state.status, keys, state.failed)
 

@@ -289,7 +289,7 @@ class DebugController:
         if self._panel_area.find_focused_panel() in ("", "world"):
             self._app.call_after_refresh(self._panel_area.focus_opened, "code")
 
-    # Inspect
+    # The following methods choose the instant in view, and show its variables.
 
     @property
     def looks_back(self) -> bool:
@@ -505,7 +505,7 @@ class DebugController:
         if panel := self._panel_area.debug:
             panel.show_pause(self.view, self.busy)
 
-    # Steps
+    # The following methods take steps, forwards and back.
 
     def _find_position(self) -> Position | None:
         """Return the position in the run that is in view; None before the first tick.

@@ -105,7 +105,7 @@ class Feed:
         return True
 
     def restart_chart(self) -> None:
-        """Let the next call of `chart_series` begin with the first tick."""
+        """Let the next call of `chart_series` begin with the first tick of the run."""
         self._charted = 0
 
     def chart_series(self, mat: Field) -> Series:

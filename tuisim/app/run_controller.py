@@ -392,7 +392,7 @@ class RunController:
         self.earlier = earlier if earlier and later and is_comparable(earlier, later) else None
 
     def set_companion(self, companion: Recording | None) -> None:
-        """Draw one run beside each run, instead of the run before it.
+        """Draw the same run beside each run, instead of the run before it.
 
         Args:
             companion: The run to draw, such as that of a model answer; None draws the run before each run again.

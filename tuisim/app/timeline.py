@@ -256,7 +256,7 @@ class _Search:
         return next((row.tick for row in select_rows(condition, self.texts())), None)
 
     def find_nearest(self, ticks: list[int]) -> int | None:
-        """Return that tick of a sorted list which is nearest in the direction of the search; None if there is none."""
+        """Return the tick of a sorted list that comes first in the direction of the search; None if there is none."""
         where = bisect_left(ticks, self.at) - 1 if self.back else bisect_right(ticks, self.at)
         return ticks[where] if 0 <= where < len(ticks) else None
 

@@ -115,7 +115,11 @@ class PixelView(RowsView):
         return self.picture_mode.graphics
 
     def choose_cell(self, graphics: Graphics | None) -> CellPoints:
-        """Return how many points of an image are in a cell; `graphics` is None for the app's glyphs."""
+        """Return how many points of an image are in a cell when the image is drawn in a given way.
+
+        Args:
+            graphics: How pixels are drawn; None for the app's glyphs.
+        """
         if graphics is not None:
             width_px, height_px = graphics.cell_px
             return CellPoints(*graphics.cell_points, height_px / width_px)

@@ -114,7 +114,7 @@ def _draw_half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
 def _find_typical(
     lab: npt.NDArray[np.float32], covered: npt.NDArray[np.float32]
 ) -> list[npt.NDArray[np.intp]]:
-    """Return the index of the typical point in each cell, first among its covered points, then among its other points.
+    """Return the index of a typical point in each cell: one array for its covered points, one for its other points.
 
     The typical point of a group is the point whose colour is nearest to the mean of the group. The mean itself often is
     no colour of the picture, and looks blurred. If two points are equally near, the darker one is taken: the lighter

@@ -142,9 +142,9 @@ def _unpack_bits(patterns: list[int], points: int) -> Covered:
 def build_glyph_set(cells: CellSet) -> GlyphSet:
     """Return the glyphs of a set, with the points that they cover.
 
-    A pattern and its inverse show the same with exchanged colours, so that the set has only one of the two: a set of
-    blocks has the pattern with the upper left point, Braille the one with fewer dots, which leave most of their cell to
-    the background.
+    A pattern and its inverse look the same if their two colours are exchanged, so the set has only one of the two. A
+    set of blocks has the pattern with the upper left point. Braille has the pattern with fewer dots, which leaves most
+    of the cell to the background.
     """
     if cells is CellSet.SEXTANT:
         patterns = list(range(1, 63, 2))

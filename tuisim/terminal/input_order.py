@@ -236,7 +236,7 @@ def _find_module(callback: Callable[..., Any]) -> str:
 
 
 class InputOrder:
-    """Handles the keys and other input of the user in order: each one after everything that the one before has caused.
+    """Handles keys and other input of the user in order: each event after everything that the former event has caused.
 
     Args:
         app: The app.

@@ -36,7 +36,10 @@ class Graphics:
 
     @property
     def scale(self) -> int:
-        """The side of a point of a picture in pixels of the terminal; smaller points would take too long to draw."""
+        """The width and height of a point of a picture, in pixels of the terminal.
+
+        Smaller points would take too long to draw.
+        """
         return max(1, -(-self.cell_px[0] // self.most_points))
 
     @property
@@ -384,7 +387,7 @@ def find_rectangles(changed: Mask, may_draw: Callable[[Rectangle], bool]) -> lis
 
     Args:
         changed: Shape (rows, columns).
-        may_draw: Whether all cells of a rectangle may be drawn.
+        may_draw: Returns whether all cells of a rectangle may be drawn, also those that have not changed.
     """
     boxes: list[Rectangle] = []
     for row, col, length in find_runs(changed):

@@ -408,7 +408,7 @@ def restore_terminal(fd: int, term: str) -> None:
 
 
 def _build_sane_modes(iflag: int, oflag: int, cflag: int, lflag: int) -> list[int]:
-    """Return the modes of a terminal with the flags that apps change set as `stty sane` does.
+    """Return the modes of a terminal, in which those flags that apps change are set as `stty sane` sets them.
 
     Args:
         iflag, oflag, cflag, lflag: The present modes, as in `termios.tcgetattr`.

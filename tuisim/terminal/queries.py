@@ -147,7 +147,7 @@ _LONGEST = 500
 
 
 class TerminalAnswered(Message):
-    """Message: the terminal has answered the last of the queries that were sent together.
+    """Posted when the terminal has answered the last of the queries that were sent together.
 
     The message has all facts that are known of the terminal so far.
     """

@@ -8,7 +8,7 @@ from textual.message import Message
 
 
 class ActionAsked(Message):
-    """Message to the app: a button of the web page that shows the app requests one of the app's actions."""
+    """Posted to the app when the user has clicked a button of the web page that stands for an action of the app."""
 
     def __init__(self, name: str) -> None:
         super().__init__()
@@ -16,7 +16,7 @@ class ActionAsked(Message):
 
 
 class ServerAsks(Message):
-    """Message to the app: the server that shows the app in a browser requests something, as `asked` says."""
+    """Posted when the server that shows the app in a browser requests something of the app, as `asked` says."""
 
     def __init__(self, request: Mapping[str, object]) -> None:
         super().__init__()

@@ -339,7 +339,11 @@ class ThoroughCompositor(Compositor):
         self._told: CompositorMap = {}
 
     def reflow(self, parent: Widget, size: Size) -> ReflowResult:
-        """Lay out the widgets below `parent`; return which were hidden, shown or resized since the last such call."""
+        """Lay out the widgets below `parent`.
+
+        Returns:
+            Which widgets were hidden, shown or resized since the last call of this method.
+        """
         before = self._full_map
         hidden, visible, resized = super().reflow(parent, size)
         previous_map = self._told

@@ -146,7 +146,7 @@ def _ask_restart(context: ActionContext) -> None:
 
 
 def _switch_model(context: ActionContext) -> None:
-    """Show the robot of the model answer as a grey robot beside each run; if it is shown already, remove it."""
+    """Show or hide a grey robot beside the robot of each run: that of the lesson's model answer."""
     from tuisim.tasks.lessons.trial import run_model
 
     lesson = context.lesson.lesson

@@ -36,7 +36,7 @@ _SAMPLES = 4
 
 
 def draw_test_card(cols: int, rows: int, cell_px: tuple[int, int]) -> Pixels:
-    """Return the test picture, which has a disc, a line and three greys.
+    """Return the picture by which the user compares sets of glyphs: a disc, a line and three greys.
 
     Args:
         cols: Width of the picture in cells.
@@ -66,7 +66,7 @@ def draw_test_card(cols: int, rows: int, cell_px: tuple[int, int]) -> Pixels:
 
 
 class _TestCard(PixelView):
-    """The test picture, drawn with the glyphs of the set that is highlighted in the list."""
+    """The picture by which the user compares sets of glyphs, drawn with the set that is highlighted in the list."""
 
     def __init__(self, best: CellSet) -> None:
         super().__init__()

@@ -356,8 +356,8 @@ class RunsChooser(RunChooser):
     def _open_named(self, event: Input.Submitted) -> None:
         """Close the dialog, and return the marked runs.
 
-        If several numbers of runs were typed, such as `12 13`, return the runs with these numbers instead. Any other
-        text searches the list.
+        If the user has typed several numbers of runs, such as `12 13`, return the runs with these numbers instead. Any
+        other typed text searches the list.
         """
         numbers = {str(run.number): run.id for run in self._runs}
         words = event.value.split()

@@ -176,7 +176,7 @@ def find_candidates(text: str, path: str, row: int, column: int) -> tuple[Candid
 def find_signature(text: str, path: str, row: int, column: int) -> Signature | None:
     """Return the signature of the function whose arguments are at a position; None if it is unknown.
 
-    Arguments as for `find_candidates`.
+    The arguments are those of `find_candidates`.
     """
     with _asking:
         script, first = _build_script(text, path)

@@ -365,7 +365,7 @@ class Document:
 
     @property
     def _lacks_options(self) -> bool:
-        """Whether the magic line has a wrong option or a wrong name, so that the program was opened without it.
+        """Whether an option or a name in the magic line is wrong; the program was then opened without it.
 
         A wrong name no longer counts once the user has chosen another, such as another mat.
         """

@@ -61,7 +61,7 @@ _MIN_FILLED = 0.6
 
 
 class Preset(StrEnum):
-    """A set of panels for one purpose, such as debugging, with its arrangements."""
+    """A set of panels for one purpose, such as debugging, with the possible arrangements of these panels."""
 
     STANDARD = "standard"
     DRIVE = "drive"
@@ -83,7 +83,7 @@ def is_low(preset: Preset, width: int, height: int) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Plan:
-    """The panels that a preset shows, and the forms to choose from: functions that arrange panels in an area."""
+    """What a preset consists of: the panels that it shows, and functions (forms) that arrange panels in an area."""
 
     core: tuple[str, ...]
     """Panels that the preset always shows, the most important first."""

@@ -50,7 +50,7 @@ class Panel(Protocol):
 
 @runtime_checkable
 class NextRunPanel(Protocol):
-    """The interface of a panel that edits the plan of the next run, in addition to `Panel`."""
+    """The interface of a panel that edits the plan of the next run; such a panel also has the interface `Panel`."""
 
     def show_next_run(self, plan: NextRun) -> None:
         """Show the plan of the next run."""

@@ -28,7 +28,7 @@ RIM_16_RGB = (0, 0, 135)
 
 
 class _DiscPicture(PixelView):
-    """The picture of what one colour sensor sees, in the finest points that the terminal has."""
+    """The picture of what one colour sensor sees, drawn as finely as the terminal can."""
 
     def __init__(self) -> None:
         super().__init__()

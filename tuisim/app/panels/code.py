@@ -299,7 +299,7 @@ class Code(Vertical):
 
         Args:
             text: The text; None without a run.
-            tells: Whether the run is one of the shown program, so that the panel says if the two texts differ.
+            tells: Whether the panel says that the two texts differ, because the run is a run of the shown program.
         """
         self._run_lines = source_lines(text) if text is not None else None
         self._mapped = None
@@ -545,7 +545,7 @@ class Code(Vertical):
             case _:
                 assert_never(event.command)
 
-    # Find
+    # The following methods search the text.
 
     def on_find_bar_asked(self, event: FindBar.Asked) -> None:
         event.stop()

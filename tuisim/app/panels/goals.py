@@ -61,7 +61,7 @@ class Goals(LinesPanel, can_focus=True):
             self._draw_changes()
 
     def show_goals(self, view: GoalsView) -> None:
-        """Show other goals, or other judgements of the run by them."""
+        """Show a view with other goals, or with other judgements of the run by the same goals."""
         if view.goals != self._content.goals:
             self._chosen = None
             self._first = 0

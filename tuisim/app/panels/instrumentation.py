@@ -190,8 +190,8 @@ def _build_further_line(column: str, value: float, width: int) -> Line:
 def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
     """Return the readings in columns, with as much detail as the width allows.
 
-    If not everything fits, the names of the colours are left out. If this is not enough, the pose is left out instead,
-    then both, then also the speeds, and at last whole columns.
+    If not everything fits, the first of these steps that is enough is taken: leave out the names of the colours; leave
+    out the pose; leave out both; leave out the speeds as well; leave out whole columns.
     """
     for detail, with_pose in ((2, True), (1, True), (2, False), (1, False), (0, False)):
         columns, sensing = _arrange_cells(now, height, detail)

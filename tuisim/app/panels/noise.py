@@ -85,7 +85,7 @@ class Noise(EntryPanel):
         event.stop()
         self.query_one(f"#{event.slider.id}-number", Static).update(str(event.value))
         self.say("")
-        # In the past, the question about a branch comes at the end of the drag only.
+        # While a past instant is in view, each change asks whether to start a branch: ask only at the end of the drag.
         if event.done or not self._past:
             self._choose()
 

@@ -99,7 +99,7 @@ def draw_goals(
         view: The goals.
         states: Their states.
         chosen: Index of the goal whose details are shown.
-        first: First row of the details to show, if there are so many.
+        first: First row of the details to show, if not all of them fit.
         width: Columns inside the border.
         height: Rows inside the border.
     """

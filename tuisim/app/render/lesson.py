@@ -124,7 +124,7 @@ def draw_lesson(
     Args:
         view: The lesson.
         page: The page to show, see `LessonView.page`.
-        first: First row of the text to show, if there are so many; -1 for the title of the step.
+        first: First row of the text to show, if not all of it fits; -1 for the title of the step.
         width: Columns inside the border.
         height: Rows inside the border.
         away: What gets the keys: in the editor and in a log, the app's keys work only after escape.

@@ -44,7 +44,7 @@ class Mat:
 
     @property
     def name(self) -> str:
-        """The name of the mat as in a specification."""
+        """The name or path of the mat, as it is written in a specification."""
         return self.key[0]
 
 

@@ -277,7 +277,7 @@ def follow_program_robot(plan: NextRun) -> NextRun:
 
 
 def list_notes(before: NextRun, plan: NextRun) -> list[str]:
-    """Return messages to the user about the robot of a plan, without those that the plan `before` had already."""
+    """Return messages to the user about the robot of a plan, except those that also apply to the plan `before`."""
     notes = () if plan.robot == before.robot else plan.robot.notes
     known = list_ineffective(before.spec)
     return [*notes, *(text for text in list_ineffective(plan.spec) if text not in known)]
@@ -311,7 +311,7 @@ def change_profile(plan: NextRun, word: str) -> NextRun:
 
 
 def undo_robot_edits(plan: NextRun) -> NextRun:
-    """Return a plan with the chosen robot without the user's changes."""
+    """Return a plan with the robot as it was chosen, without the user's changes of its parts."""
     return change_values(plan, {"robot": plan.robot})
 
 

@@ -29,7 +29,7 @@ def build_sample_chart(
 
     Args:
         samples: The samples.
-        columns: Width in pixels; points that it could not show apart are left out.
+        columns: Width in pixels; of the points in one pixel column, only the least and the greatest value are drawn.
         limits: Range of time in s; None for the time range of the samples.
     """
     points: dict[str, list[tuple[float, float]]] = {}
@@ -71,7 +71,7 @@ def build_line(
         number: Index that selects colour and marker.
         scale: The name of its scale.
         limits: Range of time in s.
-        columns: Width in pixels; points that it could not show apart are left out.
+        columns: Width in pixels; of the points in one pixel column, only the least and the greatest value are drawn.
         hold: Whether to draw a step line.
     """
     xs, ys = reduce_points(*points, limits, columns)
@@ -94,7 +94,7 @@ def build_path_chart(
         title: Its title.
         names: The variables of the x and of the y axis.
         xs, ys: Their values, finite, shape (n,), n at least 1.
-        size: Width and height in pixels; points that it could not show apart are left out.
+        size: Width and height in pixels; of successive points at the same place, only the first is drawn.
         marks: Whether points are drawn instead of lines.
     """
     xs, ys = limit_drawn(xs), limit_drawn(ys)

@@ -190,7 +190,7 @@ class Traces:
 def reduce_points(
     times_s: FloatArray, values: FloatArray, x_limits: tuple[float, float], columns: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the times and values of those points of a trace that a chart of a given width can show apart.
+    """Return the times and values of a trace to draw in a chart: in each column, the least and the greatest value.
 
     Args:
         times_s: Rising times, shape (n,).

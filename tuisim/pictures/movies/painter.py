@@ -293,7 +293,7 @@ class SensorArrays:
         self._mat, self._recording = recorded.run.open_mat(), Recording(recorded.run)
 
     def list_faces(self, moment: ClipMoment) -> list[DiscFace]:
-        """Return what each colour sensor sees at an instant; nothing if the record of that instant is damaged."""
+        """Return what each colour sensor sees at an instant; empty if the record of that instant is damaged."""
         if read_pose(moment.record) is None:
             return []
         run = self._run

@@ -24,7 +24,7 @@ _AGAINST = (
 
 
 def mark(screen: LogScreen) -> None:
-    """Put the second cursor at the place of the cursor; if there is a second cursor already, remove it."""
+    """Put the second cursor where the first one is; if there is a second cursor already, remove it."""
     screen.model.mark_s = screen.model.cursor_s if screen.model.mark_s is None else None
 
 
