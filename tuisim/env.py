@@ -46,8 +46,7 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         reward: Takes the values before and after a step, and returns its reward; None for 0.
         is_over: Takes the values after a step, and returns whether the task has ended; None for never.
         goals: A goals file. A step is also rewarded with the points that it gains or loses, as if the run ended after
-            it.
-            The task has also ended when no goal can be met any more.
+            it. The task has also ended when no goal can be met any more.
         background: A mat, in place of a world.
         world, robot, profile: As for `Lab`.
         period_s: Simulated seconds of a step.
@@ -55,8 +54,7 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
 
     Raises:
         ConfigError: an argument is wrong, as for `Lab`; both a mat and a world are given; or `reward` or `is_over`
-            takes
-            another number of values.
+            takes another number of values.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012
@@ -104,8 +102,7 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
 
         Args:
             seed: Seed of noise and drift. With None, a random seed is drawn; which one depends only on the last seed
-                given
-                and on the number of resets since.
+                given and on the number of resets since.
             options: Not used.
         """
         super().reset(seed=seed)
@@ -217,8 +214,7 @@ def stop_on_band(**how: Any) -> LabEnv:
     """Return the task to stop on a dark band.
 
     It ends when the left sensor reads less than 10 % and both wheels stand still. The reward of a step is by how many
-    percent
-    the reading of the left sensor has fallen in it.
+    percent the reading of the left sensor has fallen in it.
 
     Args:
         how: Arguments of `LabEnv`.

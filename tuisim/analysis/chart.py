@@ -36,7 +36,12 @@ class View:
 def build_chart(model: AnalysisModel, view: View, columns: int, rows: int) -> ChartData:
     """Return the chart of a model's visible variables in its visible time range.
 
-    Points that a picture of `columns` by `rows` pixels, or parts of characters, could not show apart are left out.
+    Of points that are drawn at the same place, only those are kept that can be seen.
+
+    Args:
+        model: The model.
+        view: The user's settings of the chart.
+        columns, rows: The size of the picture, in pixels or in the parts of characters that are drawn as pixels.
 
     Raises:
         LogError: the user wants to see a variable against another one, and one of these does not exist.

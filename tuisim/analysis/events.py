@@ -222,10 +222,10 @@ def parse_event(text: str) -> EventChoice | None:
 
 
 def parse_events(text: str, log: Log) -> tuple[EventChoice, ...]:
-    """Return the thresholds and searches for commands in a text, see `FORM`; an empty text has none.
+    """Return the thresholds and searches for commands in a text, see `FORM`; empty for an empty text.
 
     Raises:
-        LogError: a part of it is not a threshold, or there is no such variable.
+        LogError: a part of the text is not a threshold, or there is no such variable.
     """
     choices: list[EventChoice] = []
     for part in text.split(",") if text.strip() else ():

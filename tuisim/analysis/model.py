@@ -109,7 +109,10 @@ class AnalysisModel:
 
     @property
     def cursor_s(self) -> float:
-        """The position of the cursor on the x axis: the time of its row in s, unless runs are aligned otherwise."""
+        """The position of the cursor on the x axis: the time of its row in s, or the distance driven.
+
+        It is the distance, in mm, if runs are aligned by distance.
+        """
         trace = self.trace_of_row(self.row)
         return float(trace.places[self._sample(trace, self.row)])
 

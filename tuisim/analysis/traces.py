@@ -53,7 +53,10 @@ class LogTrace(Trace):
 
     @property
     def places(self) -> FloatArray:
-        """The positions of the samples on the x axis, shape (n,): times in s, unless runs are aligned otherwise."""
+        """The positions of the samples on the x axis, shape (n,): times in s, or distances driven.
+
+        They are distances, in mm, if runs are aligned by distance.
+        """
         return self.series.time_s if self._places is None else self._places
 
     def is_derived_otherwise(self, log: Log) -> bool:
@@ -93,7 +96,10 @@ class LogTrace(Trace):
 
     @property
     def times_s(self) -> FloatArray:
-        """The positions on the x axis of the points to draw, shape (n,): times in s, unless aligned otherwise."""
+        """The positions on the x axis of the points to draw, shape (n,): times in s, or distances driven.
+
+        They are distances, in mm, if runs are aligned by distance.
+        """
         return self._shown[0]
 
     @property
@@ -188,12 +194,12 @@ FORM = f"time, distance, or an event: {THRESHOLD_FORM}"
 
 
 def align_series(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | None]:
-    """Return the positions on the x axis of the samples of each series; None stands for their times.
+    """Return the positions on the x axis of the samples of each series; None for a series stands for its times.
 
     Args:
         log: The log.
         series: The variables.
-        way: How runs are aligned, see `FORM`.
+        way: How runs are aligned: by time, by distance, or by an event, see `FORM`.
 
     Raises:
         LogError: `way` is invalid, or the log cannot be aligned like that.

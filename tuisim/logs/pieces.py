@@ -107,8 +107,8 @@ def _join_seams(signal: Signal, pieces: Pieces, seams: IntArray, min_samples: in
         signal: The log.
         pieces: Its pieces.
         seams: The places where pieces may be joined, shape (n, 2). Each row has two indices of pieces: the index of the
-            left
-            piece plus 1, and the index of the right piece. Pieces from the first index to before the second are strays.
+            left piece plus 1, and the index of the right piece. Pieces from the first index to before the second are
+            strays.
         min_samples: Fewest samples that a piece on either side must have.
     """
     left, right = pieces[seams[:, 0] - 1], pieces[seams[:, 1]]

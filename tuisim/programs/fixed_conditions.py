@@ -387,7 +387,7 @@ def _list_unreached(
 
 
 def _list_elifs(node: ast.AST) -> list[ast.If]:
-    """Return the `elif` that follows an `if` or `elif` at once, or none."""
+    """Return a list of the `elif` that comes directly after an `if` or `elif`; empty if there is none."""
     match node:
         case ast.If(orelse=[ast.If() as branch]):
             return [branch]

@@ -90,7 +90,7 @@ class SourceFacts:
 
     @property
     def brick_profile(self) -> str:
-        """The name of the profile of the real brick that runs such a program.
+        """The name of the profile of the real brick that runs the program.
 
         The program must import a library for a brick.
         """
@@ -485,9 +485,10 @@ def _has_brick_rules(source: ProgramSource, facts: SourceFacts) -> bool:
 
 
 def _describe_course_rules(source: ProgramSource) -> str:
-    """Return a text which says that a program reads light on the scale of the course; empty if that is no surprise.
+    """Return a notice that a program reads light on the scale of the course, if its author may not expect this.
 
-    It is a surprise if the program imports the library itself, as for a real brick, but has a magic line of the course.
+    That is the case if the program imports the library itself, as for a real brick, but has a magic line of the course.
+    The result is empty for other programs.
     """
     if not source.has_magic or _BRICK_LIGHT not in source.program.text:
         return ""

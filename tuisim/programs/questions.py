@@ -351,13 +351,13 @@ def _is_test(step: ast.stmt) -> bool:
 
 
 def _is_noted(step: ast.stmt, compared: Set[str]) -> bool:
-    """Return whether a step only prints a value, or only stores it in a variable with which such values are compared.
+    """Return whether a step only prints or records a value, or stores it in a variable of an earlier value.
 
-    For example, the variable contains the maximum so far.
+    Such a variable contains, for example, the maximum so far.
 
     Args:
         step: The step.
-        compared: The variables with which the value is compared.
+        compared: The names of the variables with which the program compares the value.
     """
     match step:
         case ast.Assign(targets=targets):

@@ -136,7 +136,10 @@ def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
 
 
 def list_curves(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
-    """Yield moves whose first value is a steering, or lacks one, although a comment says that they drive straight."""
+    """Yield moves that drive in a curve, although a comment says that they drive straight.
+
+    Their two numbers are in the wrong form for the class: a steering and a speed, or a speed for each wheel.
+    """
     classes = find_classes(tree)
     for node in ast.walk(tree):
         match node:
@@ -149,7 +152,13 @@ def list_curves(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
 
 
 def _describe_curve(class_name: str, first: float, second: float = 0.0) -> str:
-    """Return why a move with two numbers is no straight one; empty if it is, or if that is not known."""
+    """Return why a move with two numbers does not drive straight on; empty if it does, or if that is not known.
+
+    Args:
+        class_name: The class of the pair of motors, such as `MoveSteering`.
+        first: The first number of the move.
+        second: The second number.
+    """
     if class_name == "MoveSteering" and first and second:
         return "a MoveSteering takes the steering first, and 0 drives straight on"
     if class_name == "MoveTank" and first != second and 0 in (first, second):

@@ -30,8 +30,8 @@ _SPEEDS = "Speed"
 def list_stale_reads(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[LoopEnd]:
     """Yield each use of an old reading in a loop: the program took the reading before the loop, and never again in it.
 
-    A use is a test in the loop, or a move. Only for a comparison with a constant, the result has an operator; otherwise
-    the operator is empty. The lines in the result are those of the loop.
+    A use is a comparison with a constant, another test, or a move. The result has the lines of the loop. Its operator
+    is empty if the use is not a comparison with a constant.
 
     Args:
         tree: The program.
@@ -256,7 +256,10 @@ def list_lone_stops(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator
 
 
 def _find_read_line(test: ast.expr, read: ast.Assign | None) -> int:
-    """Return the line with the reading of a test: the line of `read` if the test uses its name, else its own line."""
+    """Return the line on which a test gets its reading.
+
+    This is the line of `read` if the test uses the variable that `read` assigns. Otherwise it is the line of the test.
+    """
     names = {part.id for part in ast.walk(test) if isinstance(part, ast.Name)}
     is_named = read is not None and names & _list_stored(read)
     return read.lineno if is_named and read else test.lineno

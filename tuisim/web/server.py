@@ -443,9 +443,9 @@ async def run_server(server: Server, host: str, port: int) -> AsyncIterator[int]
 
 
 def _is_no_wrong_request(record: logging.LogRecord) -> bool:
-    """Return whether to log a record.
+    """Return False for a log record that only says that a request is not HTTP: anybody can send such a request.
 
-    The result is False if the record only says that a request is not HTTP, as anybody can send such a request.
+    The result is True for all other records, which are then logged.
     """
     return not (record.exc_info and isinstance(record.exc_info[1], HttpProcessingError))
 

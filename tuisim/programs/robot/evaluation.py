@@ -356,7 +356,8 @@ class Evaluation:
     def find_argument(self, call: Call, name: str, position: int | None) -> Sequence[Value] | None:
         """Return the values that a call gives for a parameter.
 
-        The result is None if the call gives none, and empty if it is unknown because of `*` or `**`.
+        The result is None if the call gives no value. It is empty if the value is unknown because of `*` or `**` in the
+        call.
 
         Args:
             call: The call.

@@ -361,7 +361,7 @@ class _MechanicsReader:
         return self._find_ports(node, scope, DeviceKind.LARGE, DeviceKind.MEDIUM, DeviceKind.MOTOR)
 
     def _find_ports(self, node: ast.expr, scope: Scope, *kinds: DeviceKind) -> list[str]:
-        """Return the ports of the devices of given kinds that an expression can be."""
+        """Return the ports of the devices of given kinds that an expression may stand for."""
         match node:
             case ast.Attribute(value=base, attr="left_motor" | "right_motor" as side):
                 if pairs := self._find_pairs(base, scope):

@@ -570,7 +570,7 @@ class _Reader:
         return dict.fromkeys(zip(left, right, strict=False))
 
     def _find_driven(self, call: Call, name: str, at: int, devices: Sequence[Mention]) -> list[str]:
-        """Return the ports of the motors that an argument of a call can be.
+        """Return the ports of the motors that may be the value of an argument of a call.
 
         Args:
             call: The call.

@@ -212,7 +212,7 @@ def _build_pair(
 
 
 def _find_numbers(mentions: Mentions, scope: Scope, node: ast.expr, read: LightRead) -> list[float]:
-    """Return the numbers that an expression can be, the likeliest first; for a colour its code."""
+    """Return the numbers that an expression can have as value, the likeliest first; for a colour, this is its code."""
     assert mentions.evaluation is not None
     values = mentions.evaluation.values(node, scope)
     if not read.is_color:
@@ -234,7 +234,9 @@ def _parse_color(node: ast.expr) -> str | None:
 def _find_reads(
     mentions: Mentions, scope: Scope, node: ast.expr, steps: int
 ) -> Iterator[tuple[str, LightRead]]:
-    """Yield port and kind of each reading of a colour sensor that an expression can be, directly or through variables.
+    """Yield port and kind of each reading of a colour sensor that may be the value of an expression.
+
+    The expression may also contain the reading through variables.
 
     Args:
         mentions: The devices of the program.

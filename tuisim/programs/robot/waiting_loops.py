@@ -92,7 +92,10 @@ def _find_ends(loop: ast.While) -> Iterator[ast.expr]:
 
 
 def _find_released(test: ast.expr) -> ast.expr | None:
-    """Return the touch sensor for which a condition is true while it is not pressed; None for other conditions."""
+    """Return the touch sensor in a condition that is true while the sensor is not pressed, such as `not ts.is_pressed`.
+
+    The result is None for other conditions.
+    """
     match test:
         case ast.UnaryOp(op=ast.Not(), operand=value):
             return _find_pressed(value)
@@ -110,7 +113,10 @@ def _find_released(test: ast.expr) -> ast.expr | None:
 
 
 def _find_pressed(test: ast.expr) -> ast.expr | None:
-    """Return the touch sensor for which a condition is true while it is pressed; None for other conditions."""
+    """Return the touch sensor in a condition that is true while the sensor is pressed, such as `ts.is_pressed`.
+
+    The result is None for other conditions.
+    """
     match test:
         case (
             ast.Attribute(value=base, attr="is_pressed")

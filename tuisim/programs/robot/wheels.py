@@ -131,9 +131,10 @@ def _choose_pair(pairs: Sequence[Pair]) -> WheelMotors | None:
 def _choose_single(
     devices: Sequence[Mention], kinds: Mapping[str, DeviceKind], tools: Collection[str]
 ) -> WheelMotors | None:
-    """Return the two motors of the wheels if the program creates them one by one; None if it is unclear which.
+    """Return the two motors of the wheels in a program that creates its motors one by one.
 
-    Their names or their class decide or, if only two motors are possible, their number.
+    Their names or their class show them. They are also clear if only two motors are possible. The result is None if it
+    is unclear which motors drive the wheels.
     """
     by_port: dict[str, Mention] = {}
     for device in devices:
@@ -167,7 +168,7 @@ def _sort_sides(motors: Sequence[Mention], *, of_class: bool) -> WheelMotors | N
 
 
 def _order_motors(motors: Sequence[Mention]) -> WheelMotors:
-    """Return those two of the motors that are on the usual ports of wheels, as the left and the right one.
+    """Return as the left and right wheel the two motors, of several, that are on the usual ports of wheels.
 
     The motor on the lower port is the left one unless the program's names for the motors say otherwise.
     """

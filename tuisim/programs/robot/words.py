@@ -147,7 +147,7 @@ def find_girth(name: str, number: float) -> float:
 def _is_alone(name: str, measure: frozenset[str]) -> bool:
     """Return whether a name is only one long word for a measure, perhaps with a unit, as `diameter_mm`.
 
-    Such a name does not say what is measured, so it is taken for a wheel's.
+    Such a name does not say what is measured. It is taken for a size of a wheel.
 
     Args:
         name: The name.

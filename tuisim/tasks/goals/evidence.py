@@ -285,9 +285,9 @@ class Evidence:
         return EvidencePoint(len(self.records) - 1, len(self.rows), self.end_s)
 
     def find_moment(self, time_s: float) -> EvidencePoint | None:
-        """Return the moment after all ticks and rows up to a time in simulated seconds, those at the time included.
+        """Return the moment after all ticks and rows up to a time, including those at exactly this time.
 
-        The result is None if the recording does not go beyond that time.
+        The time is in simulated seconds. The result is None if the recording does not go beyond that time.
         """
         if time_s >= self.end_s:
             return None

@@ -336,7 +336,7 @@ def _parse_condition(
 
 
 def _check_lists(kind: type[Condition], data: object, location: Location) -> None:
-    """Check that those keys of a condition have lists as values that need lists of texts or of ranges.
+    """Check that a condition has lists as values of the keys that need a list, of texts or of ranges.
 
     Args:
         kind: The class of the condition.

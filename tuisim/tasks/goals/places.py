@@ -316,7 +316,7 @@ def find_touch(condition: TouchNothingCondition, evidence: Evidence, span: Evide
 def _find_first_contact(
     records: Array, solids: Solids, gap_mm: float, *, forgiven: bool
 ) -> tuple[int, int] | None:
-    """Return the first index at which the robot is too near to a solid object, and the index of the object.
+    """Return the first tick at which the robot is too near to a solid object, and the index of the object.
 
     The result is None if the robot is never too near. Ticks are skipped if the robot cannot have come so near in them.
 

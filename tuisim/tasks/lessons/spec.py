@@ -373,5 +373,8 @@ class Lesson:
 
     @property
     def model_answer(self) -> str:
-        """The model answer of the last step with one, shown when every step is done; empty if there is none."""
+        """The model answer of the last step that has one; empty if no step has one.
+
+        It is shown when every step is done.
+        """
         return next((step.answer for step in reversed(self.steps) if step.answer), "")

@@ -60,8 +60,8 @@ def write_reports(
     """Write the reports of kept runs; yield each once it is written.
 
     Runs of a student with equal recordings share one report. Runs that were removed from the store, or whose recording
-    is damaged, are left out.
-    Reports of an earlier page of this name are replaced. If a report cannot be made, its `fault` says why.
+    is damaged, are left out. Reports of an earlier page of this name are replaced. If a report cannot be made, its
+    `fault` says why.
 
     Args:
         sheet: The marks of the class.

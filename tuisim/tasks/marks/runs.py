@@ -78,9 +78,10 @@ def run_entries(
 ) -> Generator[tuple[str, Outcome]]:
     """Run every student's program with every seed; yield names of students and outcomes as they become known.
 
-    A program that hangs, floods or dies with the first seed is not run with the other seeds in that world; in the first
-    world, it is then not run in the other worlds either. Outcomes in the journal are not computed again. Closing the
-    iterator stops the running programs. An unexpected error with one student gives an outcome that does not count.
+    A program that hangs, prints without end or dies with the first seed is not run with the other seeds in that world.
+    If this happens in the first world, it is not run in the other worlds either. Outcomes in the journal are not
+    computed again. Closing the iterator stops the running programs. An unexpected error with one student gives an
+    outcome that does not count.
 
     Args:
         entries: The students.

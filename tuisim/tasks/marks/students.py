@@ -131,7 +131,7 @@ def find_students(
         words: Paths of folders and files.
         program: Name of the main program in a student's folder; if it is "" or a folder has no file of that name, the
             main program is `MAIN` or the only program.
-        excluded: Files and folders that belong to no student, such as the goals file; resolved.
+        excluded: The resolved paths of files and folders that belong to no student, such as the goals file.
         unpacked: A folder for the contents of zips, and for files that gradebooks deliver one by one; None to leave
             them as they are.
         max_bytes: A larger folder is not read.
@@ -204,9 +204,9 @@ def _list_entries(folder: Path, excluded: Collection[Path], search: _Search) -> 
 def _make_names_unique(students: Iterable[_Submission]) -> Iterator[Student]:
     """Yield the students with unique names.
 
-    A file's name loses its suffix `.py`, unless another student in the folder has the same name then. Equal names from
-    several folders get the folder's name in front; equal names from a gradebook get the gradebook's numbers at the end.
-    Names that are still equal are numbered.
+    A file's name loses its suffix `.py`, unless another student in the folder would then have the same name. Equal
+    names from several folders get the folder's name in front; equal names from a gradebook get the gradebook's numbers
+    at the end. Names that are still equal are numbered.
     """
     every = [(_resolve_links(folder), student, own) for folder, own, student in students]
     beside = Counter((folder, student.name) for folder, student, _ in every)

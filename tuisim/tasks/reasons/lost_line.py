@@ -167,8 +167,8 @@ def _find_wrong_side(
 ) -> str:
     """Return the side to which a robot turned when a sensor got brighter, if this was away from the line; else empty.
 
-    Only the time before the line was lost counts: after that, the robot may reach the other edge of the line, where the
-    right side to turn to is the other one.
+    Only the time before the line was lost counts: after that, the robot may reach the other edge of the line, at which
+    it must turn to the other side.
 
     Args:
         records: Telemetry up to the loss of the line.
