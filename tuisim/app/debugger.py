@@ -365,7 +365,8 @@ class DebugController:
             self._follow(Position(timeline.at))
 
     def _has_past_variables(self) -> bool:
-        """Return whether to run the program again up to the past instant in view, for its variables there.
+        """Return whether to run the program again up to the past instant in view, to find the variables at that
+        instant.
 
         The debug panel needs these values. If only the code panel is shown, the program runs again only for a run of
         this session: the program of a stored run may be somebody else's.

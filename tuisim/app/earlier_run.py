@@ -32,7 +32,7 @@ def find_pose(run: Recording, time_s: float) -> Pose:
 def find_run_before(later: Recording) -> Recording | None:
     """Return the newest stored run that is older than `later` and had the same program text, arguments and settings.
 
-    The result is None if there is none. Only runs of the same program file are compared.
+    The result is None if there is no such run. Only runs of the same program file are compared.
 
     Raises:
         LogError: the store cannot be read.

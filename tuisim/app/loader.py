@@ -567,9 +567,10 @@ def _plan_in_world(
 
 
 def _find_program_path(word: str) -> str:
-    """Return the path of the program that a world file names by its path, or by the name of an example.
+    """Return the path of the program that a world file names.
 
-    A name that is neither is returned unchanged.
+    Args:
+        word: A path, or the name of an example; any other word is returned unchanged.
     """
     from tuisim.programs.program_file import list_programs
 

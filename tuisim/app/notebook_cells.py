@@ -27,7 +27,7 @@ def do_asked(context: ActionContext, asked: Mapping[str, Any]) -> None:
         asked: The request. Its entry `what` says what to do: `open` opens the file with the path `path`; `stop` stops
             the program; `run` shows the stored run with the id `id`; `cell` applies the `settings` and the `program` of
             a notebook's cell. The request for a cell also says whether the robot goes back to its start pose (`home`),
-            whether the program is started (`runs`), and at which `speed`, where None stands for the app's own speed.
+            whether the program is started (`runs`), and at which `speed`, where None leaves the choice to the app.
     """
     match asked:
         case {"what": "open", "path": str(path)}:
@@ -81,7 +81,8 @@ def _take_cell(
 def _choose_run_options(context: ActionContext, speed: float | None) -> RunOptions:
     """Return the options of a cell's run: its speed, and the same limits as for a cell without the app.
 
-    The speed is that of the cell; without one, that of the app's user; without both, it is as fast as possible.
+    The speed is that of the cell or, if the cell has none, that which the user has chosen in the app. If there is no
+    such choice either, the run is as fast as possible.
     """
     runs = context.runs
     if speed:

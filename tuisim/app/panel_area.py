@@ -179,8 +179,7 @@ class PanelArea(Container):
     def can_take_focus(self, panel: str) -> bool:
         """Return whether the key of a panel should move the focus to it.
 
-        The panel must be able to have the focus and be beside other panels. Its key must not have opened it just
-        before.
+        This is so if the panel can have the focus, is beside other panels, and was not opened by its key just before.
         """
         beside = self.is_shown(panel) and not self.alone and not self.is_single
         return beside and panel != self.front and self._can_focus(panel)
@@ -231,7 +230,7 @@ class PanelArea(Container):
         """Return the id of the panel that the user works with.
 
         This is the panel that was clicked last, if it cannot have the focus; else it is the panel with the focus. The
-        result is empty if there is neither.
+        result is empty if no such panel was clicked, and none has the focus.
         """
         if self.clicked and self.is_shown(self.clicked):
             return self.clicked

@@ -275,9 +275,9 @@ class RunController:
         )
 
     def find_mat(self, spec: RunSpec) -> Field | None:
-        """Return the prepared mat that a specification names, if it is the mat of the next run or of the run in view.
+        """Return the prepared mat that a specification names.
 
-        The result is None if it is neither, or is not prepared yet.
+        The result is None if this is not the mat of the next run or of the run in view, or if it is not prepared yet.
         """
         recording = self.timeline.recording
         mats = (self.mat, self._mat_of_run)

@@ -208,7 +208,7 @@ class Snapshot:
 
 @dataclass(frozen=True, slots=True)
 class PauseView:
-    """A pause of a program: where it is, and the frames and variables there."""
+    """A pause of a program: the line at which it is paused, and the frames and variables at that line."""
 
     paused: Paused
     inspected: Inspected

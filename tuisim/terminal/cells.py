@@ -204,7 +204,8 @@ def build_color_codes(rgb: int, depth: int) -> tuple[str, str]:
 
     Args:
         rgb: The colour.
-        depth: Number of colours of the terminal; if it lacks this one, the codes are those of the nearest one.
+        depth: Number of colours of the terminal; if the terminal lacks the colour, the codes are those of the
+            nearest colour that it has.
     """
     if depth >= TRUECOLOR:
         channels = "{};{};{}".format(*unpack_rgb(rgb))

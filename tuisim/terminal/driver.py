@@ -35,8 +35,8 @@ _LOST = SIGNALLED + signal.SIGHUP
 class ResilientOutput:
     """The output to a terminal; once the terminal is lost, for example with its connection, all output is dropped.
 
-    Textual writes from a thread of its own. That thread would end at the first failed write, and the app, which has to
-    write a little more before it can shut down, would wait for it for ever.
+    Textual writes from a thread of its own. Without this class, that thread would end at the first failed write. The
+    app has to write a little more before it can shut down, and would wait for the ended thread for ever.
 
     Args:
         file: The output.

@@ -329,9 +329,9 @@ class ThoroughCompositor(Compositor):
     """Textual's compositor, changed to compare each layout with the last one for which the widgets were sent messages.
 
     Textual compares a layout with its newest map of all widgets. It makes a new map whenever code asks for the size of
-    a widget between two layouts. A widget that was mounted before that is then in both, and is never sent `Resize` or
-    `Show`; a widget that was removed stays on the screen. Whether code asks in between depends on how busy the machine
-    is.
+    a widget between two layouts. A widget that was mounted before this request is then in both maps, and is never sent
+    `Resize` or `Show`; a widget that was removed stays on the screen. Whether code asks between two layouts depends on
+    how busy the machine is.
     """
 
     def __init__(self) -> None:

@@ -249,8 +249,8 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
 
     Args:
         context: The parts of the app.
-        earlier: The earlier run that was compared with this one. It is drawn if the reason is a difference from it.
-            None if no run was compared.
+        earlier: The earlier run that was compared with this one. It is drawn if the reason is that the two
+            runs differ. None if no run was compared.
     """
     tour = context.reasons
     if (reason := tour.advance()) is None:

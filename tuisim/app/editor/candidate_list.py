@@ -73,7 +73,7 @@ def measure_width(candidates: Sequence[Candidate], room: int) -> int:
 
 
 def list_place(word: Offset, size: Size, screen: Size) -> Offset:
-    """Return the position of a list of names on the screen, all of it visible.
+    """Return the position on the screen at which the whole list of names is visible.
 
     The list is below the word that is being typed or, if there is no room, above the word.
 

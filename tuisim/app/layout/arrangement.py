@@ -301,7 +301,7 @@ _STEPPED = ("world", "instrumentation", "debug", "output", "code")
 
 
 def _is_cramped(width: int, height: int) -> bool:
-    """Return whether an area has too little room for code and variables, both beside the world and below it."""
+    """Return whether an area has too little room for code and variables beside the world, and also below the world."""
     fits_below = is_tall(width, height) and sum(count_tight_rows(_STEPPED, width)) <= height
     return width < _MIN_CODE_COLS and not fits_below
 

@@ -351,7 +351,7 @@ class Code(Vertical):
             self._area.move_to_code(self.error_line)
 
     def name_line(self, tick: int, line: int) -> None:
-        """Put the cursor on a line, and scroll to it, each time that a tick comes into view.
+        """Whenever a tick comes into view, put the cursor on a line, and scroll to this line.
 
         Args:
             tick: The tick, such as that of a printed sample.

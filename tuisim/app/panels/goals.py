@@ -80,7 +80,7 @@ class Goals(LinesPanel, can_focus=True):
 
     @property
     def _index(self) -> int:
-        """Index of the goal of which the panel shows the details."""
+        """Index of the goal whose details the panel shows."""
         return (
             find_current_goal(self._content.states(self._tick))
             if self._chosen is None

@@ -46,7 +46,7 @@ def count_columns(panel: str, width: int) -> int:
 def name_mat(mat: str, layout: str, width: int) -> str:
     """Return the words in the title of the world: the names of the mat and of the panels' preset.
 
-    If there is no room for both, only the preset is named; if there is none for the preset either, only the mat.
+    If there is no room for both, only the preset is named; if the preset has no room either, only the mat is.
 
     Args:
         mat: The title of the mat.

@@ -48,8 +48,8 @@ def draw_hub(
     Args:
         face: What the hub shows.
         pressed: Buttons that are held down.
-        width, height: Columns and rows inside the border, at least 1; the buttons come first, then those of a connected
-            remote control or game controller, the matrix, bumpers and sound.
+        width, height: Columns and rows inside the border, at least 1. With few rows, the buttons are drawn first, then
+            those of a connected remote control or game controller, the matrix, bumpers and sound as far as they fit.
         bumpers: Ports of the force sensors.
         has_matrix: Whether the hub has a matrix, and more than one button.
     """

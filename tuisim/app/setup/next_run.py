@@ -197,7 +197,7 @@ def apply_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
         choices: Settings by path; those that do not concern the world are ignored.
 
     Raises:
-        ConfigError: they name something that does not exist, or an invalid file.
+        ConfigError: a setting names something that does not exist, or an invalid file.
     """
     world_choices, words = _resolve_choices(
         {path: value for path, value in choices.items() if path in WORLD_PATHS}

@@ -81,7 +81,7 @@ class Trace:
         return limit_drawn(self._values[: self._count])
 
     def add(self, times_s: Sequence[float], values: Sequence[float]) -> None:
-        """Append points to the trace, without those that are not finite or have times beyond `MAX_DRAWN`."""
+        """Append points to the trace, except those that are not finite, or whose times are beyond `MAX_DRAWN`."""
         new_times, new_values = np.array(times_s, float), np.array(values, float)
         good = (np.abs(new_times) < MAX_DRAWN) & np.isfinite(new_values)
         new_times, new_values = new_times[good], new_values[good]

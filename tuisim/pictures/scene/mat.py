@@ -222,7 +222,7 @@ def _find_lines(mean: _Numbers, ground: _Numbers, way: _Numbers) -> _Flags:
 def _is_tip(measure: Callable[[int, int], _Numbers], down: int, right: int) -> _Flags:
     """Return which pixels are only the tip of an area, such as of a disc, and not a part of a line.
 
-    On one side of a tip along the line, the area is wider; on the other side, there is hardly anything of it.
+    Along the line, the area is wider on one side of its tip, and has almost ended on the other side.
 
     Args:
         measure: Returns how much of each pixel's neighbour has the colour of the line; the neighbour is given by how

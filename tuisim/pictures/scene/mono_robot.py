@@ -18,8 +18,8 @@ _BODY = "&"
 def draw_body(view: Viewport, pose: Pose, outline: RobotOutline) -> dict[tuple[int, int], int]:
     """Return the signs that show a robot, by the row and column of their cells.
 
-    These are the cells of which the robot covers at least half. Each sign is the number that `sign_cell` returns for
-    it.
+    Each cell of which the robot covers at least half has a sign. A sign is the number that `sign_cell` returns for a
+    character.
     """
     empty = np.zeros((view.height_px, view.width_px, 3), np.uint8)
     draw_robot(empty, view, pose, outline, CLEARED)
