@@ -85,7 +85,8 @@ def write_report(
     Args:
         opened: The log.
         path: The file.
-        names: Variables of chart and bands, none for those that the analyser shows first.
+        names: The variables to show in the chart and the table of bands; if there are none, those that the analyser
+            shows first.
         search: Finds the bands, such as `find_plateaus`, or `find_plateaus_in_subprocess` for long logs.
         explain: Returns why a run went wrong, such as `describe_reasons`; None to leave this out.
 

@@ -42,7 +42,8 @@ def parse_precision(text: str, key: str, plan: Plan, columns: Iterable[str]) -> 
         text: The text; `+-` is the same as `±`.
         key: The argument, for errors.
         plan: The plan of the batch.
-        columns: Numeric columns of this batch's table besides time, pose, goals and points, such as metrics.
+        columns: The columns of this batch's table with other numbers than time, pose, goals and points, such as
+            metrics.
 
     Raises:
         ConfigError: the text cannot be parsed, there will be no such column of numbers, or there is only one seed.

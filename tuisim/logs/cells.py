@@ -261,7 +261,7 @@ class TypedColumns:
         )
 
     def _find_columns(self, texts: Mapping[str, pa.Array], separator: str) -> None:
-        """Set the types and number forms of new columns.
+        """Find out the types of new columns and the forms of their numbers, and store them in this object.
 
         Args:
             texts: The first cells of each of these columns, by name.

@@ -152,7 +152,7 @@ class DocumentReader:
         self._text = ""
 
     def read(self, block: Block) -> None:
-        """Add a block of the file.
+        """Add a block of the file to the text that `finish` parses.
 
         Raises:
             LogError: the file is too large.

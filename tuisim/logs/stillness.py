@@ -141,7 +141,10 @@ def go_one_way(part: FloatArray) -> BoolArray:
 
 
 def find_moving(signal: Signal, plateaus: PlateauArray) -> BoolArray:
-    """Return for each plateau whether it has no level: it rises, falls or bends, or is a few very different samples."""
+    """Return for each plateau whether it has no level.
+
+    It then rises, falls or bends, or consists of a few samples that are very different.
+    """
     lengths = count_samples(read_spans(plateaus))
     moving: BoolArray = plateaus["strays"] > _MAX_STRAYS * lengths
     spread = plateaus["spread"]

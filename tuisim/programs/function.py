@@ -114,7 +114,7 @@ class _Reader:
         """Constants of which another one has been computed outside the program, with the name of that one."""
 
     def write_arguments(self, values: Sequence[object], named: Mapping[str, object]) -> str:
-        """Return the text of a call's arguments, and add the definitions that they use.
+        """Return the text of a call's arguments, and add to the program the definitions that they use.
 
         Args:
             values: The positional arguments.
@@ -126,7 +126,10 @@ class _Reader:
         return ", ".join(texts)
 
     def write_called(self, function: FunctionType | MethodType) -> str:
-        """Return the expression for a function, or for the method of an object, and add the definitions it uses."""
+        """Return the expression for a function, or for the method of an object.
+
+        The definitions that the expression uses are added to the program.
+        """
         name = function.__name__
         if isinstance(function, FunctionType):
             self.add_function(name, function, "the script")
@@ -142,12 +145,12 @@ class _Reader:
             raise build_refusal(name, type(value).__name__, user) from None
 
     def add_function(self, name: str, function: FunctionType, user: str) -> None:
-        """Add a function and everything that it uses.
+        """Add to the program a function and everything that it uses.
 
         Args:
             name: The function's name in the program.
             function: The function.
-            user: The name of the function or class that uses it, for errors.
+            user: What uses it, such as the name of a function, for errors.
 
         Raises:
             ConfigError: the function has no source, or uses something that cannot be copied.
@@ -173,13 +176,13 @@ class _Reader:
             self._add_block(_Block(own, function.__code__.co_filename, first, lines), around, own)
 
     def _add_class(self, name: str, kind: type, around: Surroundings, user: str) -> None:
-        """Add a class and everything that it uses.
+        """Add to the program a class and everything that it uses.
 
         Args:
             name: The name of the class in the program.
             kind: The class.
             around: The names around the code that uses it.
-            user: The name of the function or class that uses it, for errors.
+            user: What uses it, such as the name of a function, for errors.
         """
         own = kind.__name__
         if kind.__module__ != around.values.get("__name__"):
@@ -208,15 +211,16 @@ class _Reader:
         self._blocks.append(block._replace(lines=text.split("\n")))
 
     def _add_module(self, name: str, module: ModuleType, names: set[str], user: str) -> None:
-        """Add the parts of a user's own module that the code uses, and a `SimpleNamespace` that contains them.
+        """Add to the program the parts of a user's own module that the code uses.
 
-        The namespace has the module's name, so that expressions such as `module.part` still work.
+        A `SimpleNamespace` in the program contains them. It has the module's name, so that expressions such as
+        `module.part` still work.
 
         Args:
             name: The name of the module in the program.
             module: The module.
             names: The names in the module that the code uses.
-            user: The name of the function or class that uses it, for errors.
+            user: What uses it, such as the name of a function, for errors.
         """
         self._claim(name, id(module), user)
         around = Surroundings.read_module(module)
@@ -233,7 +237,7 @@ class _Reader:
         Args:
             name: The name by which the code uses the function or class; if it differs from `own`, it becomes an alias.
             own: The name in the definition.
-            user: The name of the function or class that uses it, for errors.
+            user: What uses it, such as the name of a function, for errors.
         """
         if name == own:
             return True
@@ -246,7 +250,7 @@ class _Reader:
         Args:
             name: The name.
             owner: An id of the object.
-            user: The name of the function or class that uses it, for errors.
+            user: What uses it, such as the name of a function, for errors.
 
         Raises:
             ConfigError: the name stands for another object already.
@@ -257,12 +261,12 @@ class _Reader:
         return is_new
 
     def _add(self, name: str, around: Surroundings, user: str) -> None:
-        """Add the object to which a name refers, and everything that it uses.
+        """Add to the program the object to which a name refers, and everything that it uses.
 
         Args:
             name: The name.
             around: The names around the code that uses it.
-            user: The name of the function or class that uses it, for errors.
+            user: What uses it, such as the name of a function, for errors.
         """
         if statement := around.find_import(name):
             self._add_import(name, statement, user)
@@ -274,15 +278,15 @@ class _Reader:
             self._statements.append(statement)
 
     def _add_named(self, name: str, value: Any, around: Surroundings, user: str) -> bool:
-        """Add the object that a name stands for, if it is a module, a class or a function.
+        """Add to the program the object that a name stands for, if it is a module, a class or a function.
 
-        Return whether it is one of these.
+        Return whether it is a module, a class or a function.
 
         Args:
             name: The name.
             value: The object.
             around: The names around the code that uses it.
-            user: The name of the function or class that uses it, for errors.
+            user: What uses it, such as the name of a function, for errors.
         """
         function = inspect.unwrap(value)
         if statement := write_import(name, value):
@@ -298,7 +302,7 @@ class _Reader:
         return True
 
     def _add_value(self, name: str, around: Surroundings, user: str) -> None:
-        """Add the assignment of a value that the code uses.
+        """Add to the program the assignment of a value that the code uses.
 
         The value is assigned as in its file if that gives the same value, otherwise by an expression for the present
         value.
@@ -306,7 +310,7 @@ class _Reader:
         Args:
             name: The name of the value.
             around: The names around the code that uses it.
-            user: The name of the function or class that uses it, for errors.
+            user: What uses it, such as the name of a function, for errors.
         """
         origin, source = around.find_origin(name)
         if origin == name:
@@ -324,7 +328,10 @@ class _Reader:
             self._blocks.append(_Block(name, *place, [f"{name} = {text}"]))
 
     def _write_value(self, name: str, around: Surroundings, user: str) -> str:
-        """Return the expression for the value of a name, and add the definitions that it uses."""
+        """Return the expression for the value of a name.
+
+        The definitions that the expression uses are added to the program.
+        """
         value = around.values[name]
         expression = around.find_expression(name)
         kind = type(value)
@@ -344,11 +351,11 @@ class _Reader:
         return text
 
     def _add_names(self, around: Surroundings, user: str) -> None:
-        """Add the classes and functions that the expressions written so far use.
+        """Add to the program the classes and functions that the expressions written so far use.
 
         Args:
             around: The names around the code with these expressions.
-            user: The name of the function or class that uses them, for errors.
+            user: What uses them, such as the name of a function, for errors.
         """
         for name, value in [*self._writer.names.items()]:
             self._add_named(name, value, around, user)

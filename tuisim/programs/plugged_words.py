@@ -36,7 +36,8 @@ def _name_remedy(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
 def describe_newest(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
     """Return a sentence about the part that was plugged in last.
 
-    If that is the left wheel, the result is empty: the sentence about the right wheel names both wheels.
+    The two wheels are plugged in one after the other. For the left wheel, which is the first, the result is empty; the
+    sentence for the right wheel names both.
     """
     last = parts[-2:] if parts[-1].role == RIGHT else parts[-1:]
     words = f"{list_parts(last)}{_name_remedy(last, spec)}"

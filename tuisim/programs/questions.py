@@ -180,7 +180,10 @@ class QuestionReader:
             self._steps.setdefault(line, []).append(step)
 
     def find_question(self, line: int) -> Question:
-        """Return how the program uses the value that a line reads; `Question()` if the text does not show it."""
+        """Return how the program uses the value that it reads on a line, for example with which colours it compares it.
+
+        The result is `Question()` if the program's text does not show this.
+        """
         if line not in self._questions:
             self._questions[line] = self._read_question(self._steps.get(line, []))
         return self._questions[line]

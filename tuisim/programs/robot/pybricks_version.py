@@ -53,7 +53,7 @@ def find_version_4_name(modules: Iterable[Module]) -> str:
 
 
 def _list_names(node: ast.AST, own: set[str]) -> Iterator[str]:
-    """Yield the names that only version 4 of Pybricks has in one node of a syntax tree.
+    """Yield those names in one node of a syntax tree that only version 4 of Pybricks has.
 
     Args:
         node: The node.

@@ -300,7 +300,7 @@ def _report_printed(moment: EvidencePoint, line: int, once: bool, evidence: Evid
         moment: When the last of these lines was printed.
         line: The number of the program's line that printed the last one.
         once: Whether each line must be printed only once. The goal is then met only at the end of the recording, as the
-            program may print a line again before.
+            program may print a line again until then.
         evidence: The recording.
     """
     return (

@@ -53,7 +53,7 @@ class Roster:
     """By the name of the submission: the cells of the row by the column's name in lower case."""
 
     def missing(self, names: Sequence[str]) -> list[str]:
-        """Return those students' names in the submissions that have no row in the class list."""
+        """Return those names of students with a submission that have no row in the class list."""
         return [name for name in names if name not in self.people]
 
     def absent(self, names: Sequence[str]) -> list[str]:
