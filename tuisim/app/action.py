@@ -148,7 +148,7 @@ class ActionHost(DOMNode):
     """The actions by id."""
 
     def take_keys(self, actions: Mapping[str, Action[Any, Any]]) -> None:
-        """Replace the keys of the actions by the keys in `actions`.
+        """Replace the keys of the actions by other keys.
 
         Args:
             actions: The table of the same actions with their new keys; nothing else may differ.

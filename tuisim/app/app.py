@@ -231,8 +231,7 @@ class LabApp(PanelMessages):
         super().complain(error)
 
     def _tell_config(self) -> None:
-        """Show the errors in `config.toml`; say which settings come from this file, and which from the program's
-        text."""
+        """Show the errors in `config.toml`; say which settings come from this file or from the program's text."""
         for error in self._config_problems[:MAX_PROBLEMS]:
             self.complain(error)
         if self.settings.from_config:

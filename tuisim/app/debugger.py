@@ -228,7 +228,7 @@ class DebugController:
         self.show()
 
     def handle_end(self) -> None:
-        """Handle the end of the run: the debugger shows no pause any more, unless a past instant is in view."""
+        """Handle the end of the run: show no pause any more, unless a past instant is in view."""
         self._paused = None
         if not self.is_away:
             self._forget_steps()
@@ -365,8 +365,7 @@ class DebugController:
             self._follow(Position(timeline.at))
 
     def _has_past_variables(self) -> bool:
-        """Return whether to run the program again up to the past instant in view, to find the variables at that
-        instant.
+        """Return whether to run the program again, to find the variables at the past instant in view.
 
         The debug panel needs these values. If only the code panel is shown, the program runs again only for a run of
         this session: the program of a stored run may be somebody else's.

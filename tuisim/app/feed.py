@@ -182,8 +182,8 @@ def _count_jumps(
 
     Args:
         records: Consecutive records; each has the state of the robot at one tick.
-        before_mm: The position in the record before them. None if there is none: the first record then counts as a
-            move.
+        before_mm: The position in the record before the first of `records`. None if there is no such record: the first
+            one then counts as a move.
     """
     before_x, before_y = before_mm or (np.nan, np.nan)
     way = np.hypot(

@@ -617,9 +617,9 @@ def program_of(run: StoredRun) -> Program:
 
 
 def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | None]:
-    """Return a stored run, its mat, and the error if the mat is missing.
+    """Return a stored run, its mat, and None.
 
-    Without an error, the third value is None; with one, the mat is a blank one.
+    If the mat is missing, return a blank mat, and in place of None the error that says so.
 
     Args:
         word: The run, or its number or id.

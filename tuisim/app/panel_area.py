@@ -222,7 +222,7 @@ class PanelArea(Container):
         return self.find_owner(self.screen.focused)
 
     def find_owner(self, widget: Widget | None) -> str:
-        """Return the id of the panel around a widget; empty if there is none."""
+        """Return the id of the panel around a widget; empty if the widget is in no panel."""
         around = widget.ancestors_with_self if widget else []
         return next((name for name, panel in self.panels.items() if panel in around), "")
 

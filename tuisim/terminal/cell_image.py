@@ -139,7 +139,7 @@ def draw_cells(grid: CellGrid) -> Image:
 def _draw_mask(text: str, bold: bool, italic: bool, underline: bool, strike: bool) -> Mask:
     """Return how much of each pixel of a cell a character covers, 0 to 255, shape (height, width) of a cell.
 
-    If a NUL precedes the character in `text`, the result is for the right half of that wide character.
+    If `text` is a NUL and a wide character, the result is for the right half of this character.
     """
     width, height = CELL_PX
     right = text.startswith("\0")

@@ -217,8 +217,7 @@ class PixelView(RowsView):
         self._refresh_runs(runs)
 
     def _refine_cells(self) -> bool:
-        """Draw some of the half blocks in the picture with pixels or finer glyphs; return whether half blocks
-        remain."""
+        """Draw some of the half blocks with pixels or finer glyphs; return whether half blocks remain."""
         count = REFINED_CELLS if self.picture_mode.is_slow() else QUICKLY_REFINED_CELLS
         if self._tiles is not None:
             self._refresh_runs(self._tiles.refine(count))

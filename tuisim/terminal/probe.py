@@ -246,7 +246,7 @@ _ROUND_TRIPS = 3
 
 @dataclass(frozen=True, slots=True)
 class Answers:
-    """The answers of a terminal to all queries of the app, with the shortest time that one took."""
+    """The answers of a terminal to all queries of the app, and the shortest time that it took to answer one."""
 
     facts: TerminalFacts = field(default_factory=TerminalFacts)
     octant_cols: int | None = None

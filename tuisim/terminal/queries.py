@@ -202,8 +202,7 @@ class AnswerParser(XTermParser):
         return match[0] if match else ""
 
     def tick(self) -> Iterable[Message]:
-        """Yield messages for input that was held back as the possible beginning of an answer, if nothing has followed
-        it.
+        """Yield messages for input that was held back as the possible beginning of an answer, if nothing followed.
 
         If the input surely was the beginning of an answer, drop it.
         """

@@ -151,7 +151,10 @@ def read_textual_version() -> Version:
 
 
 def describe_textual() -> tuple[Version, tuple[Version, Version], list[str]]:
-    """Return the installed version of Textual, the first and last tested versions, and the names that it lacks."""
+    """Return the installed version of Textual, the first and last tested versions, and the names that are missing.
+
+    The missing names are those that this module uses and the installed version lacks.
+    """
     return read_textual_version(), TESTED, list_missing_names()
 
 

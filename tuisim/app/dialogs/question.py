@@ -136,7 +136,10 @@ class BranchQuestion(Dialog[str]):
         return tuple(word for word in super().keys if self._restart or word[0] != "r")
 
     def action_likely(self) -> None:
-        """Close the dialog with `BRANCH` or, if a restart is offered and the program was edited, `RESTART`."""
+        """Close the dialog with the answer that the user most likely wants.
+
+        This is `RESTART` if a restart is offered and the program was edited, else `BRANCH`.
+        """
         self.dismiss(RESTART if self._restart and self._is_edited else BRANCH)
 
     def action_branch(self) -> None:

@@ -309,7 +309,7 @@ def _load_runs() -> list[RunInfo]:
 
 
 class RunsChooser(RunChooser):
-    """The dialog that returns the ids of one or several runs, separated by blanks."""
+    """The dialog in which the user chooses one or several stored runs; it returns their ids, separated by blanks."""
 
     TITLE_TEXT: str = "Open runs"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("space", "mark", "Mark", show=False)]

@@ -139,7 +139,7 @@ def find_program_data(folder: str, path: str) -> Path:
 
 
 def write_json(file: Path, data: object) -> None:
-    """Write data to a file that only its owner may read, completely or not at all.
+    """Write data as JSON to a file, completely or not at all; only the owner of the file may read it.
 
     Raises:
         OSError: the file cannot be written.

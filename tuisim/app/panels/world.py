@@ -108,7 +108,7 @@ class World(Widget, can_focus=True):
         """Set whether the mouse draws and moves obstacles.
 
         Args:
-            on: Whether it does so; the mouse can move the robot in any case.
+            on: Whether the mouse edits obstacles; it can move the robot in any case.
             marked: The index of the selected obstacle; None for none.
         """
         self._edits_boxes = on
@@ -273,7 +273,7 @@ class WorldView(PixelView):
         """Set whether the mouse draws and moves obstacles, see `World.edit_boxes`.
 
         Args:
-            on: Whether it does so; the mouse can move the robot in any case.
+            on: Whether the mouse edits obstacles; it can move the robot in any case.
             marked: The index of the selected obstacle; None for none.
         """
         if (on, marked) != (self._edits_boxes, self._marked):

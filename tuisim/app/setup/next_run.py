@@ -267,7 +267,10 @@ def free_settings(plan: NextRun, keys: Iterable[str]) -> NextRun:
 
 
 def follow_program_robot(plan: NextRun) -> NextRun:
-    """Return a plan with the robot that the program needs, instead of a chosen one; later programs may change it."""
+    """Return a plan with the robot that the program needs, in place of the robot that the user has chosen.
+
+    The text of a later program may change the robot again.
+    """
     chosen = plan.program_robot or RobotChoice.load(DEFAULT_ROBOT)
     words = {key: word for key, word in plan.words.items() if key != "robot"}
     following = {**plan.from_program, "robot": chosen}

@@ -102,7 +102,7 @@ class Plot:
 
 @dataclass(frozen=True, slots=True)
 class PlotInks:
-    """The colours of a chart's image that are not those of its curves."""
+    """The colours in a chart's image besides those of its curves: of the background, axes, cursors and spans."""
 
     ground: Rgb
     axis: Rgb

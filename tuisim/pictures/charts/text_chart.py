@@ -337,7 +337,8 @@ def format_values(
         cursor_s: The time that the text shows, in `unit`.
         unit: The unit of the times, such as `s`.
         width: The largest length of the text.
-        end_s: The time whose values are shown, such as the end of the tick at `cursor_s`; None for `cursor_s` itself.
+        end_s: The time at which the values are read, such as the end of the tick at `cursor_s`; None for `cursor_s`
+            itself.
     """
     line = f"{cursor_s:.2f} {unit}"
     for number, trace in enumerate(drawn):
