@@ -432,7 +432,11 @@ class AnalysisModel:
         self._notes[run] = notes
 
     def drop_note(self, run: int, note: Note) -> None:
-        """Delete a note on a run, given by the run's index.
+        """Delete a note on a run.
+
+        Args:
+            run: Index of the run in the log, from 0.
+            note: The note.
 
         Raises:
             LogError: the file with the other notes cannot be written.

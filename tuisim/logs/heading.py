@@ -450,7 +450,7 @@ def _find_names(
 
 
 def _leave_out_settings(line: _Line, usual: str) -> _Line:
-    """Return a line above a table without the numbers that are settings, such as a sampling period, and not units.
+    """Take a line above a table; return it without the numbers that are settings, such as a sampling period.
 
     These are the numbers above columns that are empty in the table. Empty cells beyond the width of the table are left
     out, too.

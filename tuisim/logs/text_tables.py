@@ -102,7 +102,7 @@ class CsvReader:
         return None
 
     def finish(self) -> None:
-        """Check at the end of the file that it has had the table that the user has chosen, such as the second one.
+        """Check at the end of the file that it contains the table that the user has chosen, such as the second one.
 
         Raises:
             LogError: the file has fewer tables.

@@ -109,7 +109,7 @@ def _find_start(
 ) -> tuple[int, float] | None:
     """Return the line that took the reading in an expression such as `start + 5`, and the number added to it, here 5.
 
-    The result is None if the expression is not a reading, or a reading with a number added or subtracted.
+    Only a reading, or a reading plus or minus a number, counts; for other expressions, the result is None.
     """
     match node:
         case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):

@@ -227,7 +227,8 @@ def _collect_facts(program: Program, modules: dict[str, Module], facts: SourceFa
 def _find_library(program: Program, modules: dict[str, Module]) -> Library | None:
     """Return the library for a brick that a program uses; None if it uses none.
 
-    Its imports decide, else its first line, else the device files that it opens, which mean ev3dev2.
+    The program's imports decide. If they show no library, the program's first line decides. If this shows none either,
+    a program that opens the device files of a brick uses ev3dev2.
     """
     if library := find_library(modules):
         return library

@@ -92,7 +92,7 @@ class GroupedOption(click.Option):
 
     Args:
         sets: The path of the setting that the option changes; empty if it changes none.
-        adds: For an option without a value: the word that it adds to the list in that setting.
+        adds: The word that an option without a value adds to the list in that setting; empty for other options.
     """
 
     def __init__(

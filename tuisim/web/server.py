@@ -216,7 +216,7 @@ class Server:
     async def _protect(self, request: web.Request, response: web.StreamResponse) -> None:
         """Set the security headers of a response.
 
-        The page may load nothing from other sites, only the sites that the gate names may show it in a frame, and its
+        The page may load nothing from other sites. Only the sites that the gate names may show it in a frame. Its
         address, which contains the token, is not sent to other sites.
         """
         sockets = f"ws://{request.host} wss://{request.host}" if request.host else ""

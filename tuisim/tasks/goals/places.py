@@ -121,7 +121,7 @@ def _describe_miss(
 
 
 def _describe_side(condition: ReachCondition, record: Any) -> str:
-    """Return on which side of a condition's line the robot is in a record, such as `left of`.
+    """Return on which side of a condition's line the robot is in a record of telemetry, such as `left of`.
 
     The result is `from` if the condition has a point instead of a line.
     """

@@ -65,7 +65,9 @@ def copy_tree(folder: Path, place: Path) -> None:
 
 
 def copy_file(source: Path, target: Path) -> None:
-    """Copy a regular file without writing the zeros of its holes; a file that cannot be read is left out.
+    """Copy a regular file; a file that cannot be read is left out.
+
+    Holes in the file, which are zeros that take no space on the disk, stay holes in the copy.
 
     Raises:
         LogError: the copy cannot be written.
@@ -89,7 +91,9 @@ def copy_file(source: Path, target: Path) -> None:
 
 
 def _find_data(file: BinaryIO, place: int, size: int) -> tuple[int, int]:
-    """Return the start and the end of the next data in a file that may have holes; both are `size` if none follow.
+    """Return the start and the end of the next data in a file, in bytes; both are `size` if no data follow.
+
+    The file may have holes before and after the data: zeros that take no space on the disk.
 
     Args:
         file: The file.

@@ -54,11 +54,11 @@ def walk_processes(root: int, known: dict[int, tuple[int, str]]) -> Iterator[int
 
 
 def continue_stopped(root: int, before: set[int]) -> set[int]:
-    """Continue (SIGCONT) the processes that are stopped now and were stopped at the last call.
+    """Continue (SIGCONT) the processes that are stopped now and were stopped at the previous call of this function.
 
     Args:
         root: Only this process and its descendants are continued.
-        before: The result of the last call.
+        before: The result of the previous call.
 
     Returns:
         The ids of the processes that are stopped now.

@@ -433,12 +433,12 @@ class _Search:
         return None
 
     def _is_pressed(self, ticks: Array, names: Sequence[str], needs_all: bool) -> bool:
-        """Return whether one of the buttons, or all of them together, were pressed by hand in one of the ticks.
+        """Return whether buttons were pressed by hand in at least one of the ticks.
 
         Args:
             ticks: The ticks.
             names: The buttons.
-            needs_all: Whether all of them must have been pressed together.
+            needs_all: Whether all buttons must have been pressed together; otherwise any one of them suffices.
         """
         import numpy as np
 
