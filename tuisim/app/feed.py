@@ -298,7 +298,10 @@ class PanelFeed:
             self._append(feed.chart_series(mat), logged=False)
 
     def _name_output(self) -> None:
-        """Give the output panel the name of the program that has printed; before the first run, of the open program."""
+        """Give the output panel the name of the program that has printed.
+
+        Before the first run, this is the name of the open program.
+        """
         if output := self._panel_area.output:
             program = (self._runs.timeline.recording or self._runs).program
             output.set_program(program.name if program else "")

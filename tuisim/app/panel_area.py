@@ -179,7 +179,8 @@ class PanelArea(Container):
     def can_take_focus(self, panel: str) -> bool:
         """Return whether the key of a panel should move the focus to it.
 
-        This is so if the panel can have the focus, is beside other panels, and was not opened by its key just before.
+        This is so if the panel can have the focus, is beside other panels, and is not the panel that was opened or
+        focused last.
         """
         beside = self.is_shown(panel) and not self.alone and not self.is_single
         return beside and panel != self.front and self._can_focus(panel)

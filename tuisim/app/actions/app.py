@@ -19,7 +19,11 @@ if TYPE_CHECKING:
 
 
 def toggle(context: ActionContext, panel: str) -> None:
-    """Focus a shown panel, given by its id; hide it if it has the focus already; show and focus a hidden one."""
+    """Do what the key of a panel does; the panel is given by its id.
+
+    A hidden panel is shown, and gets the focus if it can have it. A shown panel gets the focus; if it was the last
+    panel to get it, or cannot have it, the panel is hidden.
+    """
     area = context.panels
     was_shown = area.is_shown(panel)
     if not area.can_take_focus(panel):

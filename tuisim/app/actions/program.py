@@ -33,7 +33,10 @@ def run(context: ActionContext) -> None:
 
 
 def pause(context: ActionContext) -> None:
-    """Pause the program if it runs, else continue it; while the past is in view, start or stop its playback instead."""
+    """Pause the program if it runs; else continue it.
+
+    While a past instant is in view, start or stop the playback of the past instead.
+    """
     timeline = context.runs.timeline
     if timeline.playing:
         timeline.stop_playback()

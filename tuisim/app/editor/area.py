@@ -406,7 +406,11 @@ class CodeArea(TextArea):
         return self.typing or self.awaits_letters
 
     def await_letters(self, on: bool) -> None:
-        """Set whether the next letter that the user presses starts typing; if `on` is False, it is a key of the app."""
+        """Set whether the next letter that the user presses starts typing.
+
+        Args:
+            on: False if the next letter is a key of the app.
+        """
         on = on and self.can_be_typed_in and not self.typing
         if on != self.awaits_letters:
             self.awaits_letters = on

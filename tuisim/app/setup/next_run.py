@@ -51,7 +51,7 @@ WORLD_PATHS = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class NextRun:
-    """The plan of the next run: its settings, the specification that is built from them, and where they come from."""
+    """The plan of the next run: its settings, where these come from, and the specification that is built from them."""
 
     settings: Settings
     """The choices. Robot, obstacles and profile are objects, so that no later change depends on a file."""

@@ -227,7 +227,10 @@ def _style_runs(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
 
 
 def _style_of_names(drawn: Sequence[Trace], spans: Sequence[Span]) -> Style:
-    """Return the style for the names of bands: the colour of the curve with the bands; with only one curve, `NAME`."""
+    """Return the style for the names of bands: the colour of the curve with the bands.
+
+    If only one curve is drawn, the style is `NAME`.
+    """
     names = {span.name for span in spans}
     of_bands = [trace for trace in drawn if {trace.name} == names]
     return build_style(of_bands[0].rgb) if of_bands and len(drawn) > 1 else NAME

@@ -172,7 +172,10 @@ class Traces:
         trace.add(times_s, values)
 
     def clear(self) -> None:
-        """Remove all traces; a trace that gets points later has the same colour, and is drawn or hidden, as before."""
+        """Remove all traces.
+
+        If points are added to a trace later, it has the same colour as before, and is drawn or hidden as before.
+        """
         for trace in self._by_name.values():
             trace.clear()
         self._cleared.update(self._by_name)

@@ -67,7 +67,7 @@ def _search(screen: LogScreen, text: str) -> None:
 
 
 def cycle_sizes(screen: LogScreen) -> None:
-    """Show the chart alone if chart and pane are shown; at the next call the pane alone, at the third both again."""
+    """Switch to the next arrangement of chart and pane: both, the chart alone, the pane alone, both again."""
     both = screen.chart.display and screen.pane.display
     screen.lay_out(chart=both or not screen.chart.display, pane=not both)
 
@@ -94,7 +94,10 @@ def choose(screen: LogScreen, step: int) -> None:
 
 
 def sort(screen: LogScreen) -> None:
-    """Sort the table by the selected column: first ascending, at the second call descending, at the third unsorted."""
+    """Sort the table by the selected column.
+
+    The first call sorts in ascending order, the second one in descending order; the third one ends the sorting.
+    """
     model = screen.model
     rows = screen.model.rows
     if rows.view.sorted_by != rows.chosen:
