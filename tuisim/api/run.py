@@ -147,7 +147,10 @@ class Run:
         )
 
     def picture(self) -> Image:
-        """Return the world at the end of the run, with the pen's trace, as a Pillow image, as `Lab.picture` does."""
+        """Return the world at the end of the run as a Pillow image, with the pen's trace.
+
+        `info["extent_mm"]` of the image has its left, right, lower and upper edge in mm.
+        """
         from tuisim.pictures.scene.pictures import draw_end
 
         return draw_end(self.stored)

@@ -210,7 +210,7 @@ class NotSimulated(ProgramError):
 
 
 class HostError(TuisimError):
-    """The child process died or violated the protocol."""
+    """Something other than the program and its settings failed: a child process, a cluster or this machine."""
 
 
 class LogError(TuisimError):

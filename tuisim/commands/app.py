@@ -48,7 +48,10 @@ OPENED: Sequence[click.Parameter] = (
 
 @dataclass(frozen=True, slots=True)
 class Opened:
-    """The content with which the app opens: a program in its world with goals, or a stored run; read and checked."""
+    """The content with which the app opens: a program in its world with goals, or a stored run.
+
+    It has been read and checked already.
+    """
 
     prepared: Prepared
     goals: GoalsFile | None

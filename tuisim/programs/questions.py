@@ -78,7 +78,7 @@ _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """How a program uses the value that a line reads."""
+    """How a program uses the value that it reads on a line, such as the colours with which it compares it."""
 
     decides: bool = True
     """Whether anything depends on it: it is not only shown or stored."""

@@ -78,7 +78,10 @@ class ValueWriter:
         return name
 
     def _write_object(self, value: Any) -> str:
-        """Return an expression that creates an object with its state, as `copy.copy` does."""
+        """Return an expression that creates a copy of an object.
+
+        Like `copy.copy`, it creates a new object of the same class, and gives it the same state.
+        """
         try:
             function, arguments, *states = value.__reduce_ex__(4)
         except Exception:  # Any error means that the object cannot be copied.

@@ -89,7 +89,7 @@ Resolver = Callable[[str], str]
 
 @dataclass(frozen=True, slots=True)
 class WorldFile:
-    """The contents of a world file: the settings of a run, and perhaps the program to run in the world."""
+    """The contents of a world file: the settings of a run and, if the file names one, the program to run."""
 
     path: Path
     settings: Mapping[str, Any]

@@ -39,7 +39,7 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """Whether a run has met a goal, with when, where and why."""
+    """The verdict on a goal for one run: whether the run has met it, and when, where and why."""
 
     goal: Goal
     changes: tuple[Change, ...]

@@ -86,7 +86,13 @@ def _find_readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
 
 
 def filter_ticks(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
-    """Return only those ticks at which the robot was in a place, as `select_place` describes it."""
+    """Return only those ticks at which the robot was in a place.
+
+    Args:
+        ticks: The ticks, shape (n,).
+        place: The ranges in mm of `x_mm` and `y_mm`, from `select_place`.
+        evidence: The recording.
+    """
     for key, (low, high) in place.items():
         values = evidence.records[key][ticks]
         ticks = ticks[(values >= low) & (values <= high)]

@@ -401,7 +401,7 @@ class DialogueCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class Combination(Condition):
-    """The base class of conditions that combine other goals, which they name."""
+    """The base class of conditions about other goals, such as that all of them are met."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.COMBINED
     SHORT: ClassVar[str] = "goals"

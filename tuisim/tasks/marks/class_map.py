@@ -19,7 +19,7 @@ _GRID_PX = 1.3
 
 @dataclass(frozen=True, slots=True)
 class Miss:
-    """A goal that a student's run missed, and where."""
+    """A goal that a student's run missed, with the place at which to mark it on the map of the class."""
 
     student: str
     goal: str
@@ -30,7 +30,7 @@ class Miss:
 
 @dataclass(frozen=True, slots=True)
 class MissesOfRun:
-    """A stored run with the goals that it missed."""
+    """A stored run, with the goals that it missed, for the map of the class."""
 
     run: StoredRun
     misses: tuple[Miss, ...]

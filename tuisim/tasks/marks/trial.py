@@ -190,7 +190,7 @@ STILL_S = 30.0
 
 
 class TrialRole(StrEnum):
-    """The kind of a program with which a task is tried."""
+    """The kind of a program with which a task is tried, such as an empty program or the author's model."""
 
     EMPTY = "empty program"
     STILL = "stands still"

@@ -294,7 +294,7 @@ def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
 def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
     """Return as text which key of the app gives a program what it waited for; the key's action id stands in braces.
 
-    If no key does, return the option of the command line, as `name_remedy` does.
+    If no key does this, return the option of the command line that does, from `name_remedy`.
     """
     names = awaited.sought if awaited.needs_all else awaited.sought[:1]
     brick = "hub" if awaited.port in (HUB_BUTTONS_PORT, *HUB_PORTS) else "brick"
