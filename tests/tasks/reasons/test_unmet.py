@@ -279,6 +279,11 @@ EARLY = {
         "the loop ended at once: colorLeft on in2 read 100 %, already 20 % or more; "
         "turn its sign round to wait for less than 20 %",
     ),
+    "a distance in mm": (
+        "# %%sim_magic_preloaded -b Empty_Map -o Wall\ntank_drive.on(30, 30)\n"
+        "while ultrasonic.distance_centimeters > 200:\n    pass\ntank_drive.off()\n",
+        "ultrasonic on in1 read 138 cm, already 200 cm or less; 200 mm are 20 cm",
+    ),
 }
 
 

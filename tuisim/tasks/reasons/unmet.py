@@ -25,6 +25,8 @@ _MIN_TURN_DEG = 5.0
 """A program that is over earlier, with its robot nearer to the start, gave its motors no time."""
 _MAX_ABOVE = 2
 """A remark that is so many lines above a loop is about it."""
+_FAR_CM = 100
+"""A limit of so many cm was probably meant in mm."""
 _NEAR = 1.0
 _AWAY = 5.0
 """Light that came so near to what was waited for, in percent, and went so far away again, was just missed."""
@@ -150,10 +152,12 @@ def _list_met(data: RunData) -> Iterator[Unmet]:
 
 
 def _name_turned(loop: LoopEnd, series: Series) -> str:
-    """Return what to change in a comparison that was met at once: its sign, if the opposite was probably meant.
+    """Return what to change in a comparison that was met at once: its unit, or its sign if the opposite was meant.
 
     The result is empty if the comparison is neither with `<` nor with `>`.
     """
+    if series.unit == " cm" and not isinstance(loop.limit, str) and loop.limit >= _FAR_CM:
+        return f"; {loop.limit:g} mm are {loop.limit / 10:g} cm"
     other = {">": "<", "<": ">"}.get(loop.operator[0], "")
     if not other or isinstance(loop.limit, str):
         return ""
