@@ -106,8 +106,8 @@ _VARIABLE = re.compile(rf"\.({'|'.join(STARTS)})\(.*\b[a-z]\w*\b(?!=)")
 def find_steering(tree: ast.Module, line: int) -> int:
     """Return the line around `line` that steers the robot again and again, as a line follower does; 0 if there is none.
 
-    This is `line` itself if it is a call such as `follow_line()`. Otherwise, it is the first move in the function
-    around `line` or, outside functions, in the loop around it, if the moves in this loop differ.
+    In a function, this is the function's first move. In a loop outside functions, it is the loop's first move, if the
+    moves in the loop differ. Elsewhere, it is `line` itself, if this is a call such as `follow_line()`.
 
     Args:
         tree: The program.

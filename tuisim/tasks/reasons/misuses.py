@@ -65,7 +65,8 @@ def _was_in_vain(data: RunData, use: LoopEnd) -> bool:
 def _compare_stale(data: RunData, use: LoopEnd, read_tick: int) -> Unmet | None:
     """Return a fault at the first use of an old reading that differs from what the sensor or motor would read by then.
 
-    The result is None if there is no such use.
+    The result is None if there is no such use. If it is not known what would be read, there is a fault only if the run
+    ended in the loop.
 
     Args:
         data: The run.
