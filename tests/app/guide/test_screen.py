@@ -280,6 +280,8 @@ async def test_page_keys_in_the_guides_search_field_go_to_further_answers() -> N
     async with open_guide() as (pilot, _):
         answers = await asked(pilot, "where is my data saved, and how do I read it in Python")
         listed = guide(pilot).query_one(AnswerList)
+        # A list that is not laid out has no pages.
+        await until(pilot, lambda: listed.size.height > 1)
         await pilot.press("pagedown")
         await until(pilot, lambda: listed.has_focus and (listed.highlighted or 0) > 1)
         await pilot.press("pageup", "pageup")
