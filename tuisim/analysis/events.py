@@ -167,7 +167,7 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class CommandChoice:
-    """A search for the commands that programs gave to motors and sensors."""
+    """A choice among the events: the commands that programs gave to motors and sensors."""
 
     words: str
     """Words in the names of part and call; empty for all commands."""

@@ -80,7 +80,7 @@ class Description:
 
     @property
     def settings(self) -> Mapping[str, Any]:
-        """The chosen values as settings of a run, by path."""
+        """The chosen values as settings of a run, by their keys, such as `world.start.x_mm`."""
         raise AssertionError
 
 
@@ -91,7 +91,10 @@ class WorldDescription(Description):
 
     @property
     def settings(self) -> Mapping[str, Any]:
-        """The chosen values as settings of a run, by path; paths in the file are relative to its folder."""
+        """The chosen values as settings of a run, by their keys, such as `world.start.x_mm`.
+
+        Names of files in the world file are relative to its folder.
+        """
         options = {**self._values}
         file = options.pop("file", None)
         chosen = read_options(options)
@@ -105,7 +108,7 @@ class RobotDescription(Description):
 
     @property
     def settings(self) -> Mapping[str, Any]:
-        """The robot as settings of a run, by path."""
+        """The robot as settings of a run, by their keys, such as `robot.wheel_diameter_mm`."""
         values = {**self._values}
         base = values.pop("base", DEFAULT_ROBOT)
         parts = values.pop("parts", {})

@@ -308,7 +308,7 @@ def prepare_runs(
 def _prepare_folder(
     word: str, world: WorldFile | None, arguments: Arguments, config: UserConfig
 ) -> list[Prepared | NotRun]:
-    # Errors of the command line are raised here once, instead of once for each cell.
+    # The options are checked here, so that an error in them is raised once, and not for each program.
     build_run_spec(Settings.merge(world.settings if world else {}, arguments.settings))
     prepared: list[Prepared | NotRun] = []
     for path in check_folder(word, run_all=arguments.all):

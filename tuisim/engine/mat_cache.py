@@ -344,7 +344,7 @@ def _open_data(path: Path, size: int, is_copied: bool) -> memoryview:
                 what = f"has {status.st_size} bytes, not {size}"
                 raise BackgroundError(what, "remove it to recreate it", file=str(path))
             noted = _noted(path)
-            # If another process has just made the file again, the note is about the new file.
+            # If another process has just made the file again, the identity differs, but not the checksum.
             if noted is None or (
                 noted[1] != _identity(status) and noted[0] != _checksum(stream.fileno())
             ):

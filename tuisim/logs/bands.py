@@ -299,13 +299,13 @@ def measure_widths(values: FloatArray, driven_mm: FloatArray, levels: Levels) ->
 def _find_edges(
     values: FloatArray, driven_mm: FloatArray, levels: Levels, level: IntArray, row: IntArray
 ) -> FloatArray:
-    """Return the position in mm at which samples pass the middle between each level and the next, shape (n - 1,).
+    """Return the position in mm at which samples pass the value midway between each level and the next, shape (n - 1,).
 
     With noise, samples may pass the middle several times: the edge is then midway between the first and the last time.
     The position is NaN if samples of a third level lie between two levels.
 
-    The edges are searched in pairs of neighbouring samples, from the last sample of a level to the first of the next
-    one.
+    Each edge is searched in all pairs of neighbouring samples from the last sample of a level to the first of the next
+    one; the k pairs are those of all edges.
 
     Args:
         values: Samples, shape (m,).

@@ -243,7 +243,10 @@ class Log:
         return self._cache.specs[run]
 
     def replace_layout(self, layout: Layout) -> Log:
-        """Return the same log with another layout, without the rows that then have no time."""
+        """Return the same log with another layout: which columns are time, run, variable and values.
+
+        Rows without a value in the new column of time are left out.
+        """
         log = self.drop_all_derived()
         notes = Notes()
         table, layout, _ = keep_timed_rows(log.table, layout, notes)

@@ -98,11 +98,10 @@ Search = Callable[[FloatArray], PlateauArray]
 
 
 def _find_steps(differences: FloatArray) -> BoolArray:
-    """Return for each difference between neighbours whether it is a step, for a log whose levels are mostly short.
+    """Return for each difference between neighbours whether it is a step; all False unless most levels are short.
 
-    Such a log has two or three samples for most levels, without edges or strays between them: more than a fifth of the
-    differences are far larger than the differences before and after them. In noise, large differences follow each
-    other. For a log with longer levels, all values are False.
+    A log with two or three samples for most levels is known by its differences: more than a fifth of them are far
+    larger than those before and after. In noise, large differences follow each other.
     """
     calm = np.minimum(differences[1:], differences[:-1]).max(initial=0.0)
     steps = differences > FAR * calm

@@ -230,7 +230,7 @@ class Code(Vertical):
 
     @property
     def awaits_letters(self) -> bool:
-        """Whether the next letter starts typing, because the text was clicked."""
+        """Whether the next letter is typed into the text, because that was clicked, and is no key of the app."""
         return self._area.awaits_letters
 
     def set_program(self, name: str, text: str, key: str = "") -> None:

@@ -260,7 +260,7 @@ class Simulation(Motion):
 
     @property
     def has_driven(self) -> bool:
-        """Whether a wheel has turned, or is about to."""
+        """Whether a wheel has turned since the start of the run, or its motor has been started."""
         is_moving = self.left.mode or self.right.mode
         return bool(is_moving) or any(record[7] or record[8] for record in self.read_records(0))
 

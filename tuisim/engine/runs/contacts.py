@@ -63,7 +63,7 @@ class Standstill:
 
     @property
     def words(self) -> str:
-        """A sentence for users without its subject, the robot, such as `stood at the wall from 1.50 s to 2.30 s, …`."""
+        """A sentence for users, whose subject is the robot, such as `stood at the wall from 1.50 s to 2.30 s, …`."""
         if self.on_floor and WALL in self.at:
             return f"stood at {self.at} for {self.pushed_s:.1f} s; --walls off takes the walls away"
         pushed = f"its wheels pushed for {self.pushed_s:.1f} s"
@@ -222,7 +222,7 @@ class Push:
 
     @property
     def words(self) -> str:
-        """A sentence for users without its subject, the robot, such as `was pushed 12 mm aside by the wall …`."""
+        """A sentence for users, whose subject is the robot, such as `was pushed 12 mm aside by the wall …`."""
         aside = f"was pushed {self.aside_mm:.0f} mm aside by {self.at} while it turned"
         if self.times > 1:
             return f"{aside}, {counted(self.times, 'time')}, first at {self.since_s:.2f} s"

@@ -283,7 +283,7 @@ class ReplayDebugger:
             self._failed("This is the first line of the run")
             return
         self._back = 0
-        # If lines are traced from the same tick on as before, each has the same ordinal again.
+        # Lines are counted from the tick at which tracing begins: from the same tick on, the line has the same number.
         self._go(self._of, position, position.tick)
 
     def close(self) -> None:

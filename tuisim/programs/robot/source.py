@@ -347,7 +347,7 @@ class _Folders:
         return ""
 
     def result(self, call: ast.Call) -> str:
-        """Return the path that a call returns; empty if it is not known."""
+        """Return the path of a file or folder that a call such as `os.path.join` returns; empty if not known."""
         match call:
             case ast.Call(func=ast.Attribute(attr="getcwd" | "cwd")):
                 return os.path.dirname(self.file) or os.curdir

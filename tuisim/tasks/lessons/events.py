@@ -48,8 +48,8 @@ class TriedElsewhere:
 class Typed:
     """Event: a student has typed an answer.
 
-    The attributes besides the text say what the question may require, such as where the robot stood. If an attribute
-    has its default value, the requirement counts as met.
+    The attributes besides the text are facts of that moment, such as where the robot stood, which a question may
+    require. An attribute with its default value meets every requirement.
     """
 
     text: str

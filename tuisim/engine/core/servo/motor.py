@@ -415,7 +415,7 @@ class ServoMotor:
         return EvenGlide(0.0, repeat(self.position_deg, ticks))
 
     def glide(self, ticks: int) -> Glide:
-        """Advance the motor by several ticks of one segment of its trajectory; return how it moves."""
+        """Advance the motor by several ticks, all in one segment of its trajectory; return its motion in each."""
         if self.mode == STOPPED or self._guide is None or self._course is None:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
         tick_us = self._tick_us

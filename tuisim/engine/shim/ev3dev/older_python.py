@@ -53,7 +53,10 @@ class _MicroPython(MicroPythonFinder):
         self._session = session
 
     def exec_module(self, module: types.ModuleType) -> None:
-        """Fill a module with the names of its counterpart in Python; `utime` also gets counters of simulated time."""
+        """Fill a module of MicroPython, such as `ujson`, with the names of Python's module, here `json`.
+
+        `utime` also gets counters of simulated time.
+        """
         super().exec_module(module)
         if module.__name__ == "utime":
             vars(module).update(clock_names(self._session))

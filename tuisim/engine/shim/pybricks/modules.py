@@ -127,11 +127,12 @@ def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Names:
 
 
 def refuse_name(hub: str, module: str, name: str) -> NoReturn:
-    """Raise the error for a name that a module does not have under version 4.
+    """Raise the error for a name that a module of Pybricks 4 does not have.
 
     Raises:
-        NotSimulated: version 2.0, another module or another hub has the name; the error is also an ImportError.
-        AttributeError: no version, module or hub has the name.
+        NotSimulated: the name exists in Pybricks 2.0, in another module or on another hub; the error is also an
+            ImportError.
+        AttributeError: the name exists nowhere in Pybricks.
     """
     from tuisim.engine.shim.pybricks.earlier import EARLIER, EARLIER_MODULES
 
