@@ -11,6 +11,7 @@ FOUND: Sequence[tuple[str, str]] = (
     ("damage", "arrow:116652808:value"),
     ("damage", "arrow:1306604838:value"),
     ("damage", "arrow:2069109442:value"),
+    ("damage", "arrow:2079769798"),
     ("damage", "arrow:2208802654"),
     ("damage", "arrow:3138981886"),
     ("damage", "arrow:3568964177"),

@@ -446,8 +446,9 @@ def _find_rising(table: pa.Table) -> str:
     names = table.column_names
     nameless = all(name == f"column {number}" for number, name in enumerate(names, 1))
     full = (name for name in names if not _has_empty_cells(table.column(name)))
-    first = next(full, names[0])
-    return first if nameless and len(names) > 1 and _is_rising(table, first) else ROW
+    first = next(full, ROW)
+    can_count = nameless and len(names) > 1 and first != ROW
+    return first if can_count and _is_rising(table, first) else ROW
 
 
 def _has_empty_cells(column: pa.ChunkedArray) -> bool:
