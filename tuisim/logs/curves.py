@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tuisim.engine.runs.arrays import FloatArray, IntArray
+from tuisim.engine.runs.arrays import FloatArray, IntArray, find_spans
 from tuisim.logs.pieces import BoolArray, Signal, count_samples
 from tuisim.logs.stillness import PlateauArray, read_spans
 
@@ -126,9 +126,7 @@ def _find_treads(signal: Signal, plateaus: PlateauArray) -> BoolArray:
     is_flat = plateaus["spread"] < tread / 2.0
     gentle = is_flat & (np.abs(rises).max(axis=0) < _TREAD_RISE * tread)
     inner = gentle & (rises[0] * rises[1] > 0.0)
-    padded = np.concatenate(([False], inner, [False]))
-    bounds = np.flatnonzero(np.diff(padded))
-    for start, stop in zip(bounds[::2].tolist(), bounds[1::2].tolist(), strict=True):
+    for start, stop in find_spans(inner).tolist():
         if stop - start >= _MIN_TREADS:
             treads[max(start - 1, 0) : stop + 1] = gentle[max(start - 1, 0) : stop + 1]
     return treads
