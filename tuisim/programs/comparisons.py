@@ -29,14 +29,34 @@ def read_comparison(
     """
     match test:
         case ast.Compare(left=left, ops=[operator], comparators=[right]):
-            sign = SIGNS.get(type(operator), "")
+            parts = split_comparison(left, operator, right, constants)
         case _:
             return None
+    if parts is None:
+        return None
+    value, sign, limit = parts
     ending = sign if is_break else _OPPOSITE.get(sign, "")
+    return _split_sum(value, ending, limit, constants) if ending else None
+
+
+def split_comparison(
+    left: ast.expr, operator: ast.cmpop, right: ast.expr, constants: Mapping[str, Word]
+) -> tuple[ast.expr, str, Word] | None:
+    """Return the parts of a comparison with a constant: the compared expression, the operator, and the constant.
+
+    If the constant stands on the left, the operator is turned: `20 < light` gives `light`, `>` and 20. The result is
+    None for other comparisons.
+
+    Args:
+        left, right: The two sides.
+        operator: The operator between them.
+        constants: Values of names in the program; see `list_constants`.
+    """
+    sign = SIGNS.get(type(operator), "")
     limit = find_constant(right, constants)
     if limit is None:
-        left, limit, ending = right, find_constant(left, constants), TURNED.get(ending, ending)
-    return None if limit is None or not ending else _split_sum(left, ending, limit, constants)
+        left, limit, sign = right, find_constant(left, constants), TURNED.get(sign, sign)
+    return None if limit is None or not sign else (left, sign, limit)
 
 
 def _split_sum(

@@ -11,10 +11,9 @@ from math import prod
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.conditions import COMPARE
-from tuisim.programs.comparisons import find_constant, is_set
+from tuisim.programs.comparisons import find_constant, is_set, split_comparison
 from tuisim.programs.pure_expressions import has_effect, is_reading
 from tuisim.programs.questions import Word
-from tuisim.programs.robot.source import SIGNS, TURNED
 
 _MAX_NODES = 400
 """A larger condition is not examined."""
@@ -119,13 +118,13 @@ def _read_limit(
     left: ast.expr, operator: ast.cmpop, right: ast.expr, constants: Mapping[str, Word]
 ) -> _Limit | None:
     """Return a comparison of a reading or variable with a constant; None for other comparisons."""
-    sign = SIGNS.get(type(operator), "")
-    value, word = left, find_constant(right, constants)
-    if word is None:
-        value, word, sign = right, find_constant(left, constants), TURNED.get(sign, sign)
+    parts = split_comparison(left, operator, right, constants)
+    if parts is None:
+        return None
+    value, sign, word = parts
     is_ordered = isinstance(word, int | float) or sign in ("==", "!=")
-    is_known = word is not None and find_constant(value, constants) is None
-    if word is None or not (sign and is_ordered and is_known and is_reading(value)):
+    is_variable = find_constant(value, constants) is None
+    if not (is_ordered and is_variable and is_reading(value)):
         return None
     return _Limit(ast.unparse(value), sign, word)
 
