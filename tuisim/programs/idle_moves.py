@@ -9,7 +9,7 @@ from itertools import pairwise
 from tuisim.programs.moves import ANY_MOVE, STARTS, STOPS
 from tuisim.programs.pure_expressions import has_effect
 from tuisim.programs.statements import find_call, find_number, list_blocks
-from tuisim.programs.wrong_calls import PREDEFINED, find_classes
+from tuisim.programs.wrong_calls import find_makers
 
 _LEAVES = (ast.Break, ast.Return, ast.Raise)
 
@@ -19,7 +19,7 @@ def list_idle_moves(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
     Of each kind of mistake, only the first line is yielded.
     """
-    makers = _find_makers(tree)
+    makers = _map_motors(tree)
     blocks = [*_list_blocks(tree)]
     for list_lines in (_list_stopped_starts, _list_overruled, _list_restarts):
         if first := min(list_lines(blocks, makers), default=None):
@@ -42,18 +42,9 @@ def _is_print(step: ast.stmt) -> bool:
     return False
 
 
-def _find_makers(tree: ast.Module) -> dict[str, str]:
-    """Return by name, for each motor and each pair of motors, the arguments with which it is created, such as its port.
-
-    Two pairs with the same motors have the same text.
-    """
-    makers = dict.fromkeys(PREDEFINED, "OUTPUT_B, OUTPUT_C")
-    classes = find_classes(tree)
-    for node in ast.walk(tree):
-        match node:
-            case ast.Assign(targets=[target], value=ast.Call(args=args)):
-                makers[ast.unparse(target)] = ", ".join(map(ast.unparse, args))
-    return {name: makers.get(name, "") or name for name in classes}
+def _map_motors(tree: ast.Module) -> dict[str, str]:
+    """Return for each motor and each pair of motors, by name, a text that is the same for the same motors."""
+    return {name: maker.arguments or name for name, maker in find_makers(tree).items()}
 
 
 def _find_owner(step: ast.stmt, methods: Sequence[str], makers: Mapping[str, str]) -> str:
@@ -191,7 +182,7 @@ def list_stopping_loops(tree: ast.Module) -> Iterator[tuple[int, str, range]]:
     Yields:
         The line, a description, and the lines of the loop.
     """
-    makers = _find_makers(tree)
+    makers = _map_motors(tree)
     functions = [node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
     for block in _list_blocks(tree):
         for start, loop in pairwise(block):

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from tuisim.base.data_class import dataclass
 from tuisim.programs.statements import find_number
 
 _ERRORS = ("TypeError", "AttributeError", "AssertionError", "SpeedInvalid", "DeviceNotDefined")
-PREDEFINED = {"tank_drive": "MoveTank", "tank_turn": "MoveSteering"}
+_PREDEFINED = {"tank_drive": "MoveTank", "tank_turn": "MoveSteering"}
 _SPEEDS: Mapping[str, tuple[str, ...]] = {
     "MoveTank": ("left_speed", "right_speed"),
     "MoveDifferential": ("left_speed", "right_speed"),
@@ -109,24 +110,39 @@ def explain_call(tree: ast.Module, error: str, line: int) -> str:
     return ""
 
 
-def find_classes(tree: ast.Module) -> dict[str, str]:
-    """Return the classes of the variables and attributes for motors and pairs of motors, by name."""
-    classes = dict(PREDEFINED)
+class Maker(NamedTuple):
+    """How a program creates a motor or a pair of motors."""
+
+    class_name: str
+    arguments: str
+    """As text; two pairs with the same motors have the same text."""
+
+
+def find_makers(tree: ast.Module) -> dict[str, Maker]:
+    """Return how the motors and pairs of motors are created, by the name of the variable or attribute."""
+    makers = {
+        name: Maker(class_name, "OUTPUT_B, OUTPUT_C") for name, class_name in _PREDEFINED.items()
+    }
+    own = set[str]()
     for node in ast.walk(tree):
         match node:
-            case ast.Assign(targets=[target], value=value):
-                name = (
-                    ast.unparse(value.func).rpartition(".")[2]
-                    if isinstance(value, ast.Call)
-                    else ""
-                )
-                classes[ast.unparse(target)] = name
-    own = {node.name for node in ast.walk(tree) if isinstance(node, ast.ClassDef)}
+            case ast.Assign(targets=[target], value=ast.Call(func=func, args=args)):
+                class_name = ast.unparse(func).rpartition(".")[2]
+                makers[ast.unparse(target)] = Maker(class_name, ", ".join(map(ast.unparse, args)))
+            case ast.Assign(targets=[target]):
+                makers[ast.unparse(target)] = Maker("", "")
+            case ast.ClassDef(name=name):
+                own.add(name)
     return {
-        name: class_name
-        for name, class_name in classes.items()
-        if class_name in _SPEEDS and class_name not in own
+        name: maker
+        for name, maker in makers.items()
+        if maker.class_name in _SPEEDS and maker.class_name not in own
     }
+
+
+def find_classes(tree: ast.Module) -> dict[str, str]:
+    """Return the classes of the variables and attributes for motors and pairs of motors, by name."""
+    return {name: maker.class_name for name, maker in find_makers(tree).items()}
 
 
 def _describe_move(move: _Move, error: str, classes: Mapping[str, str]) -> str:
@@ -188,8 +204,8 @@ def _describe_speeds(
     if speeds[0] == speeds[1]:
         return f"{text}: {move.format_call('0', speeds[0], *ends)} drives straight on"
     tanks = [name for name, class_name in classes.items() if class_name == "MoveTank"]
-    if move.owner not in PREDEFINED:
-        tanks = [name for name in tanks if name not in PREDEFINED]
+    if move.owner not in _PREDEFINED:
+        tanks = [name for name in tanks if name not in _PREDEFINED]
     call = f"{tanks[0]}.{move.method}({', '.join(words)})" if tanks else "a MoveTank"
     return f"{text}: {call} takes two"
 
