@@ -12,7 +12,6 @@ from typing import Any, assert_never
 from tuisim.base.errors import SIGNALLED, counted
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.protocol import NO_ANSWER, End, describe_state
 from tuisim.engine.runs.contacts import (
     LEFT_FIELD,
@@ -21,6 +20,7 @@ from tuisim.engine.runs.contacts import (
     find_push,
     find_standstill,
     has_left_field,
+    is_off_field,
 )
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun
@@ -118,8 +118,7 @@ def describe_last_state(facts: dict[str, Any]) -> str:
     pose = Pose(facts["x_mm"], facts["y_mm"], facts["heading_deg"])
     stood = f"{Standstill(**facts['standstill']).words} · " if facts["standstill"] else ""
     pushed = f"{Push(**facts['push']).words} · " if facts["push"] else ""
-    is_on = 0 <= pose.x_mm <= FIELD_WIDTH_MM and 0 <= pose.y_mm <= FIELD_HEIGHT_MM
-    off = "" if is_on else "off the mat · "
+    off = "off the mat · " if is_off_field(pose.x_mm, pose.y_mm) else ""
     left = f"{LEFT_FIELD} · " if facts["left_field"] else off
     waited = "".join(f"{facts[name]} · " for name in ("waited_for", "went_wrong") if facts[name])
     samples = "" if facts["samples"] is None else f"{counted(facts['samples'], 'sample')} · "

@@ -193,6 +193,11 @@ def _find_next_move(records: NDArray[Any], start: int, end: int) -> int | None:
     return start + 1 + int(ticks[0]) if len(ticks) else None
 
 
+def is_off_field(x_mm: Any, y_mm: Any) -> Any:
+    """Return whether a place is off the field; for arrays of coordinates, an array of answers."""
+    return (x_mm < 0) | (x_mm > FIELD_WIDTH_MM) | (y_mm < 0) | (y_mm > FIELD_HEIGHT_MM)
+
+
 def has_left_field(telemetry: TelemetryView, spec: RunSpec) -> bool:
     """Return whether a robot on an open floor has been off the field.
 
@@ -202,8 +207,7 @@ def has_left_field(telemetry: TelemetryView, spec: RunSpec) -> bool:
     if not spec.world.is_open:
         return False
     records = telemetry.array()
-    sides = (records["x_mm"], FIELD_WIDTH_MM), (records["y_mm"], FIELD_HEIGHT_MM)
-    return any(bool(((at_mm < 0) | (at_mm > size_mm)).any()) for at_mm, size_mm in sides)
+    return bool(is_off_field(records["x_mm"], records["y_mm"]).any())
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
 from tuisim.engine.core.profile import NS_PER_S
-from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.contacts import find_push, find_standstill
+from tuisim.engine.runs.contacts import find_push, find_standstill, is_off_field
 from tuisim.engine.runs.diff import find_first_difference_s, is_repeat
 from tuisim.engine.runs.records import Stream
 from tuisim.tasks.goals.judgement import GoalState, Judgement
@@ -297,8 +296,7 @@ def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
 def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
     """Yield a reason at the first instant at which the robot drove over the edge of the mat, if it did."""
     records = run.telemetry.array()
-    x_mm, y_mm = records["x_mm"], records["y_mm"]
-    is_off = (x_mm < 0) | (x_mm > FIELD_WIDTH_MM) | (y_mm < 0) | (y_mm > FIELD_HEIGHT_MM)
+    is_off = is_off_field(records["x_mm"], records["y_mm"])
     if is_off.any():
         yield replace(
             _explain_lost(run, int(is_off.argmax()), "the robot left the mat"), is_state=True
