@@ -54,31 +54,6 @@ signal.signal(signal.SIGINT, lambda n, f: print('h', n))
 signal.raise_signal(signal.SIGINT)
 print('on')
 """,
-    "faulthandler-register": """\
-import faulthandler, signal
-faulthandler.register(signal.SIGUSR1)
-print('x')
-""",
-    "faulthandler-register-1": """\
-import faulthandler, signal
-faulthandler.register(signal.SIGUSR1, all_threads=False, chain=False)
-print(faulthandler.unregister(signal.SIGUSR1))
-""",
-    "faulthandler-register-raise": """\
-import faulthandler, signal
-faulthandler.register(signal.SIGUSR1, all_threads=False)
-signal.raise_signal(signal.SIGUSR1)
-print('on')
-""",
-    "faulthandler-dump": """\
-import faulthandler, sys
-faulthandler.dump_traceback(all_threads=False)
-""",
-    "faulthandler-fd": """\
-import faulthandler, sys
-faulthandler.dump_traceback(2, all_threads=False)
-faulthandler.dump_traceback(sys.stderr.fileno(), all_threads=False)
-""",
     "own-int-handler": """\
 import signal, os
 class E(Exception): pass

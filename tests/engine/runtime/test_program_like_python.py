@@ -60,7 +60,6 @@ def same_for_all(text: str, folder: Path) -> str:
     "excepthook*",
     "gc-callbacks*",
     "settrace-left-raise",
-    "faulthandler*",
     "patch-*",
     "os-write*",
     "fdopen",

@@ -23,7 +23,10 @@ OWN_STACK = {
         ],
     ),
     "inspect": ("print([info.function for info in inspect.stack()])", ["['f', '<module>']"]),
-    "faulthandler": ("faulthandler.dump_traceback()", ['  File "program.py", line 2 in f']),
+    "refused": (
+        "\n    try: faulthandler.dump_traceback()\n    except Exception as error: print(error.message)",
+        ["faulthandler.dump_traceback is not part of the simulated brick"],
+    ),
     "enabled": ("faulthandler.enable(); print(faulthandler.is_enabled())", ["True"]),
     "later": ("faulthandler.dump_traceback_later(1); print('on')", ["on"]),
 }

@@ -7,22 +7,17 @@ from __future__ import annotations
 
 import faulthandler
 import os
-import signal
 import sys
 import types
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
-from tuisim.engine.protocol import COMMAND_SIGNAL, STACK_SIGNAL
-from tuisim.engine.runtime import wallclock
+from tuisim.base.errors import NotSimulated
 from tuisim.engine.runtime.patches.replacement import replace
 
-_CRASHES = (signal.SIGSEGV, signal.SIGFPE, signal.SIGABRT, signal.SIGBUS, signal.SIGILL)
-_OURS = (COMMAND_SIGNAL, STACK_SIGNAL, signal.SIGALRM, signal.SIGVTALRM, signal.SIGINT)
-"""Signals that the runtime handles."""
 PACKAGE_FOLDER = str(Path(__file__).parents[2]) + os.sep
 _BOTTOM = os.path.join(PACKAGE_FOLDER, "engine", "runtime", "__main__.py")
 """File of the outermost frame of the process."""
@@ -122,7 +117,7 @@ def patch_faulthandler() -> None:
     """Patch `faulthandler`, so that a program can enable it without effect: crashes are always written for the host.
 
     Functions that write the stack after some real time do nothing: time in a run is simulated, and the host has its
-    limits.
+    limits. Those that write it now, or at a signal, would show frames of the runtime: they are refused.
     """
     on = False
 
@@ -132,82 +127,22 @@ def patch_faulthandler() -> None:
         on = wanted
         return was
 
-    def enable(file: Any = None, all_threads: bool = True, **_further: Any) -> None:
+    def enable(*_args: object, **_named: object) -> None:
         switch(True)
-
-    def dump_traceback(file: Any = None, all_threads: bool = True, **_further: Any) -> None:
-        _write(_format_stacks(sys._getframe(1), all_threads), sys.stderr if file is None else file)
 
     replace(faulthandler, "enable", enable)
     replace(faulthandler, "disable", lambda: switch(False), (0, 0))
     replace(faulthandler, "is_enabled", lambda: on, (0, 0))
-    replace(faulthandler, "dump_traceback", dump_traceback)
     for name in ("dump_traceback_later", "cancel_dump_traceback_later"):
         replace(faulthandler, name, lambda *_args, **_named: None)
-    _patch_registration()
+    for name in ("dump_traceback", "register", "unregister"):
+        replace(faulthandler, name, _build_refusal(name))
 
 
-def _patch_registration() -> None:
-    """Patch the functions of `faulthandler` that register signals, so that the runtime keeps its own signals."""
-    before: dict[int, Any] = {}
+def _build_refusal(name: str) -> Callable[..., NoReturn]:
+    def refuse(*_args: object, **_named: object) -> NoReturn:
+        raise NotSimulated(
+            f"faulthandler.{name} is not part of the simulated brick", "use traceback.print_stack"
+        )
 
-    def register(
-        signum: int, file: Any = None, all_threads: bool = True, chain: bool = False
-    ) -> None:
-        if signum in _CRASHES:
-            raise RuntimeError(f"signal {signum} cannot be registered, use enable() instead")
-        out = sys.stderr if file is None else file
-
-        def handle(number: int, frame: types.FrameType | None) -> None:
-            if frame is not None:
-                _write(_format_stacks(frame, all_threads), out)
-            if chain and callable(previous := before.get(number)):
-                previous(number, frame)
-
-        was = None if signum in _OURS else set_signal(signum, handle)
-        before.setdefault(signum, was)
-
-    def unregister(signum: int) -> bool:
-        if signum not in before:
-            return False
-        was = before.pop(signum)
-        if signum not in _OURS:
-            set_signal(signum, was)
-        return True
-
-    set_signal = wallclock.set_signal
-    replace(faulthandler, "register", register)
-    replace(faulthandler, "unregister", unregister, (1, 1))
-
-
-def _format_stacks(frame: types.FrameType, all_threads: bool) -> str:
-    if not all_threads:
-        return _format_stack("Stack", frame)
-    import threading
-
-    frames, here = sys._current_frames(), threading.current_thread()
-    others = [
-        thread for thread in threading.enumerate() if thread is not here and thread.ident in frames
-    ]
-    others_text = [
-        _format_stack(f"Thread {thread.name}", frames[thread.ident or 0]) for thread in others
-    ]
-    return "\n".join([_format_stack(f"Current thread {here.name}", frame), *others_text])
-
-
-def _format_stack(heading: str, frame: types.FrameType) -> str:
-    seen = _iterate_visible(_walk_frames(frame), lambda frame: frame.f_code.co_filename)
-    lines = [
-        f'  File "{own_frame.f_code.co_filename}", line {own_frame.f_lineno} in {own_frame.f_code.co_name}\n'
-        for own_frame in seen
-    ]
-    return f"{heading} (most recent call first):\n{''.join(lines)}"
-
-
-def _write(text: str, file: Any) -> None:
-    """Write text to a file object or to a descriptor, as the functions of `faulthandler` do."""
-    if isinstance(file, int):
-        os.write(file, text.encode("utf-8", "backslashreplace"))
-    else:
-        file.write(text)
-        file.flush()
+    return refuse
