@@ -16,9 +16,15 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
-from tuisim.base.regular_file import of_the_machine, open_regular, read_regular
+from tuisim.base.regular_file import open_regular
 from tuisim.engine.core.commands.calls import MAX_VALUES, Call, SimulationCommand
-from tuisim.engine.runs.records import COMMANDS_FILE, HEADER_BYTES, MappedWriter, read_header
+from tuisim.engine.runs.records import (
+    COMMANDS_FILE,
+    HEADER_BYTES,
+    CountedWriter,
+    read_counted,
+    read_header,
+)
 
 if TYPE_CHECKING:
     import numpy as np
@@ -38,22 +44,18 @@ COMMAND_FIELDS = (
 """Name and type of each field of a record, the type as numpy writes it."""
 MAX_COMMANDS = 1 << 21
 """Further commands of a run are only counted."""
-_FIRST_BYTES = 1 << 14
 _PACKERS = tuple(Struct(f"<qBB6x{count}d").pack_into for count in range(MAX_VALUES + 1))
 """Functions that pack a command, by the number of its values."""
 _CALLS = {call.value: call for call in Call}
 
 
-class CommandsWriter(MappedWriter):
+class CommandsWriter(CountedWriter):
     """A writer that appends commands to the record of a run; readers can see each one immediately."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__(
-            f"{folder}{os.sep}{COMMANDS_FILE}", COMMANDS_MAGIC, COMMAND_RECORD.size, _FIRST_BYTES
+            f"{folder}{os.sep}{COMMANDS_FILE}", COMMANDS_MAGIC, COMMAND_RECORD.size, MAX_COMMANDS
         )
-        self._count = 0
-        self._room = _FIRST_BYTES // COMMAND_RECORD.size
-        """Number of commands for which the file has space."""
 
     def add(self, time_ns: int, part: int, call: int, values: tuple[float, ...]) -> None:
         """Append a command to the record; the arguments are the fields of a `SimulationCommand`."""
@@ -62,18 +64,6 @@ class CommandsWriter(MappedWriter):
             offset = HEADER_BYTES + count * COMMAND_RECORD.size
             _PACKERS[len(values)](self._map, offset, time_ns, part, call, *values)
         self._count = self._length[0] = count + 1
-
-    def _extend(self, count: int) -> bool:
-        """Make space in the file for `count` + 1 commands; return False if there is none."""
-        if count >= MAX_COMMANDS or self._is_full:
-            return False
-        self._make_room(HEADER_BYTES + (count + 1) * COMMAND_RECORD.size)
-        self._room = min(MAX_COMMANDS, (self._capacity - HEADER_BYTES) // COMMAND_RECORD.size)
-        return True
-
-    def close(self) -> None:
-        """Close the file of commands, and cut off its unused space."""
-        self._close(HEADER_BYTES + min(self._count, self._room) * COMMAND_RECORD.size)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,25 +101,10 @@ def read_commands(folder: Path) -> RecordedCommands:
     Raises:
         LogError: the file is missing, damaged or of another version, or this machine cannot read it.
     """
-    import numpy as np
-
     path = folder / COMMANDS_FILE
-    try:
-        data = read_regular(path, HEADER_BYTES + 2 * MAX_COMMANDS * COMMAND_RECORD.size)
-    except FileNotFoundError as error:
-        raise LogError(
-            "there is no record of what the program did", "run it again", file=str(path)
-        ) from error
-    except OSError as error:
-        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from (
-            error if of_the_machine(error) else None
-        )
-    size, published = read_header(data, COMMANDS_MAGIC, str(path))
-    if size != COMMAND_RECORD.size:
-        raise LogError("damaged: the records are not commands", file=str(path))
-    count = min(published, MAX_COMMANDS, (len(data) - HEADER_BYTES) // size)
-    rows = np.frombuffer(data, _find_kind(), count, HEADER_BYTES)
-    return RecordedCommands(rows, published - count)
+    return RecordedCommands(
+        *read_counted(path, COMMANDS_MAGIC, COMMAND_FIELDS, MAX_COMMANDS, "did")
+    )
 
 
 def read_command_rows(folder: Path, first: int, count: int) -> Array:

@@ -15,14 +15,13 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
-from tuisim.base.regular_file import of_the_machine, read_regular
 from tuisim.engine.core.hub_spec import CONTROLLERS, HUB_BUTTONS, HUB_PORTS, INSIDE
 from tuisim.engine.core.spec import BUTTONS, INPUT_PORTS, OUTPUT_PORTS
 from tuisim.engine.runs.records import (
     HEADER_BYTES,
     READINGS_FILE,
-    MappedWriter,
-    read_published_length,
+    CountedWriter,
+    read_counted,
 )
 
 if TYPE_CHECKING:
@@ -83,10 +82,9 @@ READING_CODES: Mapping[tuple[str, str], int] = {
 
 MAX_READINGS = 1 << 22
 """Further readings of a run are only counted."""
-_FIRST_BYTES = 1 << 14
 
 
-class ReadingsWriter(MappedWriter):
+class ReadingsWriter(CountedWriter):
     """A writer that appends to a run's record of when the program reads which sensor, encoder or button.
 
     Readers of the file can see each entry immediately.
@@ -94,11 +92,8 @@ class ReadingsWriter(MappedWriter):
 
     def __init__(self, folder: Path) -> None:
         super().__init__(
-            f"{folder}{os.sep}{READINGS_FILE}", READINGS_MAGIC, READING_RECORD.size, _FIRST_BYTES
+            f"{folder}{os.sep}{READINGS_FILE}", READINGS_MAGIC, READING_RECORD.size, MAX_READINGS
         )
-        self._count = 0
-        self._room = _FIRST_BYTES // READING_RECORD.size
-        """Number of readings for which the file has space."""
         self.newest_ns = -1
 
     def add(self, code: int, time_ns: int, line: int) -> None:
@@ -124,18 +119,6 @@ class ReadingsWriter(MappedWriter):
             if other == code:
                 return True
         return False
-
-    def _extend(self, count: int) -> bool:
-        """Make space in the file for `count` + 1 readings; return False if there is none."""
-        if count >= MAX_READINGS or self._is_full:
-            return False
-        self._make_room(HEADER_BYTES + (count + 1) * READING_RECORD.size)
-        self._room = min(MAX_READINGS, (self._capacity - HEADER_BYTES) // READING_RECORD.size)
-        return True
-
-    def close(self) -> None:
-        """Close the file of readings, and cut off its unused space."""
-        self._close(HEADER_BYTES + min(self._count, self._room) * READING_RECORD.size)
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,25 +157,13 @@ def read_readings(folder: Path, *, is_over: bool = True) -> Readings:
     import numpy as np
 
     path = folder / READINGS_FILE
-    try:
-        data = read_regular(path, HEADER_BYTES + 2 * MAX_READINGS * READING_RECORD.size)
-    except FileNotFoundError as error:
-        if not is_over:
-            return Readings(np.empty(0, np.dtype(list(READING_FIELDS))))
-        raise LogError(
-            "there is no record of what the program read", "run it again", file=str(path)
-        ) from error
-    except OSError as error:
-        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from (
-            error if of_the_machine(error) else None
-        )
-    published = read_published_length(data, READINGS_MAGIC, str(path))
-    count = min(published, MAX_READINGS, (len(data) - HEADER_BYTES) // READING_RECORD.size)
-    rows = np.frombuffer(data, np.dtype(list(READING_FIELDS)), count, HEADER_BYTES)
+    if not is_over and not path.exists():
+        return Readings(np.empty(0, np.dtype(list(READING_FIELDS))))
+    rows, left_out = read_counted(path, READINGS_MAGIC, READING_FIELDS, MAX_READINGS, "read")
     if (
         (np.diff(rows["time_ns"], prepend=0) < 0).any()
         or (rows["port"] >= len(READING_PORTS)).any()
         or (rows["mode"] >= len(READING_MODES)).any()
     ):
         raise LogError("damaged: the records are not readings", file=str(path))
-    return Readings(rows, published - count)
+    return Readings(rows, left_out)

@@ -14,16 +14,23 @@ import errno
 import mmap
 import os
 import resource
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from enum import IntEnum, StrEnum
 from pathlib import Path
 from struct import Struct
+from typing import TYPE_CHECKING, Any
 
 from tuisim.base.atomic import private
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
+from tuisim.base.regular_file import of_the_machine, read_regular
 from tuisim.engine.core.tick_record import TICK_RECORD
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Array = np.ndarray[Any, Any]
 
 HEADER_BYTES = 64
 _HEADER = Struct("<8sIIQ")
@@ -93,6 +100,8 @@ MOTORS_FILE = "motors.bin"
 COMMANDS_FILE = "commands.bin"
 """What the program has changed in the simulation; see `engine.runs.command_records`."""
 TELEMETRY_CHUNK = 64 * 1024
+_FIRST_BYTES = 1 << 14
+"""Initial size of a file of counted records after the header."""
 OUTPUT_CHUNK = 1 << 16
 """Initial size of an output file after the header; it is truncated to its true size at the end."""
 
@@ -284,6 +293,37 @@ class OutputWriter(MappedWriter):
         self._close(HEADER_BYTES + self.length)
 
 
+class CountedWriter(MappedWriter):
+    """Base class of writers of records of one size; readers can see each record immediately.
+
+    Args:
+        path: The file.
+        magic: The bytes with which files of this kind begin.
+        record_bytes: The size of a record.
+        most: Maximum number of records in the file; further ones are only counted.
+    """
+
+    def __init__(self, path: str, magic: bytes, record_bytes: int, most: int) -> None:
+        super().__init__(path, magic, record_bytes, _FIRST_BYTES)
+        self._record_bytes = record_bytes
+        self._most = most
+        self._count = 0
+        self._room = _FIRST_BYTES // record_bytes
+        """Number of records for which the file has space."""
+
+    def _extend(self, count: int) -> bool:
+        """Make space in the file for `count` + 1 records; return False if there is none."""
+        if count >= self._most or self._is_full:
+            return False
+        self._make_room(HEADER_BYTES + (count + 1) * self._record_bytes)
+        self._room = min(self._most, (self._capacity - HEADER_BYTES) // self._record_bytes)
+        return True
+
+    def close(self) -> None:
+        """Close the file, and cut off its unused space."""
+        self._close(HEADER_BYTES + min(self._count, self._room) * self._record_bytes)
+
+
 @dataclass(frozen=True, slots=True)
 class OutputRow:
     """One row of output: a printed line, speech, an answer to `input()`, or a part of the brick's state."""
@@ -335,6 +375,41 @@ def read_header(data: bytes, magic: bytes, file: str) -> tuple[int, int]:
     if version != FORMAT_VERSION:
         raise LogError(f"format version {version}, this tuisim reads {FORMAT_VERSION}", file=file)
     return int(record_bytes), int(length)
+
+
+def read_counted(
+    path: Path, magic: bytes, fields: Sequence[tuple[str, str]], most: int, did: str
+) -> tuple[Array, int]:
+    """Return the records in a file of a `CountedWriter` so far, and the number of those for which it had no space.
+
+    Args:
+        path: The file.
+        magic: The bytes with which files of this kind begin.
+        fields: Name and type of each field of a record, the type as numpy writes it.
+        most: Maximum number of records in the file.
+        did: What the program did, for errors, such as `read`.
+
+    Raises:
+        LogError: the file is missing, damaged or of another version, or this machine cannot read it.
+    """
+    import numpy as np
+
+    kind = np.dtype([*fields])
+    try:
+        data = read_regular(path, HEADER_BYTES + 2 * most * kind.itemsize)
+    except FileNotFoundError as error:
+        raise LogError(
+            f"there is no record of what the program {did}", "run it again", file=str(path)
+        ) from error
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from (
+            error if of_the_machine(error) else None
+        )
+    size, published = read_header(data, magic, str(path))
+    if size != kind.itemsize:
+        raise LogError("damaged: its records have another size", file=str(path))
+    count = min(published, most, (len(data) - HEADER_BYTES) // size)
+    return np.frombuffer(data, kind, count, HEADER_BYTES), published - count
 
 
 def is_hole(part: bytes | memoryview) -> bool:
