@@ -217,10 +217,6 @@ class StepLine(Message):
 
     how: LineStep = LineStep.OVER
 
-    def __post_init__(self) -> None:
-        # A command that was read from JSON has the text of a `LineStep` here.
-        object.__setattr__(self, "how", LineStep(self.how))
-
 
 @dataclass(frozen=True, slots=True)
 class RunToLine(Message):
@@ -248,10 +244,6 @@ class SetBreaks(Message):
     breaks: tuple[str, ...]
     """Breakpoints in the syntax of `tuisim.engine.breakpoints`; disabled ones are ignored."""
 
-    def __post_init__(self) -> None:
-        # A command that was read from JSON has a list here, which would not be immutable.
-        object.__setattr__(self, "breaks", tuple(self.breaks))
-
 
 @dataclass(frozen=True, slots=True)
 class Inspect(Message):
@@ -263,9 +255,6 @@ class Inspect(Message):
     """Name of the thread to inspect; empty for the one that was paused."""
     frame: int = 0
     """Index of the frame: 0 is the innermost of the program's own."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "watches", tuple(self.watches))
 
 
 @dataclass(frozen=True, slots=True)
@@ -314,8 +303,6 @@ class SetButtons(Message):
     """Names from `PRESSABLE`; others raise a ConfigError."""
 
     def __post_init__(self) -> None:
-        # A command that was read from JSON has a list here, which would not be immutable.
-        object.__setattr__(self, "pressed", tuple(self.pressed))
         for name in self.pressed:
             if name not in PRESSABLE:
                 raise ConfigError(f"{name!r} cannot be pressed", f"one of {', '.join(PRESSABLE)}")
@@ -339,9 +326,6 @@ class Reply(Message):
 
     messages: tuple[Any, ...]
     """JSON data, oldest first."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "messages", tuple(self.messages))
 
 
 ACTIONS: tuple[type[Message], ...] = (SetPose, SetNoise, SetPen, SetButtons, Answer, Reply)
@@ -386,8 +370,17 @@ class UserAction:
         Raises:
             KeyError, TypeError, ValueError, ConfigError: the data is not a user action.
         """
-        fields = {name: value for name, value in row.items() if name not in ("tick", "kind")}
-        return cls(int(row["tick"]), COMMANDS[row["kind"]](**fields))
+        fields = {**row}
+        return cls(int(fields.pop("tick")), _build_command(fields))
+
+
+def _build_command(fields: dict[str, Any]) -> Message:
+    """Return the command with these fields and `kind`; lists of JSON become tuples, which are immutable."""
+    kind = COMMANDS[fields.pop("kind")]
+    values = {
+        name: tuple(value) if isinstance(value, list) else value for name, value in fields.items()
+    }
+    return kind(**values)
 
 
 # Events: child to host.
@@ -574,5 +567,4 @@ def parse_command(line: bytes) -> Message:
     Raises:
         ValueError, KeyError, TypeError, ConfigError: the line is not a valid command.
     """
-    fields: dict[str, Any] = json.loads(line)
-    return COMMANDS[fields.pop("kind")](**fields)
+    return _build_command(json.loads(line))
